@@ -1,0 +1,25 @@
+# Everything third-party, from the distribution's packages (cmake/packages.debian).
+find_package(Threads REQUIRED)
+find_package(Vulkan REQUIRED)
+find_package(glm REQUIRED)
+find_package(fmt REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(PkgConfig REQUIRED)
+find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
+
+# OpenImageIO's CMake package on Debian 12 asks for programs its -dev package does not bring; pkg-config works.
+pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
+
+# Components by name: without them ITK loads every module it was built with.
+find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
+    ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)
+# ITK's own use file registers factories per directory; what it sets is kept in one interface target.
+add_library(edgesplat_itk INTERFACE)
+target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
+target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
+
+if(EDGESPLAT_TESTS)
+    find_package(GTest REQUIRED)
+    include(GoogleTest)
+endif()

@@ -1,0 +1,10 @@
+# Every target of ours is built with these; third-party headers come in as SYSTEM and are not judged.
+add_library(edgesplat_warnings INTERFACE)
+target_compile_options(edgesplat_warnings INTERFACE
+    -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Woverloaded-virtual
+    -Wdouble-promotion -Wimplicit-fallthrough -Werror)
+# GCC 12 reports false positives for std::string and std::vector under -O2 and sanitizers.
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(edgesplat_warnings INTERFACE -Wno-restrict -Wno-maybe-uninitialized -Wno-array-bounds
+        -Wno-stringop-overflow)
+endif()

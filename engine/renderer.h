@@ -1,0 +1,91 @@
+// The library's face: a volume, a scene and a camera in, a picture and what it cost out. Needs a Vulkan 1.3 device.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/image.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/settings.h"
+#include "engine/volume/volume.h"
+
+namespace edgesplat {
+
+/// One Vulkan device of this machine, usable or not.
+struct DeviceInfo {
+    int index = 0;
+    std::string name, type, driver, driver_version, api_version;
+    std::vector<std::string> rejections;  ///< why it cannot be used; empty = usable
+};
+
+/// Which device to open and how loudly to check it.
+struct DeviceChoice {
+    std::string device;       ///< empty: the best usable one; else an index or a part of a name
+    bool validation = false;  ///< Khronos validation and synchronization validation; messages are counted
+};
+
+/// Every device of this machine, best first. Empty where there is no Vulkan loader or driver.
+std::vector<DeviceInfo> list_devices();
+
+/// Extra outputs of a frame. Each costs another draw of the splats; none is made unless asked for.
+struct AovRequest {
+    bool tau = false;       ///< optical depth along the pixel's ray, 1 channel, unsaturated, nothing buried dropped
+    bool depth = false;     ///< mean distance along the view axis, mm, 1 channel; 0 where nothing is hit
+    bool normal = false;    ///< mean world normal of what is seen, 3 channels, unit length or 0
+    bool distance = false;  ///< mean signed distance of the seen voxels to their edge, voxels, 1 channel
+};
+
+struct PassTime {
+    std::string name;        ///< stem of the pass, e.g. "5_draw_splats"
+    double milliseconds = 0;
+};
+
+/// What a frame did and cost.
+struct RenderStats {
+    DeviceInfo device;
+    std::vector<PassTime> passes;   ///< in the frame's order
+    double setup_milliseconds = 0;  ///< upload, estimation, collection: 0 when nothing changed since the last frame
+    double frame_milliseconds = 0;  ///< wall clock from submit to finish
+    std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
+    std::uint32_t sheets = 0, sheet_groups = 0;
+    std::uint64_t device_bytes = 0;  ///< allocated on the device
+    std::uint64_t validation_messages = 0;
+};
+
+struct RenderResult {
+    Image color;  ///< RGBA; background blended in, so alpha is the volume's own opacity
+    std::optional<Image> tau, depth, normal, distance;
+    RenderStats stats;
+};
+
+/// Owns the device and everything on it. Not thread-safe; one per thread. Every member throws Error.
+class Renderer {
+  public:
+    explicit Renderer(const DeviceChoice& choice = {});
+    ~Renderer();
+    Renderer(Renderer&&) noexcept;
+    Renderer& operator=(Renderer&&) noexcept;
+
+    const DeviceInfo& device() const;
+
+    /// Uploads a volume; what was estimated for the one before is dropped.
+    void set_volume(std::shared_ptr<const Volume> volume);
+
+    /// Renders one frame of `width` x `height` pixels (1..16384 each). View-independent work is done again only when
+    /// the volume, the scene's materials or the edge settings changed.
+    RenderResult render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
+                        const AovRequest& aovs = {});
+
+    /// Validation messages so far; 0 when validation was not asked for.
+    std::uint64_t validation_messages() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace edgesplat

@@ -1,0 +1,43 @@
+// How accurately, and at what price: each approximation is one knob with named steps, cheapest first.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace edgesplat {
+
+enum class EdgeEstimator { Off, Taylor, Quadratic, March, Cubic };
+enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
+enum class WarpFamily { Edge, Paper };
+enum class SheetFormat { Half, Float };
+
+struct Settings {
+    EdgeEstimator edges = EdgeEstimator::March;
+    FootprintMode footprints = FootprintMode::TableLerp;
+    WarpFamily warp = WarpFamily::Edge;
+    double edge_half_width = 1.3;   ///< a, voxels, (0, 3]
+    double edge_strength = 12;      ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
+    double sheet_spacing = 1.0;     ///< voxels along the view axis, [0.05, 16]
+    SheetFormat sheet_format = SheetFormat::Float;
+    double saturation = 0.999;      ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
+    bool cull_buried = true;        ///< drop voxels that opaque ones hide from every side
+};
+
+/// The estimator, mode, ... of a name as the command line spells it ("table-lerp"); throws Error listing the names.
+EdgeEstimator edge_estimator_named(std::string_view name);
+FootprintMode footprint_mode_named(std::string_view name);
+WarpFamily warp_family_named(std::string_view name);
+SheetFormat sheet_format_named(std::string_view name);
+std::string_view name_of(EdgeEstimator value);
+std::string_view name_of(FootprintMode value);
+std::string_view name_of(WarpFamily value);
+std::string_view name_of(SheetFormat value);
+std::span<const std::string_view> edge_estimator_names();
+std::span<const std::string_view> footprint_mode_names();
+std::span<const std::string_view> warp_family_names();
+std::span<const std::string_view> sheet_format_names();
+
+/// Checks every range above. Throws Error naming the field, the value and the range.
+void validate(const Settings& settings);
+
+}  // namespace edgesplat

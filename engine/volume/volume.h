@@ -1,0 +1,52 @@
+// A scalar volume on the host: samples, and where they lie in the world.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/glm.hpp>
+#include <string>
+#include <vector>
+
+namespace edgesplat {
+
+/// Where the voxels lie. Index space has its origin at the centre of voxel (0,0,0) and one unit per voxel;
+/// world space is in mm (the file's own unit), patient LPS where the file says so.
+struct VolumeGeometry {
+    glm::ivec3 dims{0};                ///< voxels per axis, x fastest; each >= 1
+    glm::dmat3 index_to_world_axes{1};  ///< columns: step of one voxel along i, j, k in mm (direction x spacing)
+    glm::dvec3 origin{0};              ///< world position of voxel (0,0,0) in mm
+
+    std::size_t voxel_count() const {
+        return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
+    }
+    glm::dvec3 to_world(const glm::dvec3& index) const { return index_to_world_axes * index + origin; }
+    glm::dvec3 to_index(const glm::dvec3& world) const { return glm::inverse(index_to_world_axes) * (world - origin); }
+    glm::dvec3 spacing() const {
+        return {glm::length(index_to_world_axes[0]), glm::length(index_to_world_axes[1]),
+                glm::length(index_to_world_axes[2])};
+    }
+};
+
+/// A scalar volume. Every sample is finite: what was not has been replaced by `min_value` and counted.
+struct Volume {
+    VolumeGeometry geometry;
+    std::vector<float> values;  ///< (dims.z, dims.y, dims.x), x fastest, in the file's unit after slope/intercept
+    float min_value = 0;        ///< smallest finite sample
+    float max_value = 0;        ///< largest finite sample
+    std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite
+    std::string name;           ///< path, or "builtin:NAME"
+    std::string stored_type;    ///< component type in the file, e.g. "int16"
+    std::uint64_t checksum = 0;  ///< FNV-1a over dims, geometry and samples
+
+    float at(int x, int y, int z) const {
+        return values[(static_cast<std::size_t>(z) * static_cast<std::size_t>(geometry.dims.y) +
+                       static_cast<std::size_t>(y)) * static_cast<std::size_t>(geometry.dims.x) +
+                      static_cast<std::size_t>(x)];
+    }
+};
+
+/// Finishes a volume whose geometry and values are set: replaces non-finite samples (by the smallest finite one, or 0
+/// where none is), counts them, and fills min, max and checksum. Throws Error when dims and values disagree.
+void finish_volume(Volume& volume);
+
+}  // namespace edgesplat
