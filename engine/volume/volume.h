@@ -12,9 +12,9 @@ namespace edgesplat {
 /// Where the voxels lie. Index space has its origin at the centre of voxel (0,0,0) and one unit per voxel;
 /// world space is in mm (the file's own unit), patient LPS where the file says so.
 struct VolumeGeometry {
-    glm::ivec3 dims{0};                ///< voxels per axis, x fastest; each >= 1
+    glm::ivec3 dims{0};                 ///< voxels per axis, x fastest; each >= 1
     glm::dmat3 index_to_world_axes{1};  ///< columns: step of one voxel along i, j, k in mm (direction x spacing)
-    glm::dvec3 origin{0};              ///< world position of voxel (0,0,0) in mm
+    glm::dvec3 origin{0};               ///< world position of voxel (0,0,0) in mm
 
     std::size_t voxel_count() const {
         return static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z);
@@ -34,13 +34,15 @@ struct Volume {
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
     std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite
-    std::string name;           ///< path, or "builtin:NAME"
-    std::string stored_type;    ///< component type in the file, e.g. "int16"
-    std::uint64_t checksum = 0;  ///< FNV-1a over dims, geometry and samples
+    std::string name;                  ///< path, or "builtin:NAME"
+    std::string stored_type;           ///< component type in the file, e.g. "int16"
+    std::uint64_t checksum = 0;        ///< FNV-1a over dims, geometry and samples
+    std::vector<std::string> notes;    ///< what reading had to assume, choose or correct, one sentence each
 
     float at(int x, int y, int z) const {
         return values[(static_cast<std::size_t>(z) * static_cast<std::size_t>(geometry.dims.y) +
-                       static_cast<std::size_t>(y)) * static_cast<std::size_t>(geometry.dims.x) +
+                       static_cast<std::size_t>(y)) *
+                          static_cast<std::size_t>(geometry.dims.x) +
                       static_cast<std::size_t>(x)];
     }
 };

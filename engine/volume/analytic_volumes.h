@@ -1,0 +1,76 @@
+// Volumes whose value, gradient and edges are known exactly: test input, and pictures without any file.
+// Positions are in index space: the centre of voxel (0,0,0) is the origin, one unit is one voxel.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/glm.hpp>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace edgesplat {
+
+/// How a solid becomes values: full inside, `outside` beyond its edge, in between an edge of this profile.
+struct EdgeProfile {
+    double inside = 1;
+    double outside = 0;
+    double blur = 0.7;    ///< standard deviation of the Gaussian that blurs the step, voxels, > 0
+    bool binary = false;  ///< a step: `inside` where the signed distance is <= 0; the gradient is then 0 everywhere
+    double iso_value() const { return 0.5 * (inside + outside); }
+};
+
+/// A scene. The functions may be called from several threads at once.
+struct AnalyticScene {
+    std::string name;
+    glm::ivec3 dims{64};                                    ///< voxels of the grid it is meant to be sampled on
+    glm::dvec3 spacing{1};                                  ///< mm per voxel, axis-aligned
+    std::vector<double> iso_values;                         ///< where its edges are, ascending; never empty
+    std::function<double(const glm::dvec3&)> value;         ///< f(x)
+    std::function<glm::dvec3(const glm::dvec3&)> gradient;  ///< df/dx per voxel; 0 in binary scenes
+    /// Distance to the nearest edge of iso_values[0], voxels, negative inside (value >= iso). Empty where the scene has
+    /// no closed form (marschner-lobb, orbital, phantom).
+    std::function<double(const glm::dvec3&)> signed_distance;
+    double noise = 0;              ///< standard deviation added by `sample`, in the unit of the value
+    std::uint32_t noise_seed = 1;  ///< the same seed gives the same samples on every machine
+};
+
+/// Names that `analytic_scene` knows: cube-hole, sphere, torus, plates, plane, marschner-lobb, orbital, phantom.
+std::span<const std::string_view> analytic_scene_names();
+
+/// The scene of that name with its default grid. Throws Error listing the names.
+AnalyticScene analytic_scene(std::string_view name);
+
+/// The same scene stretched to another grid, each axis by its own factor: positions and gradient follow; the signed
+/// distance is dropped unless all three factors are equal. Throws Error unless all dims >= 2.
+AnalyticScene resized(const AnalyticScene& scene, const glm::ivec3& dims);
+
+/// Half space: inside where (x - point) . normal <= 0. `normal` need not be unit length, but not 0.
+AnalyticScene plane_scene(const glm::ivec3& dims, const glm::dvec3& normal, const glm::dvec3& point,
+                          const EdgeProfile& profile = {});
+/// Ball. The blur is along the radius, so the edge (value = iso) stays exactly at the radius.
+AnalyticScene sphere_scene(const glm::ivec3& dims, const glm::dvec3& center, double radius,
+                           const EdgeProfile& profile = {});
+/// Torus around the z axis through `center`.
+AnalyticScene torus_scene(const glm::ivec3& dims, const glm::dvec3& center, double major_radius, double minor_radius,
+                          const EdgeProfile& profile = {});
+/// Slab of a thickness (voxels) centred at `point`: the exact Gaussian blur of a slab, a difference of two erfs. A slab
+/// thinner than about 1.35 blur never reaches iso; signed_distance is that of the unblurred slab.
+AnalyticScene slab_scene(const glm::ivec3& dims, const glm::dvec3& normal, const glm::dvec3& point, double thickness,
+                         const EdgeProfile& profile = {});
+/// Cube of `side` voxels with a cylindrical hole of `hole_radius` along z (side 12 in the paper), centred in the grid.
+AnalyticScene cube_hole_scene(const glm::ivec3& dims, double side, double hole_radius, const EdgeProfile& profile);
+
+/// Samples the scene at the voxel centres of its grid, adds its noise, and finishes the volume.
+Volume sample(const AnalyticScene& scene);
+
+/// Whether the path has the form "builtin:NAME" (NAME may be unknown).
+bool is_builtin(std::string_view path);
+
+/// Samples "builtin:NAME", or "builtin:NAME:64" / "builtin:NAME:64x48x32" on another grid. Throws Error.
+Volume builtin_volume(std::string_view path);
+
+}  // namespace edgesplat

@@ -1,0 +1,49 @@
+// Preprocessing of volumes, and statistics that help to choose iso-values.
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace edgesplat {
+
+/// Mean over 3x3x3 voxels (clamped at the border), the preprocessing the paper uses on binary data. Geometry, name and
+/// notes are kept; the result is finished.
+Volume box_filter(const Volume& volume);
+
+/// 1 where the sample is >= `iso_value`, else 0. Geometry, name and notes are kept; the result is finished.
+Volume threshold(const Volume& volume, double iso_value);
+
+/// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, kept as float; all 0 where
+/// the volume is constant. Same order as `Volume::values`.
+std::vector<float> scaled_field(const Volume& volume);
+/// The same scaling for one value, e.g. an iso-value; may lie outside [0, 1]. 0 where the volume is constant.
+double scaled_value(const Volume& volume, double value);
+
+/// Coefficients of the cubic B-spline that goes through `field` (x fastest, mirrored at the borders): what the `cubic`
+/// edge estimator interpolates. Same size and order as `field`. Throws Error when dims and field disagree.
+std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims);
+
+struct Histogram {
+    double low = 0, high = 0;  ///< value range; bin i covers low + [i, i+1) * (high - low) / bins, the last one closed
+    std::vector<std::size_t> counts;
+    double center(std::size_t bin) const {
+        return low + (static_cast<double>(bin) + 0.5) * (high - low) / static_cast<double>(counts.size());
+    }
+};
+
+/// Counts of all samples in `bins` >= 1 equal bins from the smallest to the largest. A constant volume has all in bin
+/// 0.
+Histogram histogram(const Volume& volume, int bins);
+
+struct IsoSuggestion {
+    double value = 0;     ///< in the volume's unit
+    double strength = 0;  ///< mean gradient magnitude at that value, relative to the strongest one, (0, 1]
+};
+
+/// Values at which surfaces are likely: peaks of the mean gradient magnitude over the value axis (Kindlmann and Durkin
+/// 1998, in their simplest form). Strongest first, at most `count`; empty for a constant volume.
+std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count = 4);
+
+}  // namespace edgesplat
