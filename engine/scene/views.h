@@ -1,0 +1,36 @@
+// Cameras that need no numbers: a name, and the volume to look at.
+#pragma once
+
+#include <glm/glm.hpp>
+#include <span>
+#include <string_view>
+
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "engine/volume/volume.h"
+
+namespace edgesplat {
+
+/// What a named view is to show, and on how many pixels.
+struct ViewRequest {
+    const Volume* volume = nullptr;
+    const Scene* scene = nullptr;   ///< tells `close` where the first surface is
+    double fov_y = 45;              ///< full vertical angle, degrees, (0, 180)
+    int width = 512, height = 512;  ///< pixels
+};
+
+/// front, back, left, right, top, bottom, oblique, close. World axes: front looks along +y (LPS: at the face), left
+/// along -x (from the patient's left), top along -z; up is +z, for top and bottom -y (anterior is up in the picture).
+std::span<const std::string_view> view_names();
+
+/// The camera of that name; the whole bounding box of the volume is in the picture with a small margin. `close` is
+/// front moved near: a voxel at the first surface on the central ray covers 24 pixels. Throws Error listing the names.
+Camera named_view(std::string_view name, const ViewRequest& request);
+
+/// A camera that looks along `direction` (world, any length > 0) at the centre of the volume, all of which it shows.
+Camera framing_camera(const glm::dvec3& direction, const glm::dvec3& up, const ViewRequest& request);
+
+/// Direction cosines: the world axes of the volume's i, j, k, each of unit length.
+glm::dmat3 volume_axes(const VolumeGeometry& geometry);
+
+}  // namespace edgesplat

@@ -1,0 +1,112 @@
+// Named views: everything is in the picture, the right way up, and `close` is close.
+#include "engine/scene/views.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+/// Anisotropic, oblique, left-handed, far from the origin; a box of value 1 inside.
+Volume oblique_volume() {
+    Volume volume;
+    volume.geometry.dims = {20, 30, 10};
+    volume.geometry.index_to_world_axes = {glm::dvec3(0.8, 0.6, 0), glm::dvec3(-0.6, 0.8, 0), glm::dvec3(0, 0, -3)};
+    volume.geometry.origin = {100, -50, 7};
+    volume.values.assign(volume.geometry.voxel_count(), 0.0F);
+    for (int z = 3; z < 7; ++z)
+        for (int y = 8; y < 22; ++y)
+            for (int x = 5; x < 15; ++x)
+                volume.values[static_cast<std::size_t>((z * 30 + y) * 20 + x)] = 1;
+    volume.max_value = 1;
+    return volume;
+}
+
+const Scene& surface_scene() {
+    static const Scene kScene{{0.5}, {Material{}, Material{{1, 1, 1}, 8}}, {}, {}};
+    return kScene;
+}
+
+/// Picture position of a world point, -1..1 across the frame.
+glm::dvec2 project(const Camera& camera, const glm::dvec3& world, double aspect) {
+    const CameraFrame frame = camera_frame(camera);
+    const glm::dvec3 p = world - frame.eye;
+    const double z = glm::dot(p, frame.forward);
+    EXPECT_GT(z, 0);
+    return {glm::dot(p, frame.right) / (z * frame.tan_half_y * aspect), glm::dot(p, frame.up) / (z * frame.tan_half_y)};
+}
+
+TEST(SceneViews, EveryViewShowsTheWholeVolume) {
+    const Volume volume = oblique_volume();
+    for (const glm::ivec2 size : {glm::ivec2(512, 512), glm::ivec2(640, 200), glm::ivec2(100, 400)}) {
+        for (const std::string_view name : view_names()) {
+            if (name == "close") continue;
+            const Camera camera = named_view(name, {&volume, &surface_scene(), 40, size.x, size.y});
+            double most = 0;
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 index =
+                    glm::dvec3(corner & 1, (corner >> 1) & 1, corner >> 2) * glm::dvec3(volume.geometry.dims) - 0.5;
+                const glm::dvec2 p = project(camera, volume.geometry.to_world(index), double(size.x) / size.y);
+                most = std::max({most, std::abs(p.x), std::abs(p.y)});
+            }
+            EXPECT_LE(most, 1) << name;
+            EXPECT_GE(most, 0.9) << name << " should fill the picture";
+        }
+    }
+}
+
+TEST(SceneViews, DirectionsAreThoseOfThePatient) {
+    const Volume volume = oblique_volume();
+    const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);
+    const auto view = [&](std::string_view name) { return named_view(name, {&volume, &surface_scene(), 45, 64, 64}); };
+    EXPECT_LT(view("front").eye.y, center.y);
+    EXPECT_GT(view("left").eye.x, center.x);
+    EXPECT_GT(view("top").eye.z, center.z);
+    EXPECT_GT(project(view("front"), center + glm::dvec3(0, 0, 1), 1).y, 0) << "+z is up";
+    EXPECT_GT(project(view("front"), center + glm::dvec3(1, 0, 0), 1).x, 0) << "the patient's left is on the right";
+    EXPECT_GT(project(view("top"), center + glm::dvec3(0, -1, 0), 1).y, 0) << "anterior is up";
+}
+
+TEST(SceneViews, CloseShowsAVoxelAtTwentyPixelsOrMore) {
+    const Volume volume = oblique_volume();
+    const int height = 300;
+    const Camera camera = named_view("close", {&volume, &surface_scene(), 50, 300, height});
+    // Where does the central ray enter the box? Walk, and measure the size of a voxel (1 mm) there.
+    for (double t = 0;; t += 0.05) {
+        ASSERT_LT(t, 200) << "the central ray misses the box";
+        const glm::ivec3 i(glm::round(volume.geometry.to_index(camera.eye + t * glm::normalize(camera.direction))));
+        if (glm::any(glm::lessThan(i, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(i, volume.geometry.dims)))
+            continue;
+        if (volume.at(i.x, i.y, i.z) == 0) continue;
+        EXPECT_GE(height / (2 * t * std::tan(glm::radians(25.0))), 20);
+        EXPECT_GT(t, 1);
+        break;
+    }
+}
+
+TEST(SceneViews, UnknownNameListsTheNames) {
+    const Volume volume = oblique_volume();
+    EXPECT_THAT(
+        [&] {
+            named_view("frnt", {&volume, &surface_scene(), 45, 64, 64});
+        },
+        ThrowsMessage<Error>(::testing::AllOf(HasSubstr("'frnt'"), HasSubstr("front, back"))));
+}
+
+TEST(SceneViews, VolumeAxesAreDirectionCosines) {
+    const glm::dmat3 axes = volume_axes(oblique_volume().geometry);
+    for (int i = 0; i < 3; ++i)
+        EXPECT_NEAR(glm::length(axes[i]), 1, 1e-12);
+    EXPECT_NEAR(axes[2].z, -1, 1e-12);
+}
+
+}  // namespace
+}  // namespace edgesplat
