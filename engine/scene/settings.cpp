@@ -1,0 +1,89 @@
+#include "engine/scene/settings.h"
+
+#include <array>
+#include <string>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+
+namespace {
+
+// In the order of the enums, which is from cheapest to best.
+constexpr std::array<std::string_view, 5> kEdgeEstimators{"off", "taylor", "quadratic", "march", "cubic"};
+constexpr std::array<std::string_view, 5> kFootprintModes{"isotropic", "warp2d", "table", "table-lerp", "procedural"};
+constexpr std::array<std::string_view, 2> kWarpFamilies{"edge", "paper"};
+constexpr std::array<std::string_view, 2> kSheetFormats{"half", "float"};
+
+template <typename Enum>
+Enum named(std::string_view name, const char* what, std::span<const std::string_view> names) {
+    std::string known;
+    for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i] == name) return static_cast<Enum>(i);
+        known += (i == 0 ? "" : ", ") + std::string(names[i]);
+    }
+    fail("unknown {} '{}', expected one of: {}", what, name, known);
+}
+
+template <typename Enum>
+std::string_view spelled(Enum value, std::span<const std::string_view> names) {
+    return names[static_cast<std::size_t>(value)];
+}
+
+void check(const char* field, double value, bool in_range, const char* range) {
+    if (!in_range) fail("settings {}: {} is outside {}", field, value, range);
+}
+
+}  // namespace
+
+EdgeEstimator edge_estimator_named(std::string_view name) {
+    return named<EdgeEstimator>(name, "edge estimator", kEdgeEstimators);
+}
+FootprintMode footprint_mode_named(std::string_view name) {
+    return named<FootprintMode>(name, "footprint mode", kFootprintModes);
+}
+WarpFamily warp_family_named(std::string_view name) {
+    return named<WarpFamily>(name, "warp family", kWarpFamilies);
+}
+SheetFormat sheet_format_named(std::string_view name) {
+    return named<SheetFormat>(name, "sheet format", kSheetFormats);
+}
+
+std::string_view name_of(EdgeEstimator value) {
+    return spelled(value, kEdgeEstimators);
+}
+std::string_view name_of(FootprintMode value) {
+    return spelled(value, kFootprintModes);
+}
+std::string_view name_of(WarpFamily value) {
+    return spelled(value, kWarpFamilies);
+}
+std::string_view name_of(SheetFormat value) {
+    return spelled(value, kSheetFormats);
+}
+
+std::span<const std::string_view> edge_estimator_names() {
+    return kEdgeEstimators;
+}
+std::span<const std::string_view> footprint_mode_names() {
+    return kFootprintModes;
+}
+std::span<const std::string_view> warp_family_names() {
+    return kWarpFamilies;
+}
+std::span<const std::string_view> sheet_format_names() {
+    return kSheetFormats;
+}
+
+void validate(const Settings& settings) {
+    // Comparisons are written so that NaN fails them.
+    const auto in = [](double v, double low, double high) { return v >= low && v <= high; };
+    const double a = settings.edge_half_width;
+    const double full = settings.saturation;
+    check("edge_half_width", a, a > 0 && a <= 3, "(0, 3] voxels");
+    check("edge_strength", settings.edge_strength, in(settings.edge_strength, 1, 64), "[1, 64]");
+    check("sheet_spacing", settings.sheet_spacing, in(settings.sheet_spacing, 0.05, 16), "[0.05, 16] voxels");
+    check("saturation", full, full > 0 && full <= 1, "(0, 1]");
+}
+
+}  // namespace edgesplat
