@@ -147,10 +147,7 @@ class TemporaryFile {
 
 }  // namespace
 
-bool is_image_path(const fs::path& path) {
-    const std::string extension = lower_extension(path);
-    return extension == ".png" || extension == ".exr";
-}
+bool is_png_path(const fs::path& path) { return lower_extension(path) == ".png"; }
 
 void check_output_path(const fs::path& path, std::span<const std::string_view> extensions) {
     const std::string extension = lower_extension(path);
@@ -231,7 +228,7 @@ void write_image(const fs::path& path, const Image& image, const ImageMetadata& 
     static constexpr std::array<std::string_view, 2> kExtensions{".png", ".exr"};
     check_output_path(path, kExtensions);
     FileContent file{path, {}};
-    if (lower_extension(path) == ".png") {
+    if (is_png_path(path)) {
         file.bytes = encode_png(image, metadata);
     } else {
         static const std::array<std::vector<std::string>, 4> kNames{

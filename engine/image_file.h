@@ -28,8 +28,8 @@ struct FileContent {
     std::string bytes;
 };
 
-/// Whether the name ends in .png or .exr, in any case.
-bool is_image_path(const std::filesystem::path& path);
+/// Whether the name ends in .png, in any case.
+bool is_png_path(const std::filesystem::path& path);
 
 /// Refuses, before anything is computed, a file that could not be written afterwards. Throws Error: the folder is
 /// missing or not writable, the path is a folder, or its ending is none of `extensions` (empty: any).

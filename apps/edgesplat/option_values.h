@@ -1,0 +1,57 @@
+// Option values read strictly: the whole text must be what the option expects, and the message says what that is.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <glm/glm.hpp>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+/// Values an option takes, both ends included unless `above_low`.
+struct Range {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool above_low = false;  ///< low itself is not allowed
+};
+
+/// One finite number that is the whole of `text`; nothing otherwise.
+std::optional<double> parse_number(std::string_view text);
+/// Three finite numbers with commas between them, e.g. "0,1,0.05".
+std::optional<glm::dvec3> parse_vector(std::string_view text);
+/// "WxH", each 1..16384.
+std::optional<glm::ivec2> parse_size(std::string_view text);
+
+// Each adds an option that is parsed as above; a text that does not fit throws CLI::ValidationError naming the option,
+// the text and what was expected. The referenced value must outlive the parse.
+CLI::Option* add_number(CLI::App& app, const std::string& names, double& value, Range range, const std::string& help);
+CLI::Option* add_number(CLI::App& app, const std::string& names, std::optional<double>& value, Range range,
+                        const std::string& help);
+CLI::Option* add_numbers(CLI::App& app, const std::string& names, std::vector<double>& values, Range range,
+                         const std::string& help);
+CLI::Option* add_vector(CLI::App& app, const std::string& names, std::optional<glm::dvec3>& value,
+                        const std::string& type_name, const std::string& help);
+CLI::Option* add_vectors(CLI::App& app, const std::string& names, std::vector<glm::dvec3>& values,
+                         const std::string& type_name, const std::string& help);
+
+/// Adds an option with named steps; `named` turns a name into the value and throws edgesplat::Error for others.
+template <typename Value, typename Named>
+CLI::Option* add_choice(CLI::App& app, const std::string& name, Value& value, Named named,
+                        std::span<const std::string_view> names, std::string_view default_name,
+                        const std::string& help) {
+    const auto read = [name, &value, named](const std::string& text) {
+        try {
+            value = named(text);
+        } catch (const std::exception& error) {
+            throw CLI::ValidationError(name, error.what());
+        }
+    };
+    std::string choices;
+    for (const std::string_view choice : names)
+        (choices += choices.empty() ? "" : "|") += choice;
+    return app.add_option_function<std::string>(name, read, help)
+        ->type_name(choices)
+        ->default_str(std::string(default_name));
+}

@@ -1,0 +1,176 @@
+#include "apps/edgesplat/render_output.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr int kDividerWidth = 2;  ///< pixels between the two pictures of --compare
+constexpr float kDividerColor = 0.5F;
+
+ordered_json to_json(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+ordered_json to_json(const edgesplat::Settings& s) {
+    return {{"edges", edgesplat::name_of(s.edges)},
+            {"footprints", edgesplat::name_of(s.footprints)},
+            {"warp", edgesplat::name_of(s.warp)},
+            {"edge_half_width", s.edge_half_width},
+            {"edge_strength", s.edge_strength},
+            {"sheet_spacing", s.sheet_spacing},
+            {"sheet_format", edgesplat::name_of(s.sheet_format)},
+            {"saturation", s.saturation},
+            {"cull_buried", s.cull_buried}};
+}
+
+ordered_json to_json(const edgesplat::DeviceInfo& d) {
+    return {{"name", d.name},
+            {"type", d.type},
+            {"driver", d.driver},
+            {"driver_version", d.driver_version},
+            {"api_version", d.api_version}};
+}
+
+ordered_json to_json(const RenderedFrame& frame) {
+    const edgesplat::RenderStats& stats = frame.result.stats;
+    ordered_json passes = ordered_json::object();
+    for (const edgesplat::PassTime& pass : stats.passes)
+        passes[pass.name] = pass.milliseconds;
+    return {{"name", frame.name},
+            {"settings", to_json(frame.settings)},
+            {"width", frame.result.color.width},
+            {"height", frame.result.color.height},
+            {"setup_ms", stats.setup_milliseconds},
+            {"frame_ms", stats.frame_milliseconds},
+            {"passes_ms", passes},
+            {"voxels", stats.voxels},
+            {"splats_collected", stats.splats_collected},
+            {"splats_drawn", stats.splats_drawn},
+            {"edge_splats", stats.edge_splats},
+            {"sheets", stats.sheets},
+            {"sheet_groups", stats.sheet_groups},
+            {"device_bytes", stats.device_bytes},
+            {"validation_messages", stats.validation_messages}};
+}
+
+/// The largest resident size this process has had, bytes.
+std::uint64_t peak_host_bytes() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string checksum_text(const edgesplat::Volume& volume) {
+    return fmt::format("{:016x}", volume.checksum);
+}
+
+edgesplat::Image side_by_side(const edgesplat::Image& left, const edgesplat::Image& right) {
+    edgesplat::Image out(left.width + kDividerWidth + right.width, left.height, left.channels);
+    std::fill(out.pixels.begin(), out.pixels.end(), kDividerColor);
+    for (int y = 0; y < out.height; ++y) {
+        for (int c = 0; c < out.channels; ++c) {
+            for (int x = 0; x < left.width; ++x)
+                out.at(x, y, c) = left.at(x, y, c);
+            for (int x = 0; x < right.width; ++x)
+                out.at(left.width + kDividerWidth + x, y, c) = right.at(x, y, c);
+            if (c == 3)
+                for (int x = 0; x < kDividerWidth; ++x)
+                    out.at(left.width + x, y, c) = 1;
+        }
+    }
+    return out;
+}
+
+/// A PNG shows what is seen, the background included, so it has no alpha.
+edgesplat::Image without_alpha(const edgesplat::Image& image) {
+    edgesplat::Image out(image.width, image.height, 3);
+    for (int y = 0; y < out.height; ++y)
+        for (int x = 0; x < out.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                out.at(x, y, c) = image.at(x, y, c);
+    return out;
+}
+
+/// The extra outputs there are, each under its name and with its channels' names.
+std::vector<std::pair<std::string, edgesplat::ImageLayer>> aov_layers(const edgesplat::RenderResult& result) {
+    std::vector<std::pair<std::string, edgesplat::ImageLayer>> layers;
+    const auto add = [&](const char* name, const std::optional<edgesplat::Image>& image,
+                         std::vector<std::string> channels) {
+        if (image) layers.push_back({name, {&*image, std::move(channels)}});
+    };
+    add("tau", result.tau, {"tau"});
+    add("depth", result.depth, {"depth.Z"});
+    add("normal", result.normal, {"normal.X", "normal.Y", "normal.Z"});
+    add("distance", result.distance, {"distance"});
+    return layers;
+}
+
+}  // namespace
+
+edgesplat::ImageMetadata picture_metadata(const RunDescription& run) {
+    return {{"Software", "edgesplat " EDGESPLAT_VERSION},
+            {"edgesplat:command", run.command_line},
+            {"edgesplat:volume", run.volume->name},
+            {"edgesplat:checksum", checksum_text(*run.volume)}};
+}
+
+ordered_json statistics(const RunDescription& run, const std::vector<RenderedFrame>& frames) {
+    const edgesplat::Volume& volume = *run.volume;
+    const glm::ivec3 dims = volume.geometry.dims;
+    ordered_json materials = ordered_json::array();
+    for (const edgesplat::Material& m : run.scene->materials)
+        materials.push_back({{"color", to_json(m.color)}, {"extinction_per_mm", m.extinction}});
+    ordered_json frame_list = ordered_json::array();
+    for (const RenderedFrame& frame : frames)
+        frame_list.push_back(to_json(frame));
+    return {{"program", "edgesplat"},
+            {"version", EDGESPLAT_VERSION},
+            {"command", run.command_line},
+            {"volume",
+             {{"name", volume.name},
+              {"checksum", checksum_text(volume)},
+              {"dims", {dims.x, dims.y, dims.z}},
+              {"spacing_mm", to_json(volume.geometry.spacing())},
+              {"min", volume.min_value},
+              {"max", volume.max_value}}},
+            {"scene", {{"iso_values", run.scene->iso_values}, {"materials", materials}}},
+            {"camera",
+             {{"eye_mm", to_json(run.camera.eye)},
+              {"direction", to_json(run.camera.direction)},
+              {"up", to_json(run.camera.up)},
+              {"fov_y_degrees", run.camera.fov_y}}},
+            {"device", to_json(frames.back().result.stats.device)},
+            {"frames", frame_list},
+            {"peak_host_bytes", peak_host_bytes()}};
+}
+
+std::filesystem::path aov_path(const std::filesystem::path& picture, const std::string& aov) {
+    std::filesystem::path path = picture;
+    return path.replace_extension("." + aov + ".exr");
+}
+
+std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& path,
+                                                  const std::vector<RenderedFrame>& frames,
+                                                  const edgesplat::ImageMetadata& metadata) {
+    const edgesplat::RenderResult& last = frames.back().result;
+    const edgesplat::Image color =
+        frames.size() == 2 ? side_by_side(frames.front().result.color, last.color) : last.color;
+    const auto aovs = aov_layers(last);
+    std::vector<edgesplat::FileContent> files;
+    if (edgesplat::is_png_path(path)) {
+        files.push_back({path, edgesplat::encode_png(without_alpha(color), metadata)});
+        for (const auto& [name, layer] : aovs)
+            files.push_back({aov_path(path, name), edgesplat::encode_exr({&layer, 1}, metadata)});
+    } else {
+        std::vector<edgesplat::ImageLayer> layers{{&color, {"R", "G", "B", "A"}}};
+        for (const auto& [name, layer] : aovs)
+            layers.push_back(layer);
+        files.push_back({path, edgesplat::encode_exr(layers, metadata)});
+    }
+    return files;
+}

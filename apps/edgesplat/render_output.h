@@ -1,0 +1,43 @@
+// The files a render leaves: picture, extra outputs, statistics. All of them appear, or none.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/image_file.h"
+#include "engine/renderer.h"
+
+/// One picture of the run: `--compare plain` makes two.
+struct RenderedFrame {
+    std::string name;  ///< "plain" or "edges"
+    edgesplat::Settings settings;
+    edgesplat::RenderResult result;
+};
+
+/// What the statistics and the metadata say about the run.
+struct RunDescription {
+    std::string command_line;
+    const edgesplat::Volume* volume = nullptr;
+    const edgesplat::Scene* scene = nullptr;
+    edgesplat::Camera camera;
+};
+
+/// Command, program version, volume and its checksum, as they go into every picture.
+edgesplat::ImageMetadata picture_metadata(const RunDescription& run);
+
+/// Everything measured, as `--json` writes it: run, volume, scene, camera, device, and per frame the settings, counts,
+/// memory, and milliseconds per pass.
+nlohmann::ordered_json statistics(const RunDescription& run, const std::vector<RenderedFrame>& frames);
+
+/// Where the extra output `aov` of a .png goes: "out.png" -> "out.tau.exr".
+std::filesystem::path aov_path(const std::filesystem::path& picture, const std::string& aov);
+
+/// The picture of the frames, side by side with a divider where there are two, with the extra outputs of the last one:
+/// inside an .exr (R,G,B,A, tau, depth.Z, normal.X/Y/Z, distance), in files of their own (`aov_path`) beside a .png,
+/// which holds R,G,B over the background.
+std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& path,
+                                                  const std::vector<RenderedFrame>& frames,
+                                                  const edgesplat::ImageMetadata& metadata);

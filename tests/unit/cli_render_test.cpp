@@ -1,0 +1,107 @@
+// `edgesplat render` from end to end, on a small builtin volume: files, metadata, statistics.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "engine/image_file.h"
+#include "tests/unit/cli_program.h"
+
+namespace edgesplat {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+using ::testing::Pair;
+
+/// Skips where the machine has no Vulkan device at all.
+class CliRender : public CliTest {
+  protected:
+    void SetUp() override {
+        CliTest::SetUp();
+        const ProgramRun devices = run("--list-devices");
+        ASSERT_EQ(devices.status, 0) << devices.err;
+        if (devices.out.find("no Vulkan device") == 0) GTEST_SKIP() << devices.out;
+    }
+    /// Runs a render that must succeed.
+    void render(const std::string& arguments) const {
+        const ProgramRun result = run("render " + arguments);
+        ASSERT_EQ(result.status, 0) << result.err;
+    }
+};
+
+TEST_F(CliRender, PictureSaysHowItWasMade) {
+    render("builtin:sphere:24 -o 'my sphere.png' --size 48x32");
+    EXPECT_THAT(files(), ElementsAre("my sphere.png"));
+    const LoadedImage picture = read_image(folder_ / "my sphere.png");
+    EXPECT_EQ(picture.image.width, 48);
+    EXPECT_EQ(picture.image.height, 32);
+    EXPECT_THAT(picture.channel_names, ElementsAre("R", "G", "B"));
+    EXPECT_THAT(picture.metadata, Contains(Pair("edgesplat:command",
+                                                "edgesplat render builtin:sphere:24 -o 'my sphere.png' --size 48x32")));
+    EXPECT_THAT(picture.metadata, Contains(Pair("edgesplat:volume", HasSubstr("builtin:sphere"))));
+    EXPECT_THAT(picture.metadata, Contains(Pair("Software", HasSubstr("edgesplat 0."))));
+    EXPECT_THAT(picture.metadata, Contains(Pair("edgesplat:checksum", ::testing::SizeIs(16))));
+    EXPECT_GT(picture.image.at(24, 16, 0), 0.3F) << "the sphere is in the middle";
+    EXPECT_EQ(picture.image.at(0, 0, 0), 0.0F) << "and the background around it";
+}
+
+TEST_F(CliRender, ExrHoldsTheExtraOutputs) {
+    render("builtin:sphere:24 -o a.exr --size 32x32 --aov tau,depth,normal,distance");
+    EXPECT_THAT(files(), ElementsAre("a.exr"));
+    EXPECT_THAT(read_image(folder_ / "a.exr").channel_names,
+                IsSupersetOf({"R", "G", "B", "A", "tau", "depth.Z", "normal.X", "normal.Y", "normal.Z", "distance"}));
+}
+
+TEST_F(CliRender, PngPutsTheExtraOutputsBesideIt) {
+    render("builtin:sphere:24 -o a.png --size 32x32 --aov tau,normal");
+    EXPECT_THAT(files(), ElementsAre("a.normal.exr", "a.png", "a.tau.exr"));
+    EXPECT_THAT(read_image(folder_ / "a.normal.exr").channel_names, ElementsAre("normal.X", "normal.Y", "normal.Z"));
+}
+
+TEST_F(CliRender, CompareIsTwoPicturesAndADivider) {
+    render("builtin:sphere:24 -o both.exr --size 40x32 --compare plain --json both.json");
+    render("builtin:sphere:24 -o plain.exr --size 40x32 --edges off");
+    render("builtin:sphere:24 -o edges.exr --size 40x32");
+    const Image both = read_image(folder_ / "both.exr").image;
+    const Image plain = read_image(folder_ / "plain.exr").image;
+    const Image edges = read_image(folder_ / "edges.exr").image;
+    ASSERT_EQ(both.width, 82);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 40; ++x) {
+            ASSERT_EQ(both.at(x, y, 0), plain.at(x, y, 0)) << x << ',' << y;
+            ASSERT_EQ(both.at(42 + x, y, 0), edges.at(x, y, 0)) << x << ',' << y;
+        }
+    EXPECT_NE(plain.pixels, edges.pixels);
+    const auto statistics = nlohmann::json::parse(text_of(folder_ / "both.json"));
+    ASSERT_EQ(statistics["frames"].size(), 2U);
+    EXPECT_EQ(statistics["frames"][0]["name"], "plain");
+    EXPECT_EQ(statistics["frames"][1]["settings"]["edges"], "march");
+}
+
+TEST_F(CliRender, StatisticsAreComplete) {
+    render("builtin:sphere:24 -o a.png --size 32x32 --json a.json --validation");
+    const auto s = nlohmann::json::parse(text_of(folder_ / "a.json"));
+    for (const char* key : {"version", "command", "volume", "scene", "camera", "device", "frames", "peak_host_bytes"})
+        EXPECT_TRUE(s.contains(key)) << key;
+    for (const char* key : {"name", "type", "driver", "driver_version", "api_version"})
+        EXPECT_FALSE(s["device"][key].get<std::string>().empty()) << key;
+    const auto& frame = s["frames"][0];
+    EXPECT_EQ(frame["voxels"], 24 * 24 * 24);
+    EXPECT_GT(frame["splats_drawn"], 0);
+    EXPECT_GT(frame["sheets"], 0);
+    EXPECT_GT(frame["device_bytes"], 0);
+    EXPECT_EQ(frame["validation_messages"], 0);
+    EXPECT_TRUE(frame["passes_ms"].contains("5_draw_splats")) << frame["passes_ms"].dump();
+}
+
+TEST_F(CliRender, VoxelCoordinatesAndWorldCoordinatesAgree) {
+    // The grid of builtin:sphere starts at 0,0,0 with 1 mm: index and world are the same there.
+    render("builtin:sphere:24 -o a.exr --size 24x24 --eye 12,-30,12 --direction 0,1,0.05 --fov 40");
+    render("builtin:sphere:24 -o b.exr --size 24x24 --eye 12,-30,12 --direction 0,1,0.05 --fov 40 --voxel");
+    EXPECT_EQ(read_image(folder_ / "a.exr").image.pixels, read_image(folder_ / "b.exr").image.pixels);
+}
+
+}  // namespace
+}  // namespace edgesplat
