@@ -19,6 +19,16 @@ add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
 target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
 
+# What ITK's readers lack: bzip2 in NRRD, and a look into (gzipped) NIfTI files before ITK has them.
+find_package(ZLIB REQUIRED)
+find_package(BZip2 REQUIRED)
+target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)
+if(EDGESPLAT_VTK)
+    find_package(VTK REQUIRED COMPONENTS IOXML CommonDataModel CommonExecutionModel)
+    target_link_libraries(edgesplat_itk INTERFACE VTK::IOXML VTK::CommonDataModel VTK::CommonExecutionModel)
+    target_compile_definitions(edgesplat_itk INTERFACE EDGESPLAT_HAS_VTK)
+endif()
+
 if(EDGESPLAT_TESTS)
     find_package(GTest REQUIRED)
     include(GoogleTest)

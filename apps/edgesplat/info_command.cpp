@@ -1,0 +1,127 @@
+#include "apps/edgesplat/info_command.h"
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "apps/edgesplat/volume_options.h"
+#include "engine/error.h"
+#include "engine/volume/filters.h"
+
+namespace {
+
+using edgesplat::Volume;
+
+struct InfoOptions {
+    std::string path, json;
+    VolumeOptions volume;
+    int bins = 24;
+};
+
+std::vector<double> listed(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+nlohmann::json description(const Volume& volume, int bins) {
+    const auto& geometry = volume.geometry;
+    const auto spacing = geometry.spacing();
+    nlohmann::json json;
+    json["volume"] = volume.name;
+    json["dims"] = {geometry.dims.x, geometry.dims.y, geometry.dims.z};
+    json["type"] = volume.stored_type;
+    json["spacing_mm"] = listed(spacing);
+    for (int axis = 0; axis < 3; ++axis)
+        json["directions"].push_back(listed(geometry.index_to_world_axes[axis] / spacing[axis]));
+    json["origin_mm"] = listed(geometry.origin);
+    json["left_handed"] = glm::determinant(geometry.index_to_world_axes) < 0;
+    json["range"] = {volume.min_value, volume.max_value};
+    double sum = 0;
+    for (const float value : volume.values)
+        sum += static_cast<double>(value);
+    json["mean"] = sum / static_cast<double>(volume.values.size());
+    json["non_finite"] = volume.non_finite_count;
+    json["checksum"] = fmt::format("{:016x}", volume.checksum);
+    json["notes"] = volume.notes;
+    const auto histogram = edgesplat::histogram(volume, bins);
+    json["histogram"] = {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+    json["suggested_iso_values"] = nlohmann::json::array();
+    for (const auto& suggestion : edgesplat::suggest_iso_values(volume))
+        json["suggested_iso_values"].push_back({{"value", suggestion.value}, {"strength", suggestion.strength}});
+    return json;
+}
+
+std::string triple(const nlohmann::json& v) {
+    return fmt::format("{:.6g} {:.6g} {:.6g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
+}
+
+// Bars are logarithmic: most volumes are mostly air.
+void print_histogram(const nlohmann::json& histogram) {
+    const auto counts = histogram["counts"].get<std::vector<std::size_t>>();
+    const double low = histogram["low"], high = histogram["high"];
+    double longest = 0;
+    for (const auto count : counts)
+        longest = std::max(longest, std::log2(1.0 + static_cast<double>(count)));
+    for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+        const double length = std::log2(1.0 + static_cast<double>(counts[bin]));
+        const double from = low + (high - low) * static_cast<double>(bin) / static_cast<double>(counts.size());
+        std::cout << fmt::format(
+            "  {:>12.6g} {:>11} {}\n", from, counts[bin],
+            std::string(static_cast<std::size_t>(std::lround(50 * length / std::max(longest, 1.0))), '#'));
+    }
+}
+
+void print(const nlohmann::json& json) {
+    const auto& d = json["dims"];
+    const double voxels = d[0].get<double>() * d[1].get<double>() * d[2].get<double>();
+    std::cout << fmt::format("volume      {}\n", json["volume"].get<std::string>())
+              << fmt::format("dims        {} x {} x {} ({:.4g} M voxels)\n", d[0].get<int>(), d[1].get<int>(),
+                             d[2].get<int>(), voxels / 1e6)
+              << fmt::format("type        {}\n", json["type"].get<std::string>())
+              << fmt::format("spacing     {} mm\n", triple(json["spacing_mm"]));
+    const char* const names = "ijk";
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        std::cout << fmt::format("direction {} {}\n", names[axis], triple(json["directions"][axis]));
+    std::cout << fmt::format("origin      {} mm{}\n", triple(json["origin_mm"]),
+                             json["left_handed"].get<bool>() ? " (left-handed)" : "")
+              << fmt::format("range       {:.7g} .. {:.7g}, mean {:.6g}\n", json["range"][0].get<double>(),
+                             json["range"][1].get<double>(), json["mean"].get<double>())
+              << fmt::format("non-finite  {}\n", json["non_finite"].get<std::size_t>())
+              << fmt::format("checksum    {}\n", json["checksum"].get<std::string>());
+    for (const auto& note : json["notes"])
+        std::cout << "note        " << note.get<std::string>() << '\n';
+    std::cout << "histogram   (from, voxels, logarithmic bar)\n";
+    print_histogram(json["histogram"]);
+    std::cout << "suggested iso-values:";
+    for (const auto& suggestion : json["suggested_iso_values"])
+        std::cout << fmt::format(" {:.5g} ({:.2f})", suggestion["value"].get<double>(),
+                                 suggestion["strength"].get<double>());
+    std::cout << (json["suggested_iso_values"].empty() ? " none\n" : "\n");
+}
+
+void run(const InfoOptions& options) {
+    const Volume volume = load_from_options(options.path, options.volume, false);
+    const auto json = description(volume, options.bins);
+    if (options.json.empty()) {
+        print(json);
+    } else if (options.json == "-") {
+        std::cout << json.dump(2) << '\n';
+    } else {
+        std::ofstream file(options.json);
+        file << json.dump(2) << '\n';
+        if (!file.flush()) edgesplat::fail("{}: cannot be written", options.json);
+    }
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app) {
+    const auto options = std::make_shared<InfoOptions>();
+    auto* command = app.add_subcommand("info", "what a volume is: size, place, values, likely iso-values");
+    command->add_option("volume", options->path, "file, folder, slice pattern or builtin:NAME")->required();
+    add_volume_options(*command, options->volume);
+    command->add_option("--json", options->json, "write JSON to a file, or to stdout with -");
+    command->add_option("--bins", options->bins, "bars of the histogram")->check(CLI::Range(1, 1024));
+    command->callback([options] { run(*options); });
+}

@@ -1,0 +1,62 @@
+#include "apps/edgesplat/volume_options.h"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+
+#include "engine/volume/load_volume.h"
+
+namespace {
+
+// One line on stderr, begun only when the load turns out to be long: a bar on a terminal, else a few plain lines.
+class ProgressLine {
+  public:
+    ~ProgressLine() {
+        if (shown_ && terminal_) std::fprintf(stderr, "\r\033[K");
+    }
+    void update(double fraction, std::string_view what) {
+        using namespace std::chrono;
+        const auto now = steady_clock::now();
+        if (now - begin_ < seconds(1) || now - last_ < (terminal_ ? milliseconds(100) : milliseconds(5000))) return;
+        last_ = now;
+        shown_ = true;
+        constexpr int kWidth = 30;
+        const int filled = static_cast<int>(fraction * kWidth);
+        const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                                std::string(static_cast<std::size_t>(kWidth - filled), '.');
+        std::fprintf(stderr, terminal_ ? "\r\033[K[%s] %3.0f %% %.*s" : "[%s] %3.0f %% %.*s\n", bar.c_str(),
+                     100 * fraction, static_cast<int>(what.size()), what.data());
+        std::fflush(stderr);
+    }
+
+  private:
+    bool terminal_ = isatty(STDERR_FILENO) == 1;
+    bool shown_ = false;
+    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
+    std::chrono::steady_clock::time_point last_ = begin_ - std::chrono::hours(1);
+};
+
+}  // namespace
+
+void add_volume_options(CLI::App& command, VolumeOptions& options) {
+    command.add_option("--raw", options.raw, "header-less file: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]");
+    command.add_option("--component", options.component, "component of vector or colour data, from 0")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--frame", options.frame, "frame of 4-D data, from 0")->check(CLI::NonNegativeNumber);
+    command.add_option("--series", options.series, "DICOM series of a folder with several: number or UID");
+    command.add_option("--spacing", options.spacing, "voxel spacing in mm, instead of the file's")->expected(3);
+}
+
+edgesplat::Volume load_from_options(const std::string& path, const VolumeOptions& options, bool quiet) {
+    edgesplat::LoadOptions load;
+    if (options.component >= 0) load.component = options.component;
+    if (options.frame >= 0) load.frame = options.frame;
+    load.series = options.series;
+    load.raw = options.raw;
+    if (options.spacing.size() == 3)
+        load.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
+    ProgressLine line;
+    if (!quiet) load.progress = [&line](double fraction, std::string_view what) { line.update(fraction, what); };
+    return edgesplat::load_volume(path, load);
+}

@@ -1,0 +1,195 @@
+// Stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
+#include <OpenImageIO/imageio.h>
+
+#include <algorithm>
+#include <array>
+#include <memory>
+#include <optional>
+
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat::detail {
+namespace {
+
+SampleType sample_type_of(const std::string& path, const OIIO::TypeDesc& format) {
+    switch (format.basetype) {
+        case OIIO::TypeDesc::INT8:
+            return SampleType::Int8;
+        case OIIO::TypeDesc::UINT8:
+            return SampleType::UInt8;
+        case OIIO::TypeDesc::INT16:
+            return SampleType::Int16;
+        case OIIO::TypeDesc::UINT16:
+            return SampleType::UInt16;
+        case OIIO::TypeDesc::INT32:
+            return SampleType::Int32;
+        case OIIO::TypeDesc::UINT32:
+            return SampleType::UInt32;
+        case OIIO::TypeDesc::INT64:
+            return SampleType::Int64;
+        case OIIO::TypeDesc::UINT64:
+            return SampleType::UInt64;
+        case OIIO::TypeDesc::FLOAT:
+            return SampleType::Float32;
+        case OIIO::TypeDesc::DOUBLE:
+            return SampleType::Float64;
+        case OIIO::TypeDesc::HALF:
+            return SampleType::Float32;  // asked for as float
+        default:
+            fail("{}: pixels of type {} cannot be read", path, format.c_str());
+    }
+}
+
+std::unique_ptr<OIIO::ImageInput> opened(const std::string& path) {
+    OIIO::ImageSpec config;
+    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+    std::string reason;
+    std::unique_ptr<OIIO::ImageInput> input;
+    {
+        OutputCapture capture;
+        input = OIIO::ImageInput::open(path, &config);
+        if (!input) reason = OIIO::geterror();
+    }
+    if (!input) fail("{}: cannot be read as an image: {}", path, tidy(reason));
+    return input;
+}
+
+// The number nearest to the end of a name, and the name without it.
+struct NumberedName {
+    std::string file, stem;
+    std::optional<unsigned long long> number;
+};
+
+NumberedName numbered(const std::string& file) {
+    const auto name = std::filesystem::path(file).filename().string();
+    const auto dot = name.rfind('.');
+    auto end = dot == std::string::npos ? name.size() : dot;
+    while (end > 0 && std::isdigit(static_cast<unsigned char>(name[end - 1])) == 0)
+        --end;
+    auto begin = end;
+    while (begin > 0 && end - begin < 18 && std::isdigit(static_cast<unsigned char>(name[begin - 1])) != 0)
+        --begin;
+    if (begin == end) return {file, name, std::nullopt};
+    return {file, name.substr(0, begin) + "#" + name.substr(end), std::stoull(name.substr(begin, end - begin))};
+}
+
+}  // namespace
+
+bool is_image_file(const std::string& path) {
+    OutputCapture capture;
+    const auto input = OIIO::ImageInput::open(path);
+    (void)OIIO::geterror();
+    return input != nullptr;
+}
+
+std::vector<std::string> ordered_slices(const std::string& name, std::vector<std::string> files,
+                                        std::vector<std::string>& notes) {
+    if (files.size() == 1) return files;
+    std::vector<NumberedName> names;
+    for (const auto& file : files)
+        names.push_back(numbered(file));
+    std::sort(names.begin(), names.end(), [](const NumberedName& a, const NumberedName& b) {
+        return a.number != b.number ? a.number < b.number : a.file < b.file;
+    });
+    files.clear();
+    for (const auto& entry : names) {
+        if (!entry.number)
+            fail("{}: {} has no number in its name, so its place among the slices is unknown", name, entry.file);
+        if (entry.stem != names[0].stem)
+            fail("{}: {} and {} do not belong to one sequence; name the slices by a pattern such as slice_%03d.png",
+                 name, names[0].file, entry.file);
+        files.push_back(entry.file);
+    }
+    const auto step = *names[1].number - *names[0].number;
+    for (std::size_t i = 1; i < names.size(); ++i) {
+        const auto here = *names[i].number - *names[i - 1].number;
+        if (here == 0) fail("{}: {} and {} have the same number", name, names[i - 1].file, names[i].file);
+        if (here != step)
+            fail("{}: the numbers of {} and {} are {} apart, those before {}: a slice is missing", name,
+                 names[i - 1].file, names[i].file, here, step);
+    }
+    if (step > 1) notes.push_back(fmt::format("The slices are numbered in steps of {}.", step));
+    return files;
+}
+
+Volume load_images(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options) {
+    Volume volume;
+    volume.name = name;
+    const bool stack = files.size() == 1;
+    int width = 0, height = 0, channels = 0;
+    std::optional<SampleType> type;
+    std::size_t component = 0, depth = 0;
+    (void)chosen_frame(name, options, 1);
+    std::vector<unsigned char> buffer;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const auto input = opened(files[i]);
+        int pages = 1;
+        if (stack) {
+            OutputCapture capture;
+            while (input->seek_subimage(pages, 0))
+                ++pages;
+            (void)input->geterror();
+        } else {
+            OutputCapture capture;
+            if (input->seek_subimage(1, 0)) pages = 2;
+            (void)input->geterror();
+        }
+        if (!stack && pages > 1)
+            fail("{}: {} holds several images: a stack can only be read by itself", name, files[i]);
+        for (int page = 0; page < pages; ++page) {
+            const std::size_t slices = stack ? static_cast<std::size_t>(pages) : files.size();
+            report(options, 0.9 * static_cast<double>(depth) / static_cast<double>(slices), "reading images");
+            std::string reason;
+            bool read = false;
+            {
+                OutputCapture capture;
+                input->seek_subimage(page, 0);
+            }
+            const auto spec = input->spec();
+            const auto here = stack ? fmt::format("page {} of {}", page, files[i]) : files[i];
+            if (spec.depth > 1) fail("{}: a tiled 3-D image, which cannot be read; save it as a stack of pages", here);
+            const auto here_type = sample_type_of(files[i], spec.format);
+            if (!type) {
+                type = here_type;
+                width = spec.width;
+                height = spec.height;
+                channels = spec.nchannels;
+                component = chosen_component(name, options, static_cast<std::size_t>(channels));
+                checked_bytes(name, {static_cast<std::size_t>(width), static_cast<std::size_t>(height), slices},
+                              sizeof(float));
+                volume.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * slices);
+                const int bits = spec.get_int_attribute("oiio:BitsPerSample", 8);
+                if (bits % 8 != 0)
+                    volume.notes.push_back(
+                        fmt::format("Samples of {} bits are scaled up to the next whole byte by OpenImageIO.", bits));
+            }
+            if (spec.width != width || spec.height != height || spec.nchannels != channels || here_type != *type)
+                fail("{}: {} has {} x {} pixels, {} channels, {}; the slices before it {} x {}, {}, {}", name, here,
+                     spec.width, spec.height, spec.nchannels, name_of(here_type), width, height, channels,
+                     name_of(*type));
+            const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+            buffer.resize(pixels * static_cast<std::size_t>(channels) * size_of(*type));
+            {
+                OutputCapture capture;
+                const auto format = spec.format.basetype == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT)
+                                                                                 : OIIO::TypeDesc(spec.format);
+                read = input->read_image(page, 0, 0, channels, format, buffer.data());
+                reason = input->geterror();
+            }
+            if (!read) fail("{}: truncated or damaged: {}", here, tidy(reason));
+            convert_samples(*type, buffer.data(), component, static_cast<std::size_t>(channels), pixels,
+                            volume.values.data() + depth * pixels);
+            ++depth;
+        }
+    }
+    volume.stored_type = name_of(*type);
+    volume.geometry.dims = {width, height, static_cast<int>(depth)};
+    if (depth == 1) volume.notes.push_back("The file holds one image: it is taken as a volume of one slice.");
+    if (!options.spacing)
+        volume.notes.push_back(
+            "Images do not say how far apart their slices are: spacing 1 x 1 x 1 mm is assumed; give "
+            "--spacing X Y Z.");
+    return volume;
+}
+
+}  // namespace edgesplat::detail

@@ -1,0 +1,254 @@
+// One file through one ITK image IO, without ITK's pixel-type templates and factories: the IO object is asked for what
+// the file holds, reads it, and the voxels are converted to float here.
+#include <itkGiplImageIO.h>
+#include <itkMINCImageIO.h>
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <itkVTKImageIO.h>
+
+#include <bit>
+#include <cmath>
+#include <fstream>
+
+#include "engine/volume/load_internal.h"
+#include "engine/volume/load_itk.h"
+
+namespace edgesplat::detail {
+namespace {
+
+const char* name_of(ItkFormat format) {
+    switch (format) {
+        case ItkFormat::Nrrd:
+            return "NRRD";
+        case ItkFormat::Meta:
+            return "MetaImage";
+        case ItkFormat::Nifti:
+            return "NIfTI or Analyze";
+        case ItkFormat::Vtk:
+            return "legacy VTK image data";
+        case ItkFormat::Minc:
+            return "MINC";
+        case ItkFormat::Gipl:
+            return "GIPL";
+    }
+    return "";
+}
+
+itk::ImageIOBase::Pointer image_io(ItkFormat format) {
+    switch (format) {
+        case ItkFormat::Nrrd:
+            return itk::NrrdImageIO::New().GetPointer();
+        case ItkFormat::Meta:
+            return itk::MetaImageIO::New().GetPointer();
+        case ItkFormat::Nifti: {
+            auto io = itk::NiftiImageIO::New();
+            // Without this an Analyze file is read all the same, with a warning that it should not be.
+            io->SetLegacyAnalyze75Mode(itk::NiftiImageIOEnums::Analyze75Flavor::AnalyzeITK4);
+            return io.GetPointer();
+        }
+        case ItkFormat::Vtk:
+            return itk::VTKImageIO::New().GetPointer();
+        case ItkFormat::Minc:
+            return itk::MINCImageIO::New().GetPointer();
+        case ItkFormat::Gipl:
+            return itk::GiplImageIO::New().GetPointer();
+    }
+    return {};
+}
+
+// Runs a call into ITK with its chatter kept away. Some IOs print a failure and go on: with `strict`, anything printed
+// is one.
+template <typename Call>
+void guarded(const ItkRequest& request, bool strict, Call&& call) {
+    std::string reason, chatter;
+    {
+        OutputCapture capture;
+        try {
+            call();
+        } catch (const itk::ExceptionObject& error) {
+            reason = error.GetDescription();
+            if (reason.empty()) reason = error.what();
+        } catch (const std::bad_alloc&) {
+            reason = "not enough memory";
+        } catch (const std::exception& error) {
+            reason = error.what();
+        }
+        chatter = capture.text();
+    }
+    if (reason.empty() && strict) reason = chatter;
+    if (tidy(reason).empty()) return;
+    auto text = tidy(reason);
+    if (reason != chatter && !tidy(chatter).empty()) text += " (" + tidy(chatter) + ")";
+    fail("{}: cannot be read as {}: {}", request.path, name_of(request.format), text);
+}
+
+template <typename Bits, typename Float>
+void floats_from_bits(const ItkRequest& request, const void* source, std::vector<float>& values) {
+    const Bits* bits = static_cast<const Bits*>(source);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const Float value = std::bit_cast<Float>(bits[i]);
+        values[i] = static_cast<float>(request.slope * static_cast<double>(value) + request.intercept);
+    }
+}
+
+}  // namespace
+
+SampleType sample_type_of(const itk::ImageIOBase& io, const std::string& path) {
+    using Type = itk::IOComponentEnum;
+    switch (io.GetComponentType()) {
+        case Type::CHAR:
+            return SampleType::Int8;
+        case Type::UCHAR:
+            return SampleType::UInt8;
+        case Type::SHORT:
+            return SampleType::Int16;
+        case Type::USHORT:
+            return SampleType::UInt16;
+        case Type::INT:
+            return SampleType::Int32;
+        case Type::UINT:
+            return SampleType::UInt32;
+        case Type::LONG:
+            return sizeof(long) == 8 ? SampleType::Int64 : SampleType::Int32;
+        case Type::ULONG:
+            return sizeof(long) == 8 ? SampleType::UInt64 : SampleType::UInt32;
+        case Type::LONGLONG:
+            return SampleType::Int64;
+        case Type::ULONGLONG:
+            return SampleType::UInt64;
+        case Type::FLOAT:
+            return SampleType::Float32;
+        case Type::DOUBLE:
+            return SampleType::Float64;
+        default:
+            fail("{}: voxels of a type that cannot be read ({})", path,
+                 itk::ImageIOBase::GetComponentTypeAsString(io.GetComponentType()));
+    }
+}
+
+std::vector<std::size_t> dims_of(const itk::ImageIOBase& io) {
+    std::vector<std::size_t> dims(io.GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < dims.size(); ++axis)
+        dims[axis] = io.GetDimensions(axis);
+    return dims;
+}
+
+void set_full_region(itk::ImageIOBase& io) {
+    itk::ImageIORegion region(io.GetNumberOfDimensions());
+    for (unsigned axis = 0; axis < io.GetNumberOfDimensions(); ++axis) {
+        region.SetIndex(axis, 0);
+        region.SetSize(axis, io.GetDimensions(axis));
+    }
+    io.SetIORegion(region);
+}
+
+VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
+    VolumeGeometry geometry;
+    geometry.dims = glm::ivec3(1);
+    const unsigned axes = std::min(io.GetNumberOfDimensions(), 3U);
+    for (unsigned axis = 0; axis < axes; ++axis) {
+        const auto direction = io.GetDirection(axis);
+        const int column = static_cast<int>(axis);
+        geometry.dims[column] = static_cast<int>(io.GetDimensions(axis));
+        geometry.origin[column] = io.GetOrigin(axis) + 0.0;
+        for (unsigned row = 0; row < 3; ++row)
+            geometry.index_to_world_axes[column][static_cast<int>(row)] =
+                (row < axes ? direction[row] * io.GetSpacing(axis) : 0.0) + 0.0;  // + 0: no negative zeros
+    }
+    return geometry;
+}
+
+Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
+    const std::string& path = request.path;
+    const auto io = image_io(request.format);
+    report(options, 0.0, "reading header");
+    guarded(request, false, [&] {
+        io->SetFileName(request.read_path.empty() ? path : request.read_path);
+        io->ReadImageInformation();
+    });
+    auto dims = dims_of(*io);
+    while (dims.size() > 3 && dims.back() == 1)
+        dims.pop_back();
+    if (dims.size() < 2) fail("{}: its data have 1 axis; a volume needs 3, or 2 for a single slice", path);
+
+    Volume volume;
+    volume.name = path;
+    const auto type = sample_type_of(*io, path);
+    volume.stored_type = request.stored_type.empty() ? std::string(name_of(type)) : request.stored_type;
+    const std::size_t components = io->GetNumberOfComponents();
+    const std::size_t needed = checked_bytes(path, dims, components * size_of(type));
+    if (request.stored_bytes > 0) check_stored_size(path, needed, request.stored_bytes);
+    const std::size_t component = chosen_component(path, options, components);
+    std::size_t frames = 1;
+    for (std::size_t axis = 3; axis < dims.size(); ++axis)
+        frames *= dims[axis];
+    const std::size_t frame = chosen_frame(path, options, frames);
+    volume.geometry = geometry_of(*io);
+    if (dims.size() == 2)
+        volume.notes.push_back("The file holds a 2-D image: it is taken as a volume of one slice, 1 mm thick.");
+
+    try {
+        volume.values.resize(volume.geometry.voxel_count());
+        set_full_region(*io);
+        report(options, 0.05, "reading voxels");
+        const bool direct = type == SampleType::Float32 && components == 1 && frames == 1 && !request.bits_are_floats;
+        if (direct) {
+            guarded(request, true, [&] { io->Read(volume.values.data()); });
+        } else {
+            const auto buffer = std::make_unique_for_overwrite<std::byte[]>(needed);
+            guarded(request, true, [&] { io->Read(buffer.get()); });
+            report(options, 0.7, "converting voxels");
+            const std::size_t first = frame * volume.values.size() * components + component;
+            if (request.bits_are_floats && size_of(type) == 4)
+                floats_from_bits<std::uint32_t, float>(request, buffer.get(), volume.values);
+            else if (request.bits_are_floats)
+                floats_from_bits<std::uint64_t, double>(request, buffer.get(), volume.values);
+            else
+                convert_samples(type, buffer.get(), first, components, volume.values.size(), volume.values.data());
+        }
+    } catch (const std::bad_alloc&) {
+        fail("{}: not enough memory for {} voxels", path, volume.geometry.voxel_count());
+    }
+    return volume;
+}
+
+// MetaIO takes what it needs from a header that contradicts itself and says nothing.
+Volume load_meta(const std::string& path, const LoadOptions& options) {
+    std::ifstream file(path, std::ios::binary);
+    std::size_t declared = 0, spacings = 0, stored = 0;
+    for (std::string line; std::getline(file, line) && line.size() < 4096;) {
+        const auto equals = line.find('=');
+        if (equals == std::string::npos) continue;
+        std::string key = line.substr(0, equals), value = line.substr(equals + 1);
+        while (!key.empty() && (key.back() == ' ' || key.back() == '\t'))
+            key.pop_back();
+        while (!value.empty() && std::isspace(static_cast<unsigned char>(value.back())) != 0)
+            value.pop_back();
+        while (!value.empty() && std::isspace(static_cast<unsigned char>(value.front())) != 0)
+            value.erase(0, 1);
+        std::istringstream words(value);
+        if (key == "NDims") words >> declared;
+        if (key == "ElementSpacing")
+            for (std::string word; words >> word;)
+                ++spacings;
+        if (key != "ElementDataFile") continue;
+        if (value == "LOCAL" || value == "Local" || value == "local") {
+            std::error_code ignored;
+            stored = std::filesystem::file_size(path, ignored);
+        } else if (value.rfind("LIST", 0) != 0 && value.find('%') == std::string::npos) {
+            const auto data = std::filesystem::path(path).parent_path() / value;
+            std::error_code error;
+            stored = std::filesystem::file_size(data, error);
+            if (error) fail("{}: its data file {} cannot be opened: {}", path, data.string(), error.message());
+        }
+        break;
+    }
+    auto volume = load_through_itk({.format = ItkFormat::Meta, .path = path, .stored_bytes = stored}, options);
+    if (declared > 0 && spacings > 0 && spacings != declared)
+        volume.notes.push_back(
+            fmt::format("The header says NDims = {} but gives {} spacings; NDims was believed.", declared, spacings));
+    return volume;
+}
+
+}  // namespace edgesplat::detail

@@ -1,0 +1,294 @@
+// NIfTI-1/2 and Analyze through ITK. Two of its habits are worked around by handing it a temporary file with the same
+// header, slightly edited, and the same bytes:
+//  - its NIfTI library replaces NaN and infinity by 0 without a word: floats travel as integers of the same size and
+//    become floats again here, after which slope and intercept are applied;
+//  - with a vector intent and a slope it writes past its buffers (heap corruption, ITK 5.2.1), and 4-D files are read
+//    whole: of data with more than three axes only the chosen 3-D block travels.
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <fstream>
+
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat::detail {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where the fields lie; the same names as in nifti1.h and nifti2.h.
+struct Layout {
+    std::size_t header_size, dim, dim_size, intent_code, intent_size, datatype, bitpix, vox_offset, scl_slope,
+        scl_inter;
+    bool wide;  // 64-bit offset and scale (NIfTI-2)
+};
+constexpr Layout kNifti1{348, 40, 2, 68, 2, 70, 72, 108, 112, 116, false};
+constexpr Layout kNifti2{540, 16, 8, 504, 4, 12, 14, 168, 176, 184, true};
+
+struct Header {
+    std::vector<unsigned char> bytes;
+    const Layout* layout = nullptr;
+    bool swapped = false;
+    bool analyze = false;
+    bool single_file = false;
+    std::array<long long, 8> dim{};
+    int datatype = 0, bitpix = 0;
+    double slope = 1, intercept = 0;
+    std::size_t offset = 0;
+
+    template <typename T>
+    T get(std::size_t at) const {
+        std::array<unsigned char, sizeof(T)> raw{};
+        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), sizeof(T), raw.begin());
+        if (swapped) std::reverse(raw.begin(), raw.end());
+        T value;
+        std::memcpy(&value, raw.data(), sizeof(T));
+        return value;
+    }
+    template <typename T>
+    void set(std::size_t at, T value) {
+        std::array<unsigned char, sizeof(T)> raw{};
+        std::memcpy(raw.data(), &value, sizeof(T));
+        if (swapped) std::reverse(raw.begin(), raw.end());
+        std::copy(raw.begin(), raw.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
+    }
+    void set_dim(std::size_t axis, long long value) {
+        if (layout->wide)
+            set<std::int64_t>(layout->dim + axis * 8, value);
+        else
+            set<std::int16_t>(layout->dim + axis * 2, static_cast<std::int16_t>(value));
+    }
+};
+
+// Reads through zlib, which takes plain files as they are.
+class Stream {
+  public:
+    Stream(const std::string& name, const std::string& file) : name_(name), file_(gzopen(file.c_str(), "rb")) {
+        if (file_ == nullptr) fail("{}: {} cannot be opened", name, file);
+        gzbuffer(file_, 1 << 18);
+    }
+    ~Stream() { gzclose(file_); }
+    Stream(const Stream&) = delete;
+    Stream& operator=(const Stream&) = delete;
+    std::size_t read(void* target, std::size_t count) {
+        const int got = gzread(file_, target, static_cast<unsigned>(count));
+        if (got < 0) {
+            int code = 0;
+            const char* text = gzerror(file_, &code);
+            fail("{}: damaged gzip data: {}", name_, text);
+        }
+        return static_cast<std::size_t>(got);
+    }
+    void skip_to(std::size_t offset) {
+        if (gzseek(file_, static_cast<z_off_t>(offset), SEEK_SET) < 0)
+            fail("{}: truncated: no data at byte {}", name_, offset);
+    }
+
+  private:
+    std::string name_;
+    gzFile file_;
+};
+
+Header parse(const std::string& path, const std::string& header_file) {
+    Header header;
+    header.bytes.resize(kNifti2.header_size);
+    Stream stream(path, header_file);
+    header.bytes.resize(stream.read(header.bytes.data(), header.bytes.size()));
+    if (header.bytes.size() < kNifti1.header_size)
+        fail("{}: {} bytes are too few for a NIfTI or Analyze header (348)", path, header.bytes.size());
+    for (const bool swapped : {false, true}) {
+        header.swapped = swapped;
+        const auto size = header.get<std::int32_t>(0);
+        if (size == 348) header.layout = &kNifti1;
+        if (size == 540 && header.bytes.size() == kNifti2.header_size) header.layout = &kNifti2;
+        if (header.layout != nullptr) break;
+    }
+    if (header.layout == nullptr)
+        fail("{}: not a NIfTI or Analyze file: its header begins with neither 348 nor 540", path);
+    const Layout& at = *header.layout;
+    header.bytes.resize(at.header_size);
+    const char* magic = reinterpret_cast<const char*>(header.bytes.data()) + (at.wide ? 4 : 344);
+    header.single_file = magic[0] == 'n' && magic[1] == '+';
+    header.analyze = !(magic[0] == 'n' && (magic[1] == '+' || magic[1] == 'i'));
+    for (std::size_t axis = 0; axis < 8; ++axis)
+        header.dim[axis] =
+            at.wide ? header.get<std::int64_t>(at.dim + axis * 8) : header.get<std::int16_t>(at.dim + axis * 2);
+    header.datatype = header.get<std::int16_t>(at.datatype);
+    header.bitpix = header.get<std::int16_t>(at.bitpix);
+    if (!header.analyze) {
+        header.slope =
+            at.wide ? header.get<double>(at.scl_slope) : static_cast<double>(header.get<float>(at.scl_slope));
+        header.intercept =
+            at.wide ? header.get<double>(at.scl_inter) : static_cast<double>(header.get<float>(at.scl_inter));
+    }
+    const double offset = at.wide ? static_cast<double>(header.get<std::int64_t>(at.vox_offset))
+                                  : static_cast<double>(header.get<float>(at.vox_offset));
+    if (!(offset >= 0 && offset < 1e15)) fail("{}: vox_offset {} in its header is no place in a file", path, offset);
+    header.offset = static_cast<std::size_t>(offset);
+    if (header.dim[0] < 1 || header.dim[0] > 7)
+        fail("{}: its header says {} axes; 1 to 7 are possible", path, header.dim[0]);
+    for (std::size_t axis = 1; axis < 8; ++axis) {
+        if (static_cast<long long>(axis) > header.dim[0]) header.dim[axis] = 1;
+        if (axis > 3 && header.dim[axis] == 0) header.dim[axis] = 1;  // Analyze writers leave them so
+        if (header.dim[axis] < 1) fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
+    }
+    return header;
+}
+
+std::string type_name(int datatype) {
+    switch (datatype) {
+        case 2:
+            return "uint8";
+        case 4:
+            return "int16";
+        case 8:
+            return "int32";
+        case 16:
+            return "float32";
+        case 32:
+            return "complex64";
+        case 64:
+            return "float64";
+        case 128:
+            return "rgb24";
+        case 256:
+            return "int8";
+        case 512:
+            return "uint16";
+        case 768:
+            return "uint32";
+        case 1024:
+            return "int64";
+        case 1280:
+            return "uint64";
+        default:
+            return "";
+    }
+}
+
+// "x.hdr.gz", ".hdr" -> "x.img.gz", ".img": the one of the pair that exists.
+std::string partner(const std::string& path, const std::string& from, const std::string& to) {
+    const auto at = path.rfind(from);
+    const std::string stem = path.substr(0, at) + to;
+    for (const std::string& name : {stem, stem + ".gz"})
+        if (fs::is_regular_file(name)) return name;
+    fail("{}: its other half {} (or {}.gz) is missing", path, stem, stem);
+}
+
+bool has_extension(const std::string& path, const std::string& extension) {
+    return path.ends_with(extension) || path.ends_with(extension + ".gz");
+}
+
+}  // namespace
+
+Volume load_nifti(const std::string& path, const LoadOptions& options) {
+    std::string header_file = path, data_file = path;
+    if (has_extension(path, ".img")) header_file = partner(path, ".img", ".hdr");
+    if (has_extension(path, ".hdr")) data_file = partner(path, ".hdr", ".img");
+    Header header = parse(path, header_file);
+    if (header.single_file) data_file = header_file;
+    const auto& dim = header.dim;
+    const auto unsigned_dim = [&](std::size_t axis) { return static_cast<std::size_t>(dim[axis]); };
+
+    // Axis 5 holds components, all other axes beyond the third frames.
+    const std::vector<std::size_t> block{unsigned_dim(1), unsigned_dim(2), unsigned_dim(3)};
+    if (header.bitpix < 8) fail("{}: voxels of {} bits cannot be read", path, header.bitpix);
+    const std::size_t item = static_cast<std::size_t>(header.bitpix) / 8;
+    const std::size_t bytes = checked_bytes(path, block, item);
+    const std::size_t stored = fs::file_size(data_file);
+    check_stored_size(path, bytes, stored);
+    const bool more_axes = dim[4] * dim[5] * dim[6] * dim[7] > 1;
+    const bool floats = header.datatype == 16 || header.datatype == 64;
+    ItkRequest request{.format = ItkFormat::Nifti,
+                       .path = path,
+                       .read_path = header_file,
+                       .stored_type = type_name(header.datatype),
+                       .stored_bytes = stored};
+    if (request.stored_type.empty()) fail("{}: voxels of NIfTI type {} cannot be read", path, header.datatype);
+
+    Volume volume;
+    if (!more_axes && !floats) {
+        volume = load_through_itk(request, options);
+    } else {
+        LoadOptions rest = options;
+        std::size_t index = 0;
+        if (more_axes) {
+            const std::size_t frames = unsigned_dim(4) * unsigned_dim(6) * unsigned_dim(7);
+            std::size_t frame = 0;
+            if (dim[5] > 1 || frames == 1) {
+                index = chosen_component(path, options, unsigned_dim(5));
+                rest.component.reset();
+            }
+            frame = chosen_frame(path, options, frames);
+            rest.frame.reset();
+            const std::size_t t = frame % unsigned_dim(4), rest_of_frame = frame / unsigned_dim(4);
+            index = t + unsigned_dim(4) * (index + unsigned_dim(5) * rest_of_frame);
+        }
+        const Layout& at = *header.layout;
+        const std::size_t data_offset = header.single_file ? at.header_size + 4 : 0;
+        header.set_dim(0, 3);
+        for (std::size_t axis = 1; axis < 8; ++axis)
+            header.set_dim(axis, axis <= 3 ? dim[axis] : 1);
+        if (at.wide)
+            header.set<std::int64_t>(at.vox_offset, static_cast<std::int64_t>(data_offset));
+        else
+            header.set<float>(at.vox_offset, static_cast<float>(data_offset));
+        if (!header.analyze) {
+            if (at.wide)
+                header.set<std::int32_t>(at.intent_code, 0);
+            else
+                header.set<std::int16_t>(at.intent_code, 0);
+        }
+        if (floats) {
+            header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
+            if (!header.analyze && at.wide) {
+                header.set<double>(at.scl_slope, 0);
+                header.set<double>(at.scl_inter, 0);
+            } else if (!header.analyze) {
+                header.set<float>(at.scl_slope, 0);
+                header.set<float>(at.scl_inter, 0);
+            }
+            request.bits_are_floats = true;
+            const bool scaled = std::isfinite(header.slope) && header.slope != 0 && std::isfinite(header.intercept);
+            request.slope = scaled ? header.slope : 1;
+            request.intercept = scaled ? header.intercept : 0;
+        }
+        const TemporaryFolder folder;
+        const auto head_path = folder.path() / (header.single_file ? "block.nii" : "block.hdr");
+        std::ofstream head(head_path, std::ios::binary);
+        head.write(reinterpret_cast<const char*>(header.bytes.data()),
+                   static_cast<std::streamsize>(header.bytes.size()));
+        std::ofstream body;
+        if (header.single_file)
+            head.write("\0\0\0\0", 4);
+        else
+            body.open(folder.path() / "block.img", std::ios::binary);
+        std::ofstream& out = header.single_file ? head : body;
+        Stream data(path, data_file);
+        data.skip_to(header.offset + index * bytes);
+        std::vector<char> buffer(1 << 20);
+        for (std::size_t done = 0; done < bytes;) {
+            const std::size_t want = std::min(buffer.size(), bytes - done);
+            const std::size_t got = data.read(buffer.data(), want);
+            if (got == 0)
+                fail("{}: truncated: {} of {} bytes of voxels{}", path, done, bytes,
+                     more_axes ? " of the chosen frame" : "");
+            out.write(buffer.data(), static_cast<std::streamsize>(got));
+            done += got;
+            report(options, 0.5 * static_cast<double>(done) / static_cast<double>(bytes), "reading voxels");
+        }
+        head.close();
+        if (body.is_open()) body.close();
+        if (!head || (!header.single_file && !body)) fail("{}: cannot write a temporary file of {} bytes", path, bytes);
+        request.read_path = head_path.string();
+        request.stored_bytes = 0;
+        volume = load_through_itk(request, rest);
+    }
+    if (header.analyze)
+        volume.notes.push_back("Analyze files do not say which side is left: the axes are taken as they are stored.");
+    return volume;
+}
+
+}  // namespace edgesplat::detail

@@ -1,0 +1,212 @@
+// Limits, choices, conversion, temporary files and captured output for all format families.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <iostream>
+#include <mutex>
+#include <regex>
+
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat::detail {
+namespace {
+
+constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int16",  "uint16",  "int32",
+                                                         "uint32", "int64", "uint64", "float32", "float64"};
+constexpr std::array<std::size_t, 10> kTypeSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
+/// All frames and components of a file that can only be read as a whole.
+constexpr std::size_t kMaxBytes = std::size_t{1} << 34;
+constexpr std::size_t kBestDeflateRatio = 1040;
+
+template <typename T>
+void convert(const void* source, std::size_t first, std::size_t stride, std::size_t count, float* target) {
+    const T* values = static_cast<const T*>(source) + first;
+    if (stride == 1) {
+        for (std::size_t i = 0; i < count; ++i)
+            target[i] = static_cast<float>(values[i]);
+    } else {
+        for (std::size_t i = 0; i < count; ++i)
+            target[i] = static_cast<float>(values[i * stride]);
+    }
+}
+
+std::mutex& capture_mutex() {
+    static std::mutex mutex;
+    return mutex;
+}
+
+std::size_t chosen(const std::string& path, const std::optional<int>& choice, std::size_t count, const char* what,
+                   const char* option, const char* kind) {
+    if (!choice) {
+        if (count > 1)
+            fail("{}: {} data with {} {}s; choose one with --{} 0..{}", path, kind, count, what, option, count - 1);
+        return 0;
+    }
+    if (*choice < 0 || static_cast<std::size_t>(*choice) >= count)
+        fail("{}: --{} {}: the file has {} {}{}, numbered from 0", path, option, *choice, count, what,
+             count == 1 ? "" : "s");
+    return static_cast<std::size_t>(*choice);
+}
+
+}  // namespace
+
+std::string_view name_of(SampleType type) {
+    return kTypeNames[static_cast<std::size_t>(type)];
+}
+std::size_t size_of(SampleType type) {
+    return kTypeSizes[static_cast<std::size_t>(type)];
+}
+
+bool sample_type_named(std::string_view name, SampleType& type) {
+    for (std::size_t i = 0; i < kTypeNames.size(); ++i) {
+        if (kTypeNames[i] != name) continue;
+        type = static_cast<SampleType>(i);
+        return true;
+    }
+    return false;
+}
+
+void convert_samples(SampleType type, const void* source, std::size_t first, std::size_t stride, std::size_t count,
+                     float* target) {
+    switch (type) {
+        case SampleType::Int8:
+            return convert<std::int8_t>(source, first, stride, count, target);
+        case SampleType::UInt8:
+            return convert<std::uint8_t>(source, first, stride, count, target);
+        case SampleType::Int16:
+            return convert<std::int16_t>(source, first, stride, count, target);
+        case SampleType::UInt16:
+            return convert<std::uint16_t>(source, first, stride, count, target);
+        case SampleType::Int32:
+            return convert<std::int32_t>(source, first, stride, count, target);
+        case SampleType::UInt32:
+            return convert<std::uint32_t>(source, first, stride, count, target);
+        case SampleType::Int64:
+            return convert<std::int64_t>(source, first, stride, count, target);
+        case SampleType::UInt64:
+            return convert<std::uint64_t>(source, first, stride, count, target);
+        case SampleType::Float32:
+            return convert<float>(source, first, stride, count, target);
+        case SampleType::Float64:
+            return convert<double>(source, first, stride, count, target);
+    }
+}
+
+std::size_t checked_bytes(const std::string& path, const std::vector<std::size_t>& dims, std::size_t bytes) {
+    std::size_t voxels = 1, total = bytes;
+    std::string text;
+    bool too_many = false, too_long = false, too_big = false;
+    for (std::size_t axis = 0; axis < dims.size(); ++axis) {
+        const std::size_t n = dims[axis];
+        text += (axis > 0 ? " x " : "") + std::to_string(n);
+        if (n == 0) fail("{}: its header says dims with a 0 (axis {})", path, axis);
+        if (axis < 3) {
+            too_long = too_long || n > kMaxVoxelsPerAxis;
+            too_many = __builtin_mul_overflow(voxels, n, &voxels) || voxels > kMaxVoxels || too_many;
+        }
+        too_big = __builtin_mul_overflow(total, n, &total) || total > kMaxBytes || too_big;
+    }
+    if (too_long) fail("{}: dims {}: an axis may have at most {} voxels", path, text, kMaxVoxelsPerAxis);
+    if (too_many) fail("{}: dims {}: a volume may have at most {} voxels", path, text, kMaxVoxels);
+    if (too_big) fail("{}: dims {}: more than {} GiB to read", path, text, kMaxBytes >> 30);
+    return total;
+}
+
+void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored) {
+    if (needed / kBestDeflateRatio > stored + 4096)
+        fail(
+            "{}: its header promises {} bytes of voxels, but there are only {} bytes of data: truncated, or the header "
+            "is wrong",
+            path, needed, stored);
+}
+
+std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count) {
+    return chosen(path, options.component, count, "component", "component", "vector or colour");
+}
+
+std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count) {
+    return chosen(path, options.frame, count, "frame", "frame", "4-D");
+}
+
+void report(const LoadOptions& options, double fraction, std::string_view what) {
+    if (options.progress) options.progress(fraction, what);
+}
+
+void apply_spacing(Volume& volume, const LoadOptions& options) {
+    if (!options.spacing) return;
+    auto& axes = volume.geometry.index_to_world_axes;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double wanted = (*options.spacing)[axis];
+        if (!(wanted > 0) || !(wanted < 1e9)) fail("--spacing: {} is not a length in mm above 0", wanted);
+        const double length = glm::length(axes[axis]);
+        if (length > 0) axes[axis] *= wanted / length;
+    }
+}
+
+std::string tidy(std::string_view message) {
+    static const std::regex noise(
+        R"((^|\n)[^\n]*\.(cxx|hxx|txx|h|cpp):\d+:|\b(itk::|ITK )?ERROR: |\w+ ?\(0x[0-9a-f]+\): )"
+        R"(|(^|\n)(Warning|WARNING): In [^\n]*)");
+    std::string text = std::regex_replace(std::string(message), noise, "\n");
+    std::string line;
+    for (const char c : text) {
+        const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';
+        if (!blank)
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    }
+    while (!line.empty() && (line.back() == ' ' || line.back() == '.'))
+        line.pop_back();
+    return line.substr(0, 400);
+}
+
+TemporaryFolder::TemporaryFolder() {
+    std::string name = (std::filesystem::temp_directory_path() / "edgesplat-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) fail("cannot make a temporary folder like {}", name);
+    path_ = name;
+}
+
+TemporaryFolder::~TemporaryFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+}
+
+OutputCapture::OutputCapture() {
+    capture_mutex().lock();
+    std::cout.flush();
+    std::cerr.flush();
+    std::fflush(nullptr);
+    file_ = memfd_create("edgesplat-capture", MFD_CLOEXEC);
+    saved_out_ = fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    saved_err_ = fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 3);
+    if (file_ >= 0 && saved_out_ >= 0) dup2(file_, STDOUT_FILENO);
+    if (file_ >= 0 && saved_err_ >= 0) dup2(file_, STDERR_FILENO);
+}
+
+OutputCapture::~OutputCapture() {
+    std::cout.flush();
+    std::cerr.flush();
+    std::fflush(nullptr);
+    if (saved_out_ >= 0) dup2(saved_out_, STDOUT_FILENO);
+    if (saved_err_ >= 0) dup2(saved_err_, STDERR_FILENO);
+    for (const int file : {file_, saved_out_, saved_err_})
+        if (file >= 0) close(file);
+    capture_mutex().unlock();
+}
+
+std::string OutputCapture::text() {
+    std::cout.flush();
+    std::cerr.flush();
+    std::fflush(nullptr);
+    std::string text(16384, '\0');
+    const ssize_t size = file_ >= 0 ? pread(file_, text.data(), text.size(), 0) : 0;
+    text.resize(size > 0 ? static_cast<std::size_t>(size) : 0);
+    return text;
+}
+
+}  // namespace edgesplat::detail

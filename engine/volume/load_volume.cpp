@@ -1,0 +1,214 @@
+// Which family reads it: told by what the path is, then by the file's first bytes, then by its name.
+#include "engine/volume/load_volume.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+
+#include "engine/volume/analytic_volumes.h"
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace detail;
+
+constexpr const char* kFormats =
+    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, VTI, GIPL, TIFF and other images, or raw "
+    "data "
+    "described with --raw DXxDYxDZ:TYPE:little|big";
+
+bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
+    std::string lower;
+    for (const char c : path)
+        lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return lower.ends_with(ending); });
+}
+
+// Opening a FIFO or a device would wait for ever, so the kind of file comes first.
+void check_readable_file(const std::string& path) {
+    std::error_code error;
+    const auto status = fs::status(path, error);
+    if (status.type() == fs::file_type::not_found) fail("{}: no such file or folder", path);
+    if (error) fail("{}: {}", path, error.message());
+    if (status.type() != fs::file_type::regular) fail("{}: neither a file nor a folder", path);
+    if (access(path.c_str(), R_OK) != 0) fail("{}: cannot be read: {}", path, std::strerror(errno));
+    if (fs::file_size(path) == 0) fail("{}: the file is empty", path);
+}
+
+std::string first_bytes(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::string bytes(512, '\0');
+    file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+    bytes.resize(static_cast<std::size_t>(file.gcount()));
+    return bytes;
+}
+
+Volume load_vtk(const std::string& path, const std::string& head, const LoadOptions& options) {
+    std::string upper;
+    for (const char c : head)
+        upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+    const auto at = upper.find("\nDATASET");
+    if (at != std::string::npos && upper.find("STRUCTURED_POINTS", at) == std::string::npos)
+        fail("{}: a VTK file, but not image data (DATASET STRUCTURED_POINTS)", path);
+    std::size_t stored = fs::file_size(path);
+    if (upper.find("\nASCII") != std::string::npos) stored = 0;
+    auto volume = load_through_itk({.format = ItkFormat::Vtk, .path = path, .stored_bytes = stored}, options);
+    // ITK's reader fills what a short binary file lacks with nothing at all.
+    SampleType type{};
+    if (stored > 0 && sample_type_named(volume.stored_type, type)) {
+        const auto bytes = volume.values.size() * size_of(type);
+        if (bytes > stored)
+            fail("{}: truncated: {} bytes of voxels promised, the file has {} bytes", path, bytes, stored);
+    }
+    return volume;
+}
+
+Volume load_file(const std::string& path, const LoadOptions& options) {
+    if (!options.raw.empty()) return load_raw(path, options);
+    const auto head = first_bytes(path);
+    const auto starts = [&](std::string_view text) { return head.compare(0, text.size(), text) == 0; };
+    if (starts("NRRD0")) return load_nrrd(path, options);
+    if (starts("# vtk DataFile")) return load_vtk(path, head, options);
+    if (head.find("<VTKFile") != std::string::npos) return load_vti(path, options);
+    if (starts("CDF\x01") || starts("CDF\x02") || (starts("\x89HDF") && ends_with_any(path, {".mnc", ".mnc2"})))
+        return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)},
+                                options);
+    if (ends_with_any(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}))
+        return load_nifti(path, options);
+    if (ends_with_any(path, {".mha", ".mhd"})) return load_meta(path, options);
+    if (ends_with_any(path, {".gipl", ".gipl.gz"}))
+        return load_through_itk({.format = ItkFormat::Gipl, .path = path, .stored_bytes = fs::file_size(path)},
+                                options);
+    if (is_dicom(path)) return load_dicom(path, {path}, options);
+    if (ends_with_any(path, {".raw", ".dat", ".bin", ".zraw", ".den"}))
+        fail(
+            "{}: has no header; open the header that belongs to it (.nhdr, .mhd), or describe it with "
+            "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
+            path);
+    if (is_image_file(path)) return load_images(path, {path}, options);
+    fail("{}: not a volume this program knows. It reads {}", path, kFormats);
+}
+
+Volume load_folder(const std::string& path, const LoadOptions& options) {
+    if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
+    std::vector<std::string> dicom, images;
+    std::size_t others = 0, folders = 0;
+    report(options, 0.0, "looking through the folder");
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(path, error)) {
+        const auto file = entry.path().string();
+        if (entry.is_directory()) ++folders;
+        if (!entry.is_regular_file() || entry.path().filename().string().starts_with(".")) continue;
+        if (entry.path().filename() == "DICOMDIR") continue;
+        if (entry.file_size() > 0 && is_dicom(file))
+            dicom.push_back(file);
+        else if (ends_with_any(file, {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".pgm", ".tga"}))
+            images.push_back(file);
+        else
+            ++others;
+    }
+    if (error) fail("{}: cannot be read: {}", path, error.message());
+    if (!dicom.empty() && !images.empty())
+        fail(
+            "{}: holds {} DICOM files and {} images; keep one kind in the folder, or name the images by a pattern such "
+            "as slice_%03d.png",
+            path, dicom.size(), images.size());
+    std::vector<std::string> notes;
+    if (others > 0) notes.push_back(fmt::format("{} other files in the folder were left alone.", others));
+    Volume volume;
+    if (!dicom.empty()) {
+        volume = load_dicom(path, dicom, options);
+    } else if (!images.empty()) {
+        images = ordered_slices(path, images, notes);
+        volume = load_images(path, images, options);
+    } else {
+        fail(
+            "{}: no DICOM files and no images in this folder ({} other files, {} folders inside); give a file or one "
+            "of "
+            "its folders",
+            path, others, folders);
+    }
+    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
+    return volume;
+}
+
+// "slice_%03d.tif": the files of the folder that match, in order of their numbers.
+Volume load_pattern(const std::string& path, const LoadOptions& options) {
+    const auto name = fs::path(path).filename().string();
+    const auto percent = name.find('%');
+    auto end = percent + 1;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0)
+        ++end;
+    const auto folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    const bool good = percent != std::string::npos && end < name.size() && (name[end] == 'd' || name[end] == 'u') &&
+                      name.find('%', end) == std::string::npos;
+    if (!good) fail("{}: no such file; a pattern of slices has one number in its last part, like slice_%03d.tif", path);
+    const auto before = name.substr(0, percent), after = name.substr(end + 1);
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const auto file = entry.path().filename().string();
+        if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after))
+            continue;
+        const auto middle = file.substr(before.size(), file.size() - before.size() - after.size());
+        if (std::all_of(middle.begin(), middle.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
+            files.push_back(entry.path().string());
+    }
+    if (files.empty()) fail("{}: no file matches this pattern", path);
+    std::vector<std::string> notes;
+    files = ordered_slices(path, files, notes);
+    for (const auto& file : files)
+        check_readable_file(file);
+    auto volume = load_images(path, files, options);
+    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
+    return volume;
+}
+
+void add_value_notes(Volume& volume) {
+    const float largest = std::max(std::abs(volume.min_value), std::abs(volume.max_value));
+    const bool wide =
+        volume.stored_type.find("32") != std::string::npos || volume.stored_type.find("64") != std::string::npos;
+    if (volume.stored_type.find("int") != std::string::npos && wide && largest > 16777216.0F)
+        volume.notes.push_back("Samples beyond 2^24 are rounded to 24 significant bits.");
+    if (volume.non_finite_count > 0)
+        volume.notes.push_back(fmt::format("{} samples are not finite; {} stands in for them.", volume.non_finite_count,
+                                           static_cast<double>(volume.min_value)));
+}
+
+}  // namespace
+
+Volume load_volume(const std::string& path, const LoadOptions& options) {
+    if (is_builtin(path)) return builtin_volume(path);
+    if (path.empty()) fail("no volume given");
+    std::error_code error;
+    Volume volume;
+    try {
+        if (fs::is_directory(path, error)) {
+            volume = load_folder(path, options);
+        } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {
+            volume = load_pattern(path, options);
+        } else {
+            check_readable_file(path);
+            volume = load_file(path, options);
+        }
+    } catch (const std::bad_alloc&) {
+        fail("{}: not enough memory for it", path);
+    } catch (const fs::filesystem_error& problem) {
+        fail("{}: {}", path, problem.what());
+    }
+    apply_spacing(volume, options);
+    report(options, 0.9, "checking voxels");
+    finish_volume(volume);
+    add_value_notes(volume);
+    report(options, 1.0, "done");
+    return volume;
+}
+
+}  // namespace edgesplat
