@@ -1,4 +1,5 @@
-// The `edge` warp: space is stretched along the edge normal within a band of half width a around the edge (design (6), (7)).
+// The `edge` warp: space is stretched along the edge normal within a band of half width a around the edge (design (6),
+// (7)).
 //
 // One coordinate matters: t = n . (x - x_i), measured from the voxel along its edge normal, in voxels. The edge is the
 // plane t = D. A wall has a second face at t = -D2. Where neighbouring voxels agree on the edge they share one warp of
@@ -18,13 +19,14 @@ struct EdgeBand {
 
 /// The edge (or the two faces of a wall) that a voxel's kernel is warped around.
 struct Edge {
-    double distance = 0;                                                 ///< D, voxels along n; may be negative
-    EdgeBand band;                                                       ///< of both faces; see wall_edge()
-    double second_distance = std::numeric_limits<double>::infinity();  ///< D2, voxels along -n; infinite: no second face
+    double distance = 0;  ///< D, voxels along n; may be negative
+    EdgeBand band;        ///< of both faces; see wall_edge()
+    double second_distance =
+        std::numeric_limits<double>::infinity();  ///< D2, voxels along -n; infinite: no second face
 };
 
-/// M(s) of design (7): where a point at signed distance s from the edge is sampled. Odd, C1, strictly increasing, slope k
-/// at 0 and 1 at +-a, identity from +-a on.
+/// M(s) of design (7): where a point at signed distance s from the edge is sampled. Odd, C1, strictly increasing, slope
+/// k at 0 and 1 at +-a, identity from +-a on.
 double edge_warp(double s, const EdgeBand& band);
 double edge_warp_slope(double s, const EdgeBand& band);
 /// The inverse of M in closed form: of the same kind, with slope 1/k.
@@ -47,8 +49,8 @@ struct Support {
     double radius_about_voxel = 0;  ///< radius of the smallest one centred at x_i
 };
 
-/// The true support of a warped kernel. It is larger than R near an edge: M moves points away from the edge, so a kernel
-/// whose ball nears the edge is sampled from further off, up to R + max(|s| - |M^-1(s)|).
+/// The true support of a warped kernel. It is larger than R near an edge: M moves points away from the edge, so a
+/// kernel whose ball nears the edge is sampled from further off, up to R + max(|s| - |M^-1(s)|).
 Support warped_support(const Edge& edge);
 
 /// `entries` >= 2 supports of single faces, at D equally spaced over [-(R + a), R + a].

@@ -1,7 +1,8 @@
-// Footprints: the integral of a warped kernel along a viewing ray, exactly (the oracle) and by the rules the shaders use.
+// Footprints: the integral of a warped kernel along a viewing ray, exactly (the oracle) and by the rules the shaders
+// use.
 //
-// The kernel of a voxel at the origin is K(|W(x)|), W moving x along n only. So a ray matters through three numbers, and a
-// footprint is a function of them and of the edge. Values are integrals of K along the ray, in 1/voxel^2.
+// The kernel of a voxel at the origin is K(|W(x)|), W moving x along n only. So a ray matters through three numbers,
+// and a footprint is a function of them and of the edge. Values are integrals of K along the ray, in 1/voxel^2.
 #pragma once
 
 #include <span>
@@ -11,8 +12,8 @@
 
 namespace edgesplat {
 
-/// A ray seen from a voxel: p its point nearest to the voxel centre (relative to it), u its unit direction, n the unit edge
-/// normal. pn^2 <= rho2 (1 - un^2) holds for every real ray; rounding beyond is tolerated.
+/// A ray seen from a voxel: p its point nearest to the voxel centre (relative to it), u its unit direction, n the unit
+/// edge normal. pn^2 <= rho2 (1 - un^2) holds for every real ray; rounding beyond is tolerated.
 struct Ray {
     double rho2 = 0;  ///< |p|^2, voxels^2
     double pn = 0;    ///< p . n, voxels
@@ -22,18 +23,19 @@ struct Ray {
 /// The ray of design (8): n = (sqrt(1-c^2), 0, c), u = z, through (x, y).
 Ray ray_through(double x, double y, double c);
 
-/// Design (8) to an absolute 1e-10: panels split at the faces, the ends of their bands and the borders of the support, each
-/// refined until it no longer changes.
+/// Design (8) to an absolute 1e-10: panels split at the faces, the ends of their bands and the borders of the support,
+/// each refined until it no longer changes.
 double exact_footprint(const Ray& ray, const Edge& edge);
 double exact_footprint(const Ray& ray, const PaperEdge& edge);
 
-/// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per half
-/// band (edge) or per piece of the profile (paper) within.
+/// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per
+/// half band (edge) or per piece of the profile (paper) within.
 double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 8);
 double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 8);
 
-/// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the point
-/// p, shortened by the projection of n: the edge stands at D/sin(theta), its strength fades to 1 as n turns along the ray.
+/// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the
+/// point p, shortened by the projection of n: the edge stands at D/sin(theta), its strength fades to 1 as n turns along
+/// the ray.
 double warp2d_footprint(const Ray& ray, const Edge& edge);
 double warp2d_footprint(const Ray& ray, const PaperEdge& edge);
 

@@ -1,14 +1,13 @@
-// Pre-integrated footprints of one edge band: the file the `table` and `table-lerp` modes look up, and its cache on disk.
+// Pre-integrated footprints of one edge band: the file the `table` and `table-lerp` modes look up.
 //
-// What is tabulated is the *correction* to a warped two-dimensional footprint: F = g(base) + T. The base is exact for edges
-// seen edge-on, where F is sharpest, and follows the edge with the mean slope that a ray sees otherwise; what is left is
-// smooth, so few texels hold it. See README.md.
+// What is tabulated is the *correction* to a warped two-dimensional footprint: F = g(base) + T. The base is exact for
+// edges seen edge-on, where F is sharpest, and follows the edge with the mean slope that a ray sees otherwise; what is
+// left is smooth, so few texels hold it. See README.md.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "footprints/edge_warp.h"
@@ -16,20 +15,26 @@
 
 namespace edgesplat {
 
-/// Texels per layer and layers. distances * directions <= 2048 (what every Vulkan device has as array layers).
+/// Texels per layer and layers: by default 6.1 MB. distances * directions <= 2048 (what every Vulkan device has as
+/// array layers).
 struct FootprintTableSize {
-    int width = 64;       ///< along the projected normal, base coordinate X in [-extent, extent]
-    int height = 24;      ///< across it, y in [0, extent]
-    int distances = 33;   ///< d in [0, R + a]
-    int directions = 33;  ///< |cos theta| in [0, 1], denser towards 0
+    int width = 64;              ///< along the projected normal, base coordinate X in [-extent, extent]
+    int height = 24;             ///< across it, y in [0, R]
+    int distances = 57;          ///< d in [0, R + a]
+    int directions = 35;         ///< |cos theta| in [0, 1], denser towards 0
+    std::size_t texels() const;  ///< of all layers together
     bool operator==(const FootprintTableSize&) const = default;
 };
 
-/// The layers: half-float texels [distance][direction][y][x], ready for a `sampler2DArray` of R16_SFLOAT with linear filter
-/// and clamp to edge; layer = distance index * directions + direction index.
+/// Throws std::invalid_argument naming what is out of range: half_width (0, 3], strength [1, 64], the sizes above.
+void validate(const EdgeBand& band, const FootprintTableSize& size);
+
+/// The layers: half-float texels [distance][direction][y][x], ready for a `sampler2DArray` of R16_SFLOAT with linear
+/// filter and clamp to edge; layer = distance index * directions + direction index.
 class FootprintTable {
   public:
-    /// Integrates every texel; `threads` 0 means one a core. Throws std::invalid_argument for sizes or bands out of range.
+    /// Integrates every texel; `threads` 0 means one a core. Throws std::invalid_argument for sizes or bands out of
+    /// range.
     static FootprintTable build(const EdgeBand& band, const FootprintTableSize& size = {}, int threads = 0);
 
     /// Wraps texels from elsewhere (the cache); their number must be that of `size`.
@@ -37,11 +42,11 @@ class FootprintTable {
 
     const EdgeBand& band() const { return band_; }
     const FootprintTableSize& size() const { return size_; }
-    double extent() const { return extent_; }  ///< half width in X and height in y of a layer, voxels
+    double extent() const { return extent_; }  ///< layers cover X in [-extent, extent] and y in [0, R], voxels
     std::span<const std::uint16_t> texels() const { return texels_; }
 
-    /// F for an edge at signed `distance` (|d| >= R + a: the plain footprint), by the layer nearest to it or blended between
-    /// the four around it, both bilinear within a layer; what footprint.glsl computes.
+    /// F for an edge at signed `distance` (|d| >= R + a: the plain footprint), by the layer nearest to it or blended
+    /// between the four around it, both bilinear within a layer; what footprint.glsl computes.
     double nearest(const Ray& ray, double distance) const;
     double lerp(const Ray& ray, double distance) const;
 
@@ -53,25 +58,6 @@ class FootprintTable {
     double extent_ = 0;
     std::vector<std::uint16_t> texels_;
 };
-
-/// A table and how it was come by.
-struct LoadedFootprintTable {
-    FootprintTable table;
-    bool from_cache = false;
-    std::string warning;  ///< why the cache was not usable or not written; empty if all is well
-};
-
-/// $EDGESPLAT_CACHE, else $XDG_CACHE_HOME/edgesplat, else ~/.cache/edgesplat; empty if none of them is set.
-std::filesystem::path footprint_cache_folder();
-
-/// The cache file of a table in `folder`: named by its parameters and the format's version.
-std::filesystem::path footprint_cache_file(const std::filesystem::path& folder, const EdgeBand& band,
-                                           const FootprintTableSize& size);
-
-/// The table from the cache, or built and then cached (written beside and renamed: safe for several processes at once). A
-/// damaged, truncated or foreign file is rebuilt; a folder that cannot be written gives a warning. Empty folder: no cache.
-LoadedFootprintTable load_footprint_table(const EdgeBand& band, const FootprintTableSize& size = {},
-                                          const std::filesystem::path& folder = footprint_cache_folder());
 
 /// IEEE half precision, round to nearest even.
 std::uint16_t half_from_float(float value);

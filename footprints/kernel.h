@@ -9,30 +9,33 @@
 
 namespace edgesplat {
 
+using KernelCoefficients = std::array<double, 6>;
+
 inline constexpr double kKernelRadius = 1.6;  ///< R, voxels
 /// Coefficients of w^2 ... w^7 in K.
-inline constexpr std::array<double, 6> kKernelCoefficients = {0.0173624837, -0.0404017909, 0.531403221,
-                                                              -0.680940898, 1.37803587,    -0.611612954};
+inline constexpr KernelCoefficients kKernelCoefficients = {0.0173624837, -0.0404017909, 0.531403221,
+                                                           -0.680940898, 1.37803587,    -0.611612954};
 
 /// Weight of w^n in the line integral, relative to its weight in K: R * integral of (1-s^2)^n over [-1, 1].
 constexpr double kernel_line_factor(int n) {
     double factor = 2 * kKernelRadius;
-    for (int i = 1; i <= n; ++i) factor *= 2.0 * i / (2.0 * i + 1.0);
+    for (int i = 1; i <= n; ++i)
+        factor *= 2.0 * i / (2.0 * i + 1.0);
     return factor;
 }
 
 /// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
-inline constexpr std::array<double, 6> kFootprintCoefficients = [] {
-    std::array<double, 6> c{};
-    for (std::size_t i = 0; i < c.size(); ++i) c[i] = kKernelCoefficients[i] * kernel_line_factor(static_cast<int>(i) + 2);
+inline constexpr KernelCoefficients kFootprintCoefficients = [] {
+    KernelCoefficients c{};
+    for (std::size_t i = 0; i < c.size(); ++i)
+        c[i] = kKernelCoefficients[i] * kernel_line_factor(static_cast<int>(i) + 2);
     return c;
 }();
 
 /// K at a squared distance r2 >= 0 from its centre. 0 from R on.
-inline double kernel(double r2) {
+inline double kernel(double r2, const KernelCoefficients& c = kKernelCoefficients) {
     const double v = 1 - r2 / (kKernelRadius * kKernelRadius);
     const double w = v > 0 ? v : 0;
-    const auto& c = kKernelCoefficients;
     return w * w * (c[0] + w * (c[1] + w * (c[2] + w * (c[3] + w * (c[4] + w * c[5])))));
 }
 
@@ -46,7 +49,7 @@ double kernel_chord(double rho2, double z);
 double kernel_plane_integral(double r2);
 
 /// Largest |sum over the lattice of K - 1|, at steps^3 points of one octant of the unit cell.
-double kernel_ripple(int steps);
+double kernel_ripple(int steps, const KernelCoefficients& coefficients = kKernelCoefficients);
 
 /// Largest |lattice sum of g * area per sample - 1| over a view along `direction` (any non-zero vector), at `steps`^2
 /// points: how even a uniform volume looks when its footprints are added up.

@@ -1,9 +1,9 @@
 // The `paper` warp: the curve of Huang, Crawfis, Stredney 1998, corrected (design (3)-(5)), and a smooth variant.
 //
 // The paper warps the unit interval between the two voxels that enclose the edge: x in [0, 1] is sampled at map(x), the
-// inverse of a monotone profile p. As p' vanishes at t1 and t2, map rises with infinite slope at m1 and m2. `Smooth` puts a
-// monotone rational quadratic through the same knots instead. Both lose the partition of unity on edges that are not
-// aligned with the grid: they are here to compare with, `edge` is the default.
+// inverse of a monotone profile p. As p' vanishes at t1 and t2, map rises with infinite slope at m1 and m2. `Smooth`
+// puts a monotone rational quadratic through the same knots instead. Both lose the partition of unity on edges that are
+// not aligned with the grid: they are here to compare with, `edge` is the default.
 #pragma once
 
 namespace edgesplat {

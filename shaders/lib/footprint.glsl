@@ -1,14 +1,309 @@
 // Footprints of plain and warped kernels: the float32 mirror of footprints/ (same names, same equations).
 //
-// Include after shared/footprint_params.h. Declares no bindings: the table comes in as a sampler, the rest as FootprintParams.
-// A ray is (rho2, pn, un): p its point nearest to the voxel centre relative to it, u its unit direction, n the unit edge normal,
-// all in index space; rho2 = dot(p, p), pn = dot(p, n), un = dot(u, n). D, D2: distances to the edge along n and to a wall's
-// second face along -n, voxels. Results are integrals of K per unit length of the ray in voxels.
+// Declares no bindings: the table comes in as a sampler, the rest as FootprintParams. A ray is (rho2, pn, un): p its point
+// nearest to the voxel centre, relative to it, u its unit direction, n the unit edge normal, all in index space; rho2 = dot(p, p),
+// pn = dot(p, n), un = dot(u, n). D, D2: distances to the edge along n and to a wall's second face along -n, voxels. Results are
+// integrals of K per voxel length of the ray. Every input is safe: no NaN for un = 0 or 1, rho2 = 0, pn beyond rho.
 //
-//   footprint_isotropic(rho2)                               any splat without an edge
+//   footprint_isotropic(rho2)                               a splat without an edge
 //   footprint_warp2d(rho2, pn, un, D, params)               --footprints warp2d
 //   footprint_table_nearest(table, rho2, pn, un, D, params) --footprints table
 //   footprint_table_lerp(table, rho2, pn, un, D, params)    --footprints table-lerp
-//   footprint_procedural(rho2, pn, un, D, D2, params)       --footprints procedural, and walls in the table modes
-//   footprint_paper_warp2d(rho2, pn, un, D, params)         --warp paper, warp2d
-//   footprint_paper_procedural(rho2, pn, un, D, params)     --warp paper, every other mode
+//   footprint_procedural(rho2, pn, un, D, D2, faces, params)  --footprints procedural, and walls in the table modes
+//   footprint_paper_warp2d(rho2, pn, un, D, params)         --warp paper with warp2d
+//   footprint_paper_procedural(rho2, pn, un, D, params)     --warp paper with any other mode
+//
+// `faces` comes from footprint_faces(): with 0 the quadrature's loop does not run and the plain footprint is what is left. On
+// lavapipe a loop that does not run is the only way not to pay: both sides of an `if` are executed.
+//
+// Written in the subset of GLSL that is C++ too (tests/unit/footprints_shader_test.cpp runs it): scalars, no swizzles.
+#ifndef EDGESPLAT_FOOTPRINT_GLSL
+#define EDGESPLAT_FOOTPRINT_GLSL
+#include "shaders/shared/footprint_params.h"
+
+const float KERNEL_R = 1.6;
+const float KERNEL_R2 = 2.56;
+const int FOOTPRINT_NODES = 8;
+// Gauss-Legendre on [0, 1].
+const float FOOTPRINT_NODE[8] = {0.0198550718, 0.1016667613, 0.2372337950, 0.4082826788,
+                                  0.5917173212, 0.7627662050, 0.8983332387, 0.9801449282};
+const float FOOTPRINT_WEIGHT[8] = {0.0506142681, 0.1111905172, 0.1568533229, 0.1813418917,
+                                  0.1813418917, 0.1568533229, 0.1111905172, 0.0506142681};
+
+// ---- kernel (footprints/kernel.h)
+
+float kernel(float r2) {
+    float w = max(0.0, 1.0 - r2 / KERNEL_R2);
+    return w * w * (0.0173624837 + w * (-0.0404017909 + w * (0.531403221 + w * (-0.680940898 +
+           w * (1.37803587 + w * -0.611612954)))));
+}
+
+float kernel_footprint(float rho2) {
+    float w = max(0.0, 1.0 - rho2 / KERNEL_R2);
+    return w * w * sqrt(w) * (0.0296319722 + w * (-0.0591020484 + w * (0.690992887 + w * (-0.804944854 +
+           w * (1.50367897 + w * -0.622885261)))));
+}
+
+// Integral of K along the line from its nearest point to z; kernel_chord in kernel.cpp has the recurrence.
+float kernel_chord(float rho2, float z) {
+    float w = max(0.0, 1.0 - rho2 / KERNEL_R2);
+    float half_chord = KERNEL_R * sqrt(w);
+    float s = clamp(z / max(half_chord, 1e-6), -1.0, 1.0);
+    float c = 1.0 - s * s;
+    float i1 = s * (1.0 - s * s / 3.0);
+    float c2 = c * c;
+    float i2 = (s * c2 + 4.0 * i1) / 5.0;
+    float i3 = (s * c2 * c + 6.0 * i2) / 7.0;
+    float i4 = (s * c2 * c2 + 8.0 * i3) / 9.0;
+    float i5 = (s * c2 * c2 * c + 10.0 * i4) / 11.0;
+    float i6 = (s * c2 * c2 * c2 + 12.0 * i5) / 13.0;
+    float i7 = (s * c2 * c2 * c2 * c + 14.0 * i6) / 15.0;
+    return half_chord * w * w * (0.0173624837 * i2 + w * (-0.0404017909 * i3 + w * (0.531403221 * i4 +
+           w * (-0.680940898 * i5 + w * (1.37803587 * i6 + w * -0.611612954 * i7)))));
+}
+
+float footprint_isotropic(float rho2) { return kernel_footprint(rho2); }
+
+// Footprint of the point nearest to the voxel, moved by delta along n as far as the ray sees it.
+float displaced_footprint(float rho2, float pn, float un, float delta) {
+    return kernel_footprint(max(0.0, rho2 + delta * (2.0 * pn + (1.0 - un * un) * delta)));
+}
+
+// ---- edge warp (footprints/edge_warp.h, design (7))
+
+float edge_warp(float s, float a, float k) {
+    float v = min(abs(s) / a, 1.0);
+    float b = v * (1.0 - v);
+    return sign(s) * (a * (v * v + k * b) / (1.0 + (k - 1.0) * b) + max(abs(s) - a, 0.0));
+}
+
+float edge_warp_inverse(float w, float a, float k) {
+    float y = min(abs(w) / a, 1.0);
+    float b = (k - 1.0) * (1.0 - y);
+    float v = 2.0 * y / (1.0 + b + sqrt((1.0 - b) * (1.0 - b) + 4.0 * b * (1.0 - y)));
+    return sign(w) * (a * v + max(abs(w) - a, 0.0));
+}
+
+// Faces to integrate: 2 for a wall, 1 for a single edge, 0 where the kernel stays plain (out of reach, or a wall under a voxel).
+int footprint_faces(float D, float D2, FootprintParams params) {
+    float reach = KERNEL_R + params.half_width;
+    int faces = D2 < reach ? (D + D2 > 1.0 ? 2 : 0) : 1;
+    return abs(D) < reach ? faces : 0;
+}
+
+// ---- quadrature along the ray (footprints/procedural_footprint.cpp)
+
+// What the ray does near the voxel: z = along the ray from p, t = normal coordinate, turned so that t grows with z.
+struct Chord {
+    float rho2;
+    float pn;
+    float un;
+    float low;   // z within R of the axis through the voxel along n; W never leaves that cylinder
+    float high;
+};
+
+Chord chord_of(float rho2, float pn, float un) {
+    Chord c;
+    c.rho2 = rho2;
+    c.pn = pn;
+    c.un = clamp(abs(un), 1e-4, 1.0);
+    float s2 = max(1.0 - c.un * c.un, 1e-5);
+    float y2 = max(0.0, rho2 - pn * pn / s2);
+    float half_length = sqrt(max(0.0, KERNEL_R2 - y2) / s2);
+    c.low = pn * c.un / s2 - half_length;
+    c.high = pn * c.un / s2 + half_length;
+    return c;
+}
+
+float chord_plain(Chord c, float first, float last) {
+    return kernel_chord(c.rho2, (last - c.pn) / c.un) - kernel_chord(c.rho2, (first - c.pn) / c.un);
+}
+
+// The warped kernel over the ray's part with t in [first, last], on one side of the face at `face`.
+float edge_piece(Chord c, float first, float last, float face, float a, float k) {
+    float start = max((first - c.pn) / c.un, c.low);
+    float len = max(0.0, min((last - c.pn) / c.un, c.high) - start);
+    float sum = 0.0;
+    for (int i = 0; i < FOOTPRINT_NODES; ++i) {
+        float z = start + len * FOOTPRINT_NODE[i];
+        float t = c.pn + z * c.un;
+        float w = face + edge_warp(t - face, a, k);
+        sum += FOOTPRINT_WEIGHT[i] * kernel(c.rho2 + z * z + (w - t) * (w + t));
+    }
+    return len * sum;
+}
+
+float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, FootprintParams params) {
+    float thickness = D + D2;
+    float a = faces == 2 ? clamp(0.5 * thickness, 1e-3, params.half_width) : params.half_width;
+    float k = faces == 2 ? 1.0 + (params.strength - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : params.strength;
+    Chord c = chord_of(rho2, pn, un);
+    float sum = kernel_footprint(rho2);
+    float face = D;
+    for (int i = 0; i < faces; ++i) {
+        // w in [-R, R] is all the kernel there is.
+        float first = max(face - a, face + edge_warp_inverse(-KERNEL_R - face, a, k));
+        float last = min(face + a, face + edge_warp_inverse(KERNEL_R - face, a, k));
+        sum += edge_piece(c, first, face, face, a, k) + edge_piece(c, face, last, face, a, k) -
+               chord_plain(c, face - a, face + a);
+        face = -D2;
+    }
+    return max(sum, 0.0);
+}
+
+// ---- the paper's short cut
+
+float footprint_warp2d(float rho2, float pn, float un, float D, FootprintParams params) {
+    float s = pn - D;
+    return displaced_footprint(rho2, pn, un, edge_warp(s, params.half_width, params.strength) - s);
+}
+
+// ---- table (footprints/table_coordinates.h, footprint_table.h)
+
+struct TablePoint {
+    float distance;   // in layers
+    float direction;  // in layers
+    float sine;
+    float X;
+    float y;
+    float base;       // base footprint
+};
+
+TablePoint table_point(float rho2, float pn, float un, float D, FootprintParams params) {
+    TablePoint p;
+    float a = params.half_width;
+    float d = min(abs(D), KERNEL_R + a);
+    float m = D < 0.0 ? -pn : pn;  // the mirror image serves D < 0
+    float c = min(abs(un), 1.0);
+    p.sine = sqrt(1.0 - c * c);
+    float v = min(1.0, c * 0.4 / a);
+    float strength = (v + params.strength * (1.0 - v)) / (1.0 + (params.strength - 1.0) * v * (1.0 - v));
+    float delta = edge_warp(m - d, a, strength) - (m - d);
+    float rho = sqrt(rho2);
+    float x = clamp(m / max(p.sine, 1e-3), -rho, rho);
+    p.X = x + p.sine * delta;
+    p.y = sqrt(max(0.0, rho2 - x * x));
+    p.base = displaced_footprint(rho2, m, c, delta);
+    p.distance = d / (KERNEL_R + a) * (params.table_distances - 1.0);
+    p.direction = 1.4 * c / (c + 0.4 * (1.0 + p.sine)) * (params.table_directions - 1.0);
+    return p;
+}
+
+float table_texel(sampler2DArray table, float distance, float direction, float X, float y, FootprintParams params) {
+    float u = 0.5 + clamp((X / params.table_extent + 1.0) * 0.5, 0.0, 1.0) * (params.table_width - 1.0);
+    float v = 0.5 + clamp(y / KERNEL_R, 0.0, 1.0) * (params.table_height - 1.0);
+    float layer = distance * params.table_directions + direction;
+    return textureLod(table, vec3(u / params.table_width, v / params.table_height, layer), 0.0).r;
+}
+
+float footprint_table_nearest(sampler2DArray table, float rho2, float pn, float un, float D, FootprintParams params) {
+    TablePoint p = table_point(rho2, pn, un, D, params);
+    float i = floor(p.distance + 0.5);
+    float j = floor(p.direction + 0.5);
+    float shift = (i - p.distance) * (KERNEL_R + params.half_width) / (params.table_distances - 1.0) * p.sine;
+    return max(0.0, p.base + table_texel(table, i, j, p.X + shift, p.y, params));
+}
+
+float footprint_table_lerp(sampler2DArray table, float rho2, float pn, float un, float D, FootprintParams params) {
+    TablePoint p = table_point(rho2, pn, un, D, params);
+    float i = min(floor(p.distance), params.table_distances - 2.0);
+    float j = min(floor(p.direction), params.table_directions - 2.0);
+    float fd = p.distance - i;
+    float fc = p.direction - j;
+    // Along n by the layer's offset in d: the edge stands still between layers.
+    float spacing = (KERNEL_R + params.half_width) / (params.table_distances - 1.0) * p.sine;
+    float X0 = p.X - fd * spacing;
+    float X1 = X0 + spacing;
+    float near = (1.0 - fc) * table_texel(table, i, j, X0, p.y, params) +
+                 fc * table_texel(table, i, j + 1.0, X0, p.y, params);
+    float far = (1.0 - fc) * table_texel(table, i + 1.0, j, X1, p.y, params) +
+                fc * table_texel(table, i + 1.0, j + 1.0, X1, p.y, params);
+    return max(0.0, p.base + (1.0 - fd) * near + fd * far);
+}
+
+// ---- the paper's warp (footprints/paper_warp.h, design (3)-(5))
+
+struct PaperKnots {
+    float start;  // first t of the warped unit interval
+    float t1;
+    float t2;
+    float m1;
+    float m2;
+};
+
+PaperKnots paper_knots(float D, FootprintParams params) {
+    PaperKnots q;
+    q.start = D < 1.0 ? 0.0 : 1.0;
+    q.t1 = 0.5 - params.paper_inset;
+    q.t2 = 0.5 + params.paper_inset;
+    float position = clamp(D - q.start, q.t1 / 3.0 + params.paper_rise, (2.0 + q.t2) / 3.0 - params.paper_rise);
+    q.m1 = position - params.paper_rise;
+    q.m2 = position + params.paper_rise;
+    return q;
+}
+
+// x/t of an end piece, p(x) = m - e for e in [0, m]: e = q^2 (A + B q) with q = 1 - x/t, solved by Newton's method on its square
+// root, which is nearly straight.
+float paper_end(float e, float t, float m) {
+    float A = max(3.0 * m - t, 0.0);
+    float B = t - 2.0 * m;
+    float root = sqrt(max(e, 0.0));
+    float q = root / sqrt(m);
+    for (int i = 0; i < 4; ++i) {
+        float g = sqrt(max(A + B * q, 1e-8));
+        q = clamp(q - (q * g - root) / (g + 0.5 * B * q / g), 0.0, 1.0);
+    }
+    return 1.0 - q;
+}
+
+float rational_quadratic(float x, float x0, float x1, float y0, float y1, float s0, float s1) {
+    float e = (y1 - y0) / (x1 - x0);
+    float u = (x - x0) / (x1 - x0);
+    float v = u * (1.0 - u);
+    return y0 + (y1 - y0) * (e * u * u + s0 * v) / (e + (s0 + s1 - 2.0 * e) * v);
+}
+
+float paper_map(float x, PaperKnots q, uint smooth_curve) {
+    float inside = clamp(x, 0.0, 1.0);
+    float first = q.t1 * paper_end(q.m1 - inside, q.t1, q.m1);
+    float last = 1.0 - (1.0 - q.t2) * paper_end(inside - q.m2, 1.0 - q.t2, 1.0 - q.m2);
+    float middle = q.t1 + (q.t2 - q.t1) / 3.14159265 * acos(clamp(1.0 - 2.0 * (inside - q.m1) / (q.m2 - q.m1), -1.0, 1.0));
+    float slope = (q.t2 - q.t1) / (q.m2 - q.m1);
+    bool smoothed = smooth_curve != 0u;
+    first = smoothed ? rational_quadratic(inside, 0.0, q.m1, 0.0, q.t1, 1.0, slope) : first;
+    middle = smoothed ? q.t1 + slope * (inside - q.m1) : middle;
+    last = smoothed ? rational_quadratic(inside, q.m2, 1.0, q.t2, 1.0, slope, 1.0) : last;
+    float w = inside < q.m1 ? first : (inside < q.m2 ? middle : last);
+    return w + (x - inside);
+}
+
+float footprint_paper_procedural(float rho2, float pn, float un, float D, FootprintParams params) {
+    PaperKnots q = paper_knots(D, params);
+    Chord c = chord_of(rho2, pn, un);
+    float sum = kernel_footprint(rho2);
+    int pieces = D < KERNEL_R ? 3 : 0;
+    sum -= D < KERNEL_R ? chord_plain(c, q.start, q.start + 1.0) : 0.0;
+    for (int i = 0; i < pieces; ++i) {
+        float first = q.start + (i == 0 ? 0.0 : (i == 1 ? q.m1 : q.m2));
+        float last = q.start + (i == 0 ? q.m1 : (i == 1 ? q.m2 : 1.0));
+        float start = max((first - c.pn) / c.un, c.low);
+        float len = max(0.0, min((last - c.pn) / c.un, c.high) - start);
+        float part = 0.0;
+        for (int j = 0; j < FOOTPRINT_NODES; ++j) {
+            float z = start + len * FOOTPRINT_NODE[j];
+            float t = c.pn + z * c.un;
+            float w = q.start + paper_map(t - q.start, q, params.paper_smooth);
+            part += FOOTPRINT_WEIGHT[j] * kernel(c.rho2 + z * z + (w - t) * (w + t));
+        }
+        sum += len * part;
+    }
+    return max(sum, 0.0);
+}
+
+float footprint_paper_warp2d(float rho2, float pn, float un, float D, FootprintParams params) {
+    PaperKnots q = paper_knots(D, params);
+    float w = q.start + paper_map(pn - q.start, q, params.paper_smooth);
+    return displaced_footprint(rho2, pn, un, D < KERNEL_R ? w - pn : 0.0);
+}
+
+#endif

@@ -1,0 +1,134 @@
+#include "footprints/edge_warp.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+namespace {
+
+// The rational quadratic on [0, 1] with end slopes k and 1.
+double rational(double v, double k) {
+    return (v * v + k * v * (1 - v)) / (1 + (k - 1) * v * (1 - v));
+}
+
+double rational_slope(double v, double k) {
+    const double u = 1 - v, d = 1 + (k - 1) * v * u;
+    return (k * u * u + 2 * v * u + v * v) / (d * d);
+}
+
+double stretched(double s, double a, double k) {
+    const double v = std::abs(s) / a;
+    return v < 1 ? std::copysign(a * rational(v, k), s) : s;
+}
+
+double stretched_slope(double s, double a, double k) {
+    const double v = std::abs(s) / a;
+    return v < 1 ? rational_slope(v, k) : 1;
+}
+
+}  // namespace
+
+double edge_warp(double s, const EdgeBand& band) {
+    return stretched(s, band.half_width, band.strength);
+}
+double edge_warp_slope(double s, const EdgeBand& band) {
+    return stretched_slope(s, band.half_width, band.strength);
+}
+
+// y (1 + (k-1) v (1-v)) = v^2 + k v (1-v), collected: A v^2 - (A+1) v + y = 0 with A = (k-1)(1-y). The root in [0, 1]
+// is written so that nothing cancels; the discriminant is (1-A)^2 + 4A(1-y) >= 0.
+double edge_warp_inverse(double w, const EdgeBand& band) {
+    const double a = band.half_width, k = band.strength;
+    const double y = std::abs(w) / a;
+    if (!(y < 1)) return w;
+    const double A = (k - 1) * (1 - y);
+    const double v = 2 * y / (1 + A + std::sqrt((1 - A) * (1 - A) + 4 * A * (1 - y)));
+    return std::copysign(a * v, w);
+}
+
+double edge_warp_inverse_slope(double w, const EdgeBand& band) {
+    return 1 / edge_warp_slope(edge_warp_inverse(w, band), band);
+}
+
+Edge wall_edge(double distance, double second_distance, const EdgeBand& band) {
+    const double thickness = distance + second_distance;
+    if (!(second_distance < kKernelRadius + band.half_width)) return {distance, band};
+    const double fade = std::clamp((thickness - 1) / 0.25, 0.0, 1.0);
+    // A wall under one voxel is splatted plainly (k = 1); its band only has to stay positive.
+    const double half_width = std::clamp(thickness / 2, 1e-3, band.half_width);
+    return {distance, {half_width, 1 + (band.strength - 1) * fade}, second_distance};
+}
+
+double warped_coordinate(double t, const Edge& edge) {
+    const double s = t - edge.distance;
+    double w = t + (edge_warp(s, edge.band) - s);
+    if (std::isfinite(edge.second_distance)) {
+        const double s2 = t + edge.second_distance;
+        w += edge_warp(s2, edge.band) - s2;
+    }
+    return w;
+}
+
+double unwarped_coordinate(double w, const Edge& edge) {
+    // Each face maps its own band onto itself, so w tells which face it belongs to.
+    const double s = w - edge.distance;
+    double t = w + (edge_warp_inverse(s, edge.band) - s);
+    if (std::isfinite(edge.second_distance)) {
+        const double s2 = w + edge.second_distance;
+        t += edge_warp_inverse(s2, edge.band) - s2;
+    }
+    return t;
+}
+
+Support warped_support(const Edge& edge) {
+    // The kernel's ball is the disc |e|^2 = R^2 - w^2 across n at every w in [-R, R]; the warp only moves the disc to
+    // t(w).
+    constexpr int kSteps = 512;
+    const double R = kKernelRadius;
+    std::vector<double> t, disc2;
+    for (int i = 0; i <= kSteps; ++i) {
+        const double w = R * (2.0 * i / kSteps - 1);
+        t.push_back(unwarped_coordinate(w, edge));
+        disc2.push_back(R * R - w * w);
+    }
+    const auto radius_about = [&](double shift) {
+        double r2 = 0;
+        for (std::size_t i = 0; i < t.size(); ++i)
+            r2 = std::max(r2, (t[i] - shift) * (t[i] - shift) + disc2[i]);
+        return std::sqrt(r2);
+    };
+    // A maximum of parabolas is convex: narrow the interval by thirds.
+    double low = -R - edge.band.half_width, high = -low;
+    for (int i = 0; i < 80; ++i) {
+        const double third = (high - low) / 3;
+        if (radius_about(low + third) < radius_about(high - third))
+            high -= third;
+        else
+            low += third;
+    }
+    const double shift = (low + high) / 2;
+    // The discs between two samples are covered by this margin: t(w) moves at most about 4 voxels per voxel.
+    const double margin = 1e-4;
+    return {shift, radius_about(shift) + margin, radius_about(0) + margin};
+}
+
+std::vector<Support> warped_support_table(const EdgeBand& band, int entries) {
+    if (entries < 2) throw std::invalid_argument("warped_support_table: entries must be at least 2");
+    const double reach = kKernelRadius + band.half_width;
+    std::vector<Support> table;
+    for (int i = 0; i < entries; ++i)
+        table.push_back(warped_support({reach * (2.0 * i / (entries - 1) - 1), band}));
+    return table;
+}
+
+double largest_support_radius(const EdgeBand& band) {
+    double radius = kKernelRadius;
+    for (const Support& support : warped_support_table(band, 129))
+        radius = std::max(radius, support.radius_about_voxel);
+    return radius + 1e-3;  // between two entries
+}
+
+}  // namespace edgesplat
