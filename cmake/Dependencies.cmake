@@ -12,8 +12,9 @@ find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
 # Components by name: without them ITK loads every module it was built with.
-find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
+set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
     ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)
+find_package(ITK REQUIRED COMPONENTS ${EDGESPLAT_ITK_COMPONENTS})
 # ITK's own use file registers factories per directory; what it sets is kept in one interface target.
 add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
