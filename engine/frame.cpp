@@ -1,0 +1,123 @@
+#include "engine/frame.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/error.h"
+#include "engine/passes/1_estimate_edges.h"
+#include "engine/passes/2_collect_splats.h"
+#include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/5_draw_splats.h"
+#include "engine/passes/6_composite_sheet.h"
+#include "engine/passes/7_resolve.h"
+
+namespace edgesplat {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+/// Runs of voxels to counts to offsets; notes the rows that hold splats. Returns the number of splats.
+std::uint64_t scan_runs(const glm::ivec3& dims, VolumeResources& resources) {
+    const auto runs = resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(dims));
+    const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
+    const std::uint64_t voxels = nx * ny * static_cast<std::uint64_t>(dims.z);
+    glm::ivec3 low = dims, high(-1);
+    std::uint64_t total = 0;
+    for (std::uint64_t i = 0; i < runs.size(); ++i) {
+        const std::uint32_t count = runs[i];
+        runs[i] = static_cast<std::uint32_t>(total);
+        total += count;
+        if (count == 0) continue;
+        const std::uint64_t first = i * shader::COLLECT_RUN, last = std::min(first + shader::COLLECT_RUN, voxels) - 1;
+        const glm::ivec3 a(0, first / nx % ny, first / nx / ny), b(dims.x - 1, last / nx % ny, last / nx / ny);
+        // A run that spans slices spans every row between them.
+        const bool wraps = a.z != b.z;
+        low = glm::min(low, glm::ivec3(0, wraps ? 0 : a.y, a.z));
+        high = glm::max(high, glm::ivec3(b.x, wraps ? dims.y - 1 : b.y, b.z));
+    }
+    resources.box_low = total == 0 ? glm::ivec3(0) : low;
+    resources.box_high = total == 0 ? dims - 1 : high;
+    return total;
+}
+
+}  // namespace
+
+std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                    const CollectionPlan& plan, VolumeResources& resources) {
+    const auto volume_image = [&](vk::Format format, const char* name) {
+        return gpu::GpuImage(device, {.format = format, .size = plan.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc}, name);
+    };
+    resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
+    resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
+    resources.splats = {};
+    const auto runs = passes::collect_runs(plan.dims);
+    resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), gpu::Buffer::Place::Host, "scene parameters");
+    resources.run_offsets = gpu::Buffer(device, runs * sizeof(std::uint32_t), gpu::Buffer::Place::Host, "run offsets");
+    bindings.write(resources, {}, {});
+
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
+    params = plan.params;
+    params.run_offsets = resources.run_offsets.address();
+    const auto scene = resources.scene.address();
+    const passes::CollectSplats collect{scene, plan.dims, plan.edge_field, plan.buried};
+
+    commands.run([&] {
+        if (plan.edge_field) {
+            commands.prepare({&resources.edges});
+            commands.begin_span("1_estimate_edges");
+            passes::estimate_edges(commands, scene, plan.dims, plan.estimator);
+            commands.end_span();
+        }
+        commands.begin_span("2_collect_splats");
+        if (plan.buried) {
+            commands.prepare({&resources.buried});
+            passes::mark_buried(commands, scene, plan.dims);
+        }
+        passes::count_splats(commands, collect);
+        commands.end_span();
+    });
+
+    auto times = commands.span_times();
+
+    resources.splat_count = scan_runs(plan.dims, resources);
+    if (resources.splat_count > std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat)) {
+        fail("{} voxels can be seen at once; the splat list holds {}", resources.splat_count,
+             std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat));
+    }
+    resources.splats = gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
+    params.splats = resources.splats.address();
+    commands.run([&] {
+        commands.begin_span("2_collect_splats");
+        passes::write_splats(commands, collect);
+        commands.end_span();
+    });
+    for (const auto& writing : commands.span_times()) times.back().milliseconds += writing.milliseconds;
+    return times;
+}
+
+void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+    const auto frame = targets.frame.address();
+    const auto timed = [&](const char* name, const auto& pass) {
+        commands.begin_span(name);
+        pass();
+        commands.end_span();
+    };
+    const passes::DrawSplats draw{frame, plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
+
+    commands.run([&] {
+        commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
+        passes::clear_accumulated(commands, targets.accumulated);
+        timed("3_select_footprints", [&] { passes::select_footprints(commands, frame, plan.params.splat_count); });
+        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame); });
+        for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
+            timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
+            timed("6_composite_sheet", [&] {
+                passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group);
+            });
+        }
+        timed("7_resolve", [&] { passes::resolve(commands, frame, plan.params.size, plan.variant.payload); });
+    });
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,169 @@
+#include "engine/frame_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "engine/error.h"
+#include "engine/volume/filters.h"
+#include "footprints/edge_warp.h"
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+namespace {
+
+// An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
+constexpr double kOpaquePerVoxel = 0.75;
+constexpr int kMaxBuryDistance = 10;
+// Memory of the sheet group: more layers mean fewer passes, but measured no gain beyond 16 on lavapipe.
+constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
+constexpr std::uint32_t kMaxSheetsPerGroup = 16;
+constexpr double kMaxSheets = 65536;
+
+/// Millimetres per voxel along the axis of shortest step.
+double shortest_step(const VolumeGeometry& geometry) {
+    const auto spacing = geometry.spacing();
+    return std::min({spacing.x, spacing.y, spacing.z});
+}
+
+bool is_opaque(const Material& material, const VolumeGeometry& geometry) {
+    return material.extinction * shortest_step(geometry) >= kOpaquePerVoxel;
+}
+
+/// Voxels behind a surface of this extinction per voxel where 1/256 of the light is left, beyond the kernel's radius.
+int bury_distance(double extinction_per_voxel) {
+    return static_cast<int>(std::ceil(kKernelRadius + std::log(256.0) / extinction_per_voxel));
+}
+
+glm::vec3 to_float(const glm::dvec3& v) { return {v}; }
+
+}  // namespace
+
+bool CollectionPlan::operator==(const CollectionPlan& other) const {
+    return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field && buried == other.buried &&
+           std::memcmp(&params, &other.params, sizeof params) == 0;
+}
+
+CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
+    CollectionPlan plan;
+    plan.dims = volume.geometry.dims;
+    plan.estimator = settings.footprints == FootprintMode::Isotropic ? EdgeEstimator::Off : settings.edges;
+    plan.edge_field = plan.estimator != EdgeEstimator::Off || scene.light.kind != Light::Kind::None;
+
+    auto& params = plan.params;
+    params.dims = plan.dims;
+    params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
+    std::fill(std::begin(params.iso), std::end(params.iso), 3e38F);
+    for (std::size_t j = 0; j < scene.iso_values.size(); ++j) {
+        params.iso[j] = static_cast<float>(scaled_value(volume, scene.iso_values[j]));
+    }
+    int farthest = 0;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const auto& material = scene.materials[m];
+        if (material.extinction > 0) params.visible_mask |= 1U << m;
+        if (!is_opaque(material, volume.geometry)) continue;
+        params.opaque_mask |= 1U << m;
+        farthest = std::max(farthest, bury_distance(material.extinction * shortest_step(volume.geometry)));
+    }
+    plan.buried = settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= kMaxBuryDistance;
+    params.bury_distance = plan.buried ? farthest : 0;
+    if (!plan.buried) params.opaque_mask = 0;
+    params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
+    return plan;
+}
+
+bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera) {
+    const auto index = glm::round(volume.geometry.to_index(camera.eye));
+    const glm::dvec3 last(volume.geometry.dims - 1);
+    if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last))) return false;
+    const glm::ivec3 voxel(index);
+    const double value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
+    const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
+    return is_opaque(scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())], volume.geometry);
+}
+
+FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
+                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count, const glm::ivec3& box_low,
+                     const glm::ivec3& box_high) {
+    const auto& geometry = volume.geometry;
+    const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
+    const CameraFrame view = camera_frame(camera);
+    const glm::dvec3 down = -view.up;
+    const glm::dvec3 anchor = 0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high));
+    const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
+    const double voxel_along_view = 1.0 / glm::length(to_index * view.forward);
+    const double thickness = settings.sheet_spacing * voxel_along_view;
+
+    FramePlan plan;
+    plan.variant = {settings.footprints, settings.warp, payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None, payload};
+    const bool half = settings.sheet_format == SheetFormat::Half && payload == shader::PAYLOAD_COLOR;
+    plan.sheet_format = half ? vk::Format::eR16G16B16A16Sfloat : vk::Format::eR32G32B32A32Sfloat;
+    if (settings.edges == EdgeEstimator::Off) plan.variant.footprints = FootprintMode::Isotropic;
+
+    auto& p = plan.params;
+    p.anchor = to_float(anchor);
+    p.support = static_cast<float>(kKernelRadius);
+    p.view_x = to_float(glm::transpose(to_world) * view.right);
+    p.view_y = to_float(glm::transpose(to_world) * down);
+    p.view_z = to_float(glm::transpose(to_world) * view.forward);
+    p.anchor_x = static_cast<float>(glm::dot(view.right, anchor_view));
+    p.anchor_y = static_cast<float>(glm::dot(down, anchor_view));
+    p.anchor_z = static_cast<float>(glm::dot(view.forward, anchor_view));
+    p.eye = to_float(to_index * -anchor_view);
+    p.tan_half_x = static_cast<float>(view.tan_half_y * size.x / size.y);
+    p.tan_half_y = static_cast<float>(view.tan_half_y);
+    p.ray_x = to_float(to_index * view.right);
+    p.ray_y = to_float(to_index * down);
+    p.ray_z = to_float(to_index * view.forward);
+    p.sheet_thickness = static_cast<float>(thickness);
+    p.near_depth = static_cast<float>(voxel_along_view);
+    p.index_to_world = glm::mat3(to_world);
+    p.normal_to_world = glm::mat3(glm::transpose(to_index));
+    if (scene.light.kind == Light::Kind::Directional) p.light = to_float(glm::normalize(scene.light.direction));
+    p.ambient = static_cast<float>(scene.light.ambient);
+    p.diffuse = static_cast<float>(scene.light.diffuse);
+    p.background = to_float(scene.background);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        p.materials[m] = glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));
+    }
+
+    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
+    const double reach = kKernelRadius + band.half_width;
+    for (std::uint32_t i = 0; i < shader::SUPPORT_STEPS; ++i) {
+        const auto support = warped_support({.distance = reach * i / (shader::SUPPORT_STEPS - 1), .band = band});
+        p.support_table[i] = {static_cast<float>(support.shift), static_cast<float>(support.radius)};
+    }
+    p.wall_support = static_cast<float>(largest_support_radius(band));
+    p.band = static_cast<float>(reach);
+    p.edge_warped = plan.variant.footprints == FootprintMode::Isotropic ? 0 : 1;
+
+    double nearest = std::numeric_limits<double>::max(), farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::bvec3 high((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+        const glm::dvec3 at = glm::mix(glm::dvec3(box_low), glm::dvec3(box_high), high);
+        const double z = glm::dot(view.forward, geometry.to_world(at) - view.eye);
+        nearest = std::min(nearest, z);
+        farthest = std::max(farthest, z);
+    }
+    const double base = std::floor(std::max(nearest, 0.0) / thickness);
+    const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
+    if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
+        fail("the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; {:.0f} are possible: choose a larger --sheet-spacing",
+             sheets, thickness, base, kMaxSheets);
+    }
+    const std::uint64_t layer_bytes = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * (half ? 8 : 16);
+    p.sheet_base = static_cast<int>(base);
+    p.sheet_count = static_cast<std::uint32_t>(sheets);
+    p.sheets_per_group = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));
+    p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
+    p.dims = geometry.dims;
+    p.splat_count = static_cast<std::uint32_t>(splat_count);
+    p.size = size;
+    // Optical depth is wanted whole.
+    p.saturation = payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 2.0F : static_cast<float>(settings.saturation);
+    return plan;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,41 @@
+// From scene, camera and settings to what must run: the numbers every pass is given.
+#pragma once
+
+#include "engine/passes/5_draw_splats.h"
+#include "engine/renderer.h"
+#include "shaders/shared/frame_params.h"
+
+namespace edgesplat {
+
+/// Passes 1 and 2 for one volume, scene and set of edge settings.
+struct CollectionPlan {
+    glm::ivec3 dims{0};
+    EdgeEstimator estimator = EdgeEstimator::March;
+    bool edge_field = true;  ///< edges are preserved, or a light wants normals
+    bool buried = true;      ///< some material is opaque enough to hide what lies behind it
+    shader::SceneParams params{};  ///< without addresses
+
+    /// Whether the same splats come out of it.
+    bool operator==(const CollectionPlan& other) const;
+};
+
+/// `keep_buried`: nothing may be dropped (optical depth is asked for, or the eye is inside opaque matter).
+CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
+
+/// Whether the voxel nearest to the eye belongs to an opaque material: what is buried from outside is in front of it.
+bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
+
+/// Passes 3 to 7 for one picture.
+struct FramePlan {
+    passes::DrawVariant variant{};
+    vk::Format sheet_format{};
+    shader::FrameParams params{};  ///< without addresses and footprint table
+};
+
+/// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
+/// come from the collection.
+FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
+                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count, const glm::ivec3& box_low,
+                     const glm::ivec3& box_high);
+
+}  // namespace edgesplat

@@ -1,0 +1,98 @@
+#include "engine/frame_resources.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+namespace edgesplat {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+constexpr std::size_t kStagingBytes = std::size_t{64} << 20U;
+
+gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool volume, bool array, vk::ImageUsageFlags usage) {
+    return {device, {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage}, "placeholder"};
+}
+
+}  // namespace
+
+Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : device_(&device) {
+    const std::array sizes{vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, 4),
+                           vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_COUNT - 4)};
+    pool_ = vk::raii::DescriptorPool(device.handle(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
+    const auto layout = pipelines.set_layout();
+    set_ = std::move(vk::raii::DescriptorSets(device.handle(), {*pool_, layout}).front());
+    vk::SamplerCreateInfo sampler;
+    sampler.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
+    nearest_ = vk::raii::Sampler(device.handle(), sampler);
+    sampler.setMinFilter(vk::Filter::eLinear).setMagFilter(vk::Filter::eLinear);
+    linear_ = vk::raii::Sampler(device.handle(), sampler);
+    no_scalar_ = placeholder(device, vk::Format::eR32Sfloat, true, false, Usage::eStorage);
+    no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
+    no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
+    no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
+    no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
+}
+
+void Bindings::prepare(gpu::Commands& commands) const {
+    commands.prepare({&no_scalar_, &no_edges_, &no_mask_, &no_array_, &no_picture_});
+}
+
+void Bindings::write(const VolumeResources& volume, const FootprintResources& footprints,
+                     const TargetResources& targets) const {
+    struct Slot {
+        std::uint32_t binding;
+        const gpu::GpuImage& image;
+        const gpu::GpuImage& otherwise;
+        vk::Sampler sampler;
+    };
+    const std::array slots{Slot{shader::BIND_VOLUME, volume.volume, no_scalar_, {}},
+                           Slot{shader::BIND_COEFFICIENTS, volume.coefficients, no_scalar_, {}},
+                           Slot{shader::BIND_EDGES, volume.edges, no_edges_, {}},
+                           Slot{shader::BIND_BURIED, volume.buried, no_mask_, {}},
+                           Slot{shader::BIND_SHEETS, targets.sheets, no_array_, *nearest_},
+                           Slot{shader::BIND_ACCUMULATED, targets.accumulated, no_picture_, *nearest_},
+                           Slot{shader::BIND_TABLE, footprints.table, no_array_, *linear_}};
+    std::array<vk::DescriptorImageInfo, shader::BIND_COUNT> infos;
+    std::vector<vk::WriteDescriptorSet> writes;
+    for (const Slot& slot : slots) {
+        const auto& image = slot.image ? slot.image : slot.otherwise;
+        auto& info = infos.at(slot.binding);
+        info = {slot.sampler, image.view(), vk::ImageLayout::eGeneral};
+        writes.emplace_back(*set_, slot.binding, 0, slot.sampler ? vk::DescriptorType::eCombinedImageSampler
+                                                                 : vk::DescriptorType::eStorageImage, info);
+    }
+    device_->handle().updateDescriptorSets(writes, nullptr);
+}
+
+void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
+                  std::size_t texel_bytes) {
+    const auto& shape = image.shape();
+    const auto row = static_cast<std::size_t>(shape.size.x) * texel_bytes;
+    const auto slice = row * static_cast<std::size_t>(shape.size.y);
+    const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
+    // A slice may be larger than the staging buffer should be; then it goes up in bands of rows.
+    const std::size_t rows_at_once = std::clamp<std::size_t>(kStagingBytes / row, 1, static_cast<std::size_t>(shape.size.y));
+    const std::size_t slices_at_once = rows_at_once < static_cast<std::size_t>(shape.size.y) ? 1 : std::clamp<std::size_t>(kStagingBytes / slice, 1, slices);
+    const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, "staging buffer");
+    commands.run([&] { commands.prepare({&image}); });
+    for (std::size_t z = 0; z < slices; z += slices_at_once) {
+        const std::size_t depth = std::min(slices_at_once, slices - z);
+        for (std::size_t y = 0; y < static_cast<std::size_t>(shape.size.y); y += rows_at_once) {
+            const std::size_t rows = std::min(rows_at_once, static_cast<std::size_t>(shape.size.y) - y);
+            std::memcpy(staging.mapped<char>(staging.bytes()).data(), static_cast<const char*>(bytes) + z * slice + y * row,
+                        depth * rows * row);
+            const auto layer = static_cast<std::uint32_t>(shape.volume ? 0 : z);
+            const vk::ImageSubresourceLayers layers(image.aspect(), 0, layer, static_cast<std::uint32_t>(shape.volume ? 1 : depth));
+            const vk::BufferImageCopy copy(0, 0, 0, layers, {0, static_cast<int>(y), static_cast<int>(shape.volume ? z : 0)},
+                                           {static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(rows),
+                                            static_cast<std::uint32_t>(shape.volume ? depth : 1)});
+            commands.run([&] {
+                commands.raw().copyBufferToImage(staging.handle(), image.handle(), vk::ImageLayout::eGeneral, copy);
+            });
+        }
+    }
+}
+
+}  // namespace edgesplat

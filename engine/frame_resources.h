@@ -1,0 +1,72 @@
+// Every image and buffer of a frame in one place: shape, format, who writes it, who reads it.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "engine/gpu/buffer.h"
+#include "engine/gpu/commands.h"
+#include "engine/gpu/image.h"
+#include "shaders/shared/bindings.h"
+
+namespace edgesplat {
+
+/// What stands until the volume, the scene's materials or the edge settings change.
+struct VolumeResources {
+    gpu::GpuImage volume;        ///< (z, y, x) r32f, scaled samples; host -> 1, 2
+    gpu::GpuImage coefficients;  ///< (z, y, x) r32f; host -> 1, estimator `cubic` only
+    gpu::GpuImage edges;         ///< (z, y, x) rg32ui; 1 -> 2; absent without edges and light
+    gpu::GpuImage buried;        ///< (z, y, x) r8ui; 2a -> 2b; absent where nothing is buried
+    gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
+    gpu::Buffer run_offsets;     ///< (runs) uint, mapped; 2 <-> host
+    gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
+    std::uint64_t splat_count = 0;
+    glm::ivec3 box_low{0}, box_high{0};  ///< voxels that hold splats: inclusive box, whole rows
+};
+
+/// What stands until the footprint settings change.
+struct FootprintResources {
+    gpu::GpuImage table;  ///< (layers, height, width) r16f; host -> 5, modes `table` and `table-lerp` of family `edge`
+    shader::FootprintParams params{};  ///< host -> 5
+};
+
+/// What stands until the picture's size, the number of sheets or of splats changes.
+struct TargetResources {
+    gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f or rgba16f; 5 -> 6
+    gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
+    gpu::GpuImage accumulated;  ///< (height, width) rgba32f; 6 -> 5a, 7
+    gpu::Buffer sheet_of;       ///< (splat_count) uint; 3 -> 4, 5
+    gpu::Buffer order;          ///< (splat_count) uint; 4 -> 5
+    gpu::Buffer counters;       ///< (sheet_count, SORT_BLOCKS) uint; 4
+    gpu::Buffer groups;         ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
+    gpu::Buffer draws;          ///< (group_count) DrawCommand; 4 -> 5
+    gpu::Buffer drawn;          ///< (1) uint, mapped: splats drawn; 4 -> host
+    gpu::Buffer frame;          ///< FrameParams, mapped; host -> 3..7
+    gpu::Buffer indices;        ///< quad_indices(); host -> 5
+    gpu::Buffer output;         ///< (height, width) vec4, mapped; 7 -> host
+};
+
+/// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image, since
+/// not every driver allows holes.
+class Bindings {
+  public:
+    Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines);
+    vk::DescriptorSet set() const { return *set_; }
+    /// Moves the placeholders into layout GENERAL; once, while recording.
+    void prepare(gpu::Commands& commands) const;
+    void write(const VolumeResources& volume, const FootprintResources& footprints, const TargetResources& targets) const;
+
+  private:
+    const gpu::Device* device_;
+    vk::raii::DescriptorPool pool_ = nullptr;
+    vk::raii::DescriptorSet set_ = nullptr;
+    vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
+    gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_array_, no_picture_;
+};
+
+/// Copies `bytes` from the host into an image, whole layers or slices at a time, through a staging buffer of at most
+/// 64 MiB. `texel_bytes` is the size of one texel.
+void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
+                  std::size_t texel_bytes);
+
+}  // namespace edgesplat

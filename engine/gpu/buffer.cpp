@@ -1,0 +1,47 @@
+#include "engine/gpu/buffer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace edgesplat::gpu {
+
+Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name)
+    : device_(&device), bytes_(std::max<std::size_t>(bytes, 16)) {
+    using Usage = vk::BufferUsageFlagBits;
+    const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
+                       Usage::eIndexBuffer | Usage::eTransferSrc | Usage::eTransferDst;
+    buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, bytes_, usage));
+    using Memory = vk::MemoryPropertyFlagBits;
+    const auto requirements = buffer_.getMemoryRequirements();
+    memory_ = place == Place::Host
+        ? device.allocate(requirements, Memory::eHostCached, Memory::eHostVisible | Memory::eHostCoherent, true, name)
+        : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
+    buffer_.bindMemory(*memory_, 0);
+    if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
+    address_ = device.handle().getBufferAddress({*buffer_});
+    allocated_ = requirements.size;
+    device.count_bytes(static_cast<std::int64_t>(allocated_));
+}
+
+Buffer& Buffer::operator=(Buffer&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    device_ = std::exchange(other.device_, nullptr);
+    memory_ = std::move(other.memory_);
+    buffer_ = std::move(other.buffer_);
+    bytes_ = std::exchange(other.bytes_, 0);
+    allocated_ = std::exchange(other.allocated_, 0);
+    map_ = std::exchange(other.map_, nullptr);
+    address_ = std::exchange(other.address_, 0);
+    return *this;
+}
+
+void Buffer::release() noexcept {
+    if (device_ == nullptr) return;
+    device_->count_bytes(-static_cast<std::int64_t>(allocated_));
+    buffer_ = nullptr;
+    memory_ = nullptr;
+    device_ = nullptr;
+}
+
+}  // namespace edgesplat::gpu

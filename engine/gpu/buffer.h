@@ -1,0 +1,47 @@
+// A buffer with its own memory and a device address. Move-only.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "engine/gpu/device.h"
+#include "shaders/shared/glue.h"
+
+namespace edgesplat::gpu {
+
+class Buffer {
+  public:
+    enum class Place { Device, Host };  ///< Host: mapped, coherent, for what the CPU writes or reads
+
+    Buffer() = default;
+    /// `bytes` > 0 (0 becomes 16, so that an empty list still has an address).
+    Buffer(const Device& device, std::size_t bytes, Place place, const char* name);
+    ~Buffer() { release(); }
+    Buffer(Buffer&& other) noexcept { *this = std::move(other); }
+    Buffer& operator=(Buffer&& other) noexcept;
+    Buffer(const Buffer&) = delete;
+    Buffer& operator=(const Buffer&) = delete;
+
+    vk::Buffer handle() const { return *buffer_; }
+    std::size_t bytes() const { return bytes_; }
+    shader::Address address() const { return address_; }
+    explicit operator bool() const { return device_ != nullptr; }
+
+    /// The mapped memory (Place::Host only) as `count` elements.
+    template <typename T>
+    std::span<T> mapped(std::size_t count) const {
+        return {static_cast<T*>(map_), count};
+    }
+
+  private:
+    void release() noexcept;
+    const Device* device_ = nullptr;
+    vk::raii::DeviceMemory memory_ = nullptr;
+    vk::raii::Buffer buffer_ = nullptr;
+    std::size_t bytes_ = 0, allocated_ = 0;
+    void* map_ = nullptr;
+    std::uint64_t address_ = 0;
+};
+
+}  // namespace edgesplat::gpu

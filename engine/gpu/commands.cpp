@@ -1,0 +1,116 @@
+#include "engine/gpu/commands.h"
+
+#include <algorithm>
+
+#include "engine/error.h"
+
+namespace edgesplat::gpu {
+namespace {
+
+// Two per span; a frame of 10^4 sheets in groups of 8 has 2500 spans.
+constexpr std::uint32_t kMaxTimestamps = 8192;
+constexpr std::uint64_t kTimeout = 600'000'000'000;  // ns; a software device may take minutes for a huge frame
+
+}  // namespace
+
+Groups groups_for(std::uint64_t count, std::uint32_t local) {
+    const std::uint64_t groups = std::max<std::uint64_t>((count + local - 1) / local, 1);
+    const std::uint64_t rows = (groups + 65534) / 65535;
+    return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
+}
+
+Commands::Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet set)
+    : device_(&device), pipelines_(&pipelines), set_(set) {
+    pool_ = vk::raii::CommandPool(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
+    buffer_ = std::move(vk::raii::CommandBuffers(device.handle(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
+    fence_ = vk::raii::Fence(device.handle(), vk::FenceCreateInfo{});
+    if (device.timestamp_period() > 0) {
+        queries_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, kMaxTimestamps});
+    }
+}
+
+void Commands::run(const std::function<void()>& body) {
+    span_names_.clear();
+    buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
+    if (*queries_) buffer_.resetQueryPool(*queries_, 0, kMaxTimestamps);
+    for (const auto point : {vk::PipelineBindPoint::eCompute, vk::PipelineBindPoint::eGraphics}) {
+        buffer_.bindDescriptorSets(point, pipelines_->layout(), 0, set_, nullptr);
+    }
+    body();
+    barrier();
+    buffer_.end();
+    const vk::CommandBufferSubmitInfo command(*buffer_);
+    device_->queue().submit2(vk::SubmitInfo2({}, {}, command), *fence_);
+    const auto waited = device_->handle().waitForFences(*fence_, VK_TRUE, kTimeout);
+    if (waited != vk::Result::eSuccess) fail("the device {} did not finish within 10 minutes", device_->info().name);
+    device_->handle().resetFences(*fence_);
+}
+
+void Commands::dispatch(const char* shader, const Specialization& constants, const shader::FramePush& push, Groups groups) {
+    buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants));
+    buffer_.pushConstants<shader::FramePush>(pipelines_->layout(),
+                                             vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment |
+                                                 vk::ShaderStageFlagBits::eVertex, 0, push);
+    buffer_.dispatch(groups.x, groups.y, groups.z);
+}
+
+void Commands::bind_draw(const DrawState& state, const shader::FramePush& push) {
+    buffer_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state));
+    buffer_.pushConstants<shader::FramePush>(pipelines_->layout(),
+                                             vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment |
+                                                 vk::ShaderStageFlagBits::eVertex, 0, push);
+}
+
+void Commands::barrier() {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    const vk::MemoryBarrier2 memory(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllCommands | Stage::eHost,
+                                    Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead);
+    buffer_.pipelineBarrier2(vk::DependencyInfo({}, memory));
+}
+
+void Commands::prepare(std::initializer_list<const GpuImage*> images) {
+    using Stage = vk::PipelineStageFlagBits2;
+    using Access = vk::AccessFlagBits2;
+    std::vector<vk::ImageMemoryBarrier2> barriers;
+    for (const GpuImage* image : images) {
+        barriers.emplace_back(Stage::eAllCommands, Access::eNone, Stage::eAllCommands,
+                              Access::eMemoryRead | Access::eMemoryWrite, vk::ImageLayout::eUndefined,
+                              vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image->handle(),
+                              vk::ImageSubresourceRange(image->aspect(), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS));
+    }
+    buffer_.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, barriers));
+}
+
+void Commands::write_timestamp() {
+    const auto at = static_cast<std::uint32_t>(span_names_.size());
+    if (*queries_ && at < kMaxTimestamps) buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
+}
+
+void Commands::begin_span(const char* name) {
+    write_timestamp();
+    span_names_.emplace_back(name);
+}
+
+void Commands::end_span() {
+    write_timestamp();
+    span_names_.emplace_back();
+}
+
+std::vector<PassTime> Commands::span_times() const {
+    std::vector<PassTime> times;
+    const auto count = std::min<std::size_t>(span_names_.size(), kMaxTimestamps) / 2 * 2;
+    if (!*queries_ || count == 0) return times;
+    const auto [result, ticks] = queries_.getResults<std::uint64_t>(
+        0, static_cast<std::uint32_t>(count), count * sizeof(std::uint64_t), sizeof(std::uint64_t),
+        vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
+    if (result != vk::Result::eSuccess) return times;
+    for (std::size_t i = 0; i < count; i += 2) {
+        auto found = std::find_if(times.begin(), times.end(), [&](const PassTime& t) { return t.name == span_names_[i]; });
+        if (found == times.end()) found = times.insert(times.end(), PassTime{span_names_[i], 0.0});
+        found->milliseconds += static_cast<double>(ticks[i + 1] - ticks[i]) * device_->timestamp_period() * 1e-6;
+    }
+    return times;
+}
+
+}  // namespace edgesplat::gpu

@@ -1,0 +1,240 @@
+#include "engine/gpu/device.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include "engine/error.h"
+
+namespace edgesplat::gpu {
+namespace {
+
+constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
+
+VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
+                                          VkDebugUtilsMessageTypeFlagsEXT, const VkDebugUtilsMessengerCallbackDataEXT* data,
+                                          void* user) {
+    static_cast<ValidationLog*>(user)->messages++;
+    std::fprintf(stderr, "vulkan %s: %s\n",
+                 (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0 ? "error" : "warning", data->pMessage);
+    return VK_FALSE;
+}
+
+vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
+    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
+    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
+    return {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance | Type::eGeneral, &on_message, log};
+}
+
+using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                    vk::PhysicalDeviceVulkan13Features>;
+
+/// One device feature that the frame cannot do without.
+struct Need {
+    const char* name;
+    const char* reason;
+    vk::Bool32& (*field)(Features&);
+};
+
+const Need kNeeds[] = {
+    {"shaderStorageImageExtendedFormats", "the edge field is an rg32ui image",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceFeatures2>().features.shaderStorageImageExtendedFormats; }},
+    {"bufferDeviceAddress", "splat lists are larger than one storage buffer binding",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress; }},
+    {"scalarBlockLayout", "C++ and shaders share their structs",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout; }},
+    {"shaderOutputLayer", "each sheet is a layer of the target",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer; }},
+    {"synchronization2", "barriers", 
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().synchronization2; }},
+    {"dynamicRendering", "no render pass objects are made",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering; }},
+};
+
+std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& physical) {
+    const auto families = physical.getQueueFamilyProperties();
+    constexpr auto wanted = vk::QueueFlagBits::eGraphics | vk::QueueFlagBits::eCompute;
+    for (std::uint32_t i = 0; i < families.size(); ++i) {
+        if ((families[i].queueFlags & wanted) == wanted) return i;
+    }
+    return std::nullopt;
+}
+
+int rank(vk::PhysicalDeviceType type) {
+    switch (type) {
+        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
+        case vk::PhysicalDeviceType::eCpu: return 3;
+        default: return 4;
+    }
+}
+
+/// Physical devices, best kind first; devices of one kind keep the loader's order.
+std::vector<vk::raii::PhysicalDevice> sorted_devices(const vk::raii::Instance& instance) {
+    auto devices = instance.enumeratePhysicalDevices();
+    std::vector<vk::raii::PhysicalDevice> sorted;
+    for (int r = 0; r <= 4; ++r) {
+        for (auto& device : devices) {
+            if (*device && rank(device.getProperties().deviceType) == r) sorted.push_back(device);
+        }
+    }
+    return sorted;
+}
+
+std::string lower(std::string text) {
+    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return text;
+}
+
+bool matches(const DeviceInfo& info, const std::string& choice) {
+    if (choice.empty()) return true;
+    if (std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
+        return choice == std::to_string(info.index);
+    }
+    return lower(info.name).find(lower(choice)) != std::string::npos ||
+           lower(info.driver).find(lower(choice)) != std::string::npos;
+}
+
+}  // namespace
+
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log) {
+    const vk::ApplicationInfo application("edgesplat", 1, "edgesplat", 1, VK_API_VERSION_1_3);
+    std::vector<const char*> layers, extensions;
+    if (validation) {
+        const auto present = context.enumerateInstanceLayerProperties();
+        if (std::none_of(present.begin(), present.end(), [](const vk::LayerProperties& layer) {
+                return std::string(layer.layerName.data()) == kValidationLayer;
+            })) {
+            fail("validation was asked for, but the layer {} is not installed (Debian package: vulkan-validationlayers)",
+                 kValidationLayer);
+        }
+        layers.push_back(kValidationLayer);
+        extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
+    }
+    const auto synchronization = vk::ValidationFeatureEnableEXT::eSynchronizationValidation;
+    vk::ValidationFeaturesEXT features(synchronization);
+    auto messenger = messenger_info(log);
+    features.pNext = &messenger;
+    vk::InstanceCreateInfo info({}, &application, layers, extensions);
+    if (validation) info.pNext = &features;
+    try {
+        return {context, info};
+    } catch (const vk::SystemError& error) {
+        fail("no Vulkan instance could be made ({}); a driver is needed (software driver on Debian: mesa-vulkan-drivers)",
+             error.what());
+    }
+}
+
+DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
+    const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
+    const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
+    const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
+    const std::uint32_t api = properties.apiVersion;
+    DeviceInfo info;
+    info.index = index;
+    info.name = properties.deviceName.data();
+    info.type = vk::to_string(properties.deviceType);
+    info.driver = driver.driverName.data();
+    info.driver_version = driver.driverInfo.data();
+    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api), VK_API_VERSION_PATCH(api));
+
+    if (api < VK_API_VERSION_1_3) {
+        info.rejections.push_back(fmt::format("Vulkan {}, 1.3 is needed", info.api_version));
+        return info;
+    }
+    const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
+                                                vk::PhysicalDeviceVulkan13Features>();
+    Features have = features;
+    for (const Need& need : kNeeds) {
+        if (need.field(have) != VK_TRUE) info.rejections.push_back(fmt::format("no {} ({})", need.name, need.reason));
+    }
+    if (!find_queue_family(physical)) info.rejections.emplace_back("no queue that does graphics and compute");
+    using Flag = vk::FormatFeatureFlagBits;
+    const auto blends = physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).optimalTilingFeatures;
+    if (!(blends & Flag::eColorAttachmentBlend)) info.rejections.emplace_back("no blending to RGBA32F targets (sheets)");
+    return info;
+}
+
+Device::Device(const DeviceChoice& choice) {
+    instance_ = create_instance(context_, choice.validation, log_.get());
+    if (choice.validation) messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger_info(log_.get()));
+
+    std::string seen;
+    int index = 0;
+    for (auto& candidate : sorted_devices(instance_)) {
+        DeviceInfo info = describe(candidate, index++);
+        std::string verdict = info.rejections.empty() ? "usable" : "rejected:";
+        for (const auto& rejection : info.rejections) verdict += " " + rejection + ";";
+        seen += fmt::format("\n  {}: {} ({}): {}", info.index, info.name, info.driver, verdict);
+        if (!*physical_ && info.rejections.empty() && matches(info, choice.device)) {
+            physical_ = std::move(candidate);
+            info_ = std::move(info);
+        }
+    }
+    if (!*physical_) {
+        if (seen.empty()) fail("no Vulkan device found; a driver is needed (software driver on Debian: mesa-vulkan-drivers)");
+        fail("no usable Vulkan device{}:{}", choice.device.empty() ? "" : " matches --device " + choice.device, seen);
+    }
+
+    software_ = physical_.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
+    queue_family_ = *find_queue_family(physical_);
+    const bool timestamps = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits > 0;
+    timestamp_period_ = timestamps ? static_cast<double>(physical_.getProperties().limits.timestampPeriod) : 0.0;
+
+    Features enabled;
+    for (const Need& need : kNeeds) need.field(enabled) = VK_TRUE;
+    const float priority = 1.0F;
+    const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
+    vk::DeviceCreateInfo device_info({}, queue_info);
+    device_info.pNext = &enabled.get<vk::PhysicalDeviceFeatures2>();
+    device_ = vk::raii::Device(physical_, device_info);
+    queue_ = device_.getQueue(queue_family_, 0);
+    memory_ = physical_.getMemoryProperties();
+}
+
+vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags wanted,
+                                        vk::MemoryPropertyFlags needed, bool device_address, const char* name) const {
+    std::optional<std::uint32_t> type;
+    for (const auto flags : {wanted | needed, needed}) {
+        for (std::uint32_t i = 0; i < memory_.memoryTypeCount && !type; ++i) {
+            const bool allowed = (requirements.memoryTypeBits >> i & 1U) != 0;
+            if (allowed && (memory_.memoryTypes[i].propertyFlags & flags) == flags) type = i;
+        }
+    }
+    if (!type) fail("{}: the device {} has no memory of the kind it needs", name, info_.name);
+    const auto limits = physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
+    const auto most = limits.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
+    if (requirements.size > most) {
+        fail("{} needs {} MiB of device memory in one piece; {} allows {} MiB", name, requirements.size >> 20U, info_.name,
+             most >> 20U);
+    }
+    const vk::MemoryAllocateFlagsInfo address(vk::MemoryAllocateFlagBits::eDeviceAddress);
+    vk::MemoryAllocateInfo info(requirements.size, *type);
+    if (device_address) info.pNext = &address;
+    try {
+        return {device_, info};
+    } catch (const vk::OutOfDeviceMemoryError&) {
+        fail("{} needs {} MiB of device memory; {} has no more ({} MiB are in use here)", name, requirements.size >> 20U,
+             info_.name, allocated_bytes() >> 20U);
+    } catch (const vk::OutOfHostMemoryError&) {
+        fail("{} needs {} MiB of memory; this machine has no more ({} MiB are in use here)", name, requirements.size >> 20U,
+             allocated_bytes() >> 20U);
+    }
+}
+
+}  // namespace edgesplat::gpu
+
+namespace edgesplat {
+
+std::vector<DeviceInfo> list_devices() {
+    std::vector<DeviceInfo> infos;
+    const vk::raii::Context context;
+    const auto instance = gpu::create_instance(context, false, nullptr);
+    for (const auto& device : gpu::sorted_devices(instance)) infos.push_back(gpu::describe(device, static_cast<int>(infos.size())));
+    return infos;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,61 @@
+#include "engine/gpu/image.h"
+
+#include <utility>
+
+#include "engine/error.h"
+
+namespace edgesplat::gpu {
+
+GpuImage::GpuImage(const Device& device, const ImageShape& shape, const char* name) : shape_(shape) {
+    const auto limits = device.physical().getProperties().limits;
+    const auto longest = static_cast<std::uint32_t>(glm::max(shape.size.x, glm::max(shape.size.y, shape.size.z)));
+    const std::uint32_t most = shape.volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
+    if (longest > most) fail("{}: {} texels along one axis; {} allows {}", name, longest, device.info().name, most);
+    if (static_cast<std::uint32_t>(shape.layers) > limits.maxImageArrayLayers) {
+        fail("{}: {} layers; {} allows {}", name, shape.layers, device.info().name, limits.maxImageArrayLayers);
+    }
+    const vk::Extent3D extent(static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(shape.size.y),
+                              static_cast<std::uint32_t>(shape.size.z));
+    const auto layers = static_cast<std::uint32_t>(shape.layers);
+    image_ = vk::raii::Image(device.handle(),
+                             vk::ImageCreateInfo({}, shape.volume ? vk::ImageType::e3D : vk::ImageType::e2D, shape.format,
+                                                 extent, 1, layers, vk::SampleCountFlagBits::e1,
+                                                 vk::ImageTiling::eOptimal, shape.usage));
+    const auto requirements = image_.getMemoryRequirements();
+    memory_ = device.allocate(requirements, vk::MemoryPropertyFlagBits::eDeviceLocal, {}, false, name);
+    image_.bindMemory(*memory_, 0);
+    const auto view_type = shape.volume ? vk::ImageViewType::e3D
+                           : shape.array ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D;
+    view_ = vk::raii::ImageView(device.handle(), vk::ImageViewCreateInfo({}, *image_, view_type, shape.format, {},
+                                                                         {aspect(), 0, 1, 0, layers}));
+    allocated_ = requirements.size;
+    device.count_bytes(static_cast<std::int64_t>(allocated_));
+    device_ = &device;
+}
+
+GpuImage& GpuImage::operator=(GpuImage&& other) noexcept {
+    if (this == &other) return *this;
+    release();
+    device_ = std::exchange(other.device_, nullptr);
+    memory_ = std::move(other.memory_);
+    image_ = std::move(other.image_);
+    view_ = std::move(other.view_);
+    shape_ = other.shape_;
+    allocated_ = std::exchange(other.allocated_, 0);
+    return *this;
+}
+
+vk::ImageAspectFlags GpuImage::aspect() const {
+    return shape_.format == vk::Format::eD16Unorm ? vk::ImageAspectFlagBits::eDepth : vk::ImageAspectFlagBits::eColor;
+}
+
+void GpuImage::release() noexcept {
+    if (device_ == nullptr) return;
+    device_->count_bytes(-static_cast<std::int64_t>(allocated_));
+    view_ = nullptr;
+    image_ = nullptr;
+    memory_ = nullptr;
+    device_ = nullptr;
+}
+
+}  // namespace edgesplat::gpu

@@ -1,0 +1,116 @@
+#include "engine/gpu/pipelines.h"
+
+#include <fmt/format.h>
+
+#include <array>
+
+#include "engine/gpu/shader.h"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+namespace edgesplat::gpu {
+namespace {
+
+std::string key_of(const char* name, const Specialization& constants) {
+    std::string key = name;
+    for (const auto& [id, value] : constants) key += fmt::format(",{}={}", id, value);
+    return key;
+}
+
+/// Specialization data laid out as pairs in memory; lives as long as the pipeline's creation.
+struct SpecializationData {
+    std::vector<std::uint32_t> values;
+    std::vector<vk::SpecializationMapEntry> entries;
+    vk::SpecializationInfo info;
+
+    explicit SpecializationData(const Specialization& constants) {
+        for (const auto& [id, value] : constants) {
+            entries.emplace_back(id, static_cast<std::uint32_t>(values.size() * sizeof(std::uint32_t)), sizeof(std::uint32_t));
+            values.push_back(value);
+        }
+        info.setMapEntries(entries).setData<std::uint32_t>(values);
+    }
+};
+
+vk::PipelineColorBlendAttachmentState blend_state(DrawState::Blend blend) {
+    using Factor = vk::BlendFactor;
+    using Channel = vk::ColorComponentFlagBits;
+    vk::PipelineColorBlendAttachmentState state;
+    state.colorWriteMask = Channel::eR | Channel::eG | Channel::eB | Channel::eA;
+    if (blend == DrawState::Blend::None) return state;
+    state.blendEnable = VK_TRUE;
+    // Under: what is new lies behind what is there, both premultiplied.
+    const auto source = blend == DrawState::Blend::Add ? Factor::eOne : Factor::eOneMinusDstAlpha;
+    state.setSrcColorBlendFactor(source).setDstColorBlendFactor(Factor::eOne);
+    state.setSrcAlphaBlendFactor(source).setDstAlphaBlendFactor(Factor::eOne);
+    return state;
+}
+
+}  // namespace
+
+Pipelines::Pipelines(const Device& device) : device_(&device) {
+    using Type = vk::DescriptorType;
+    const auto stages = vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment;
+    std::array<vk::DescriptorSetLayoutBinding, shader::BIND_COUNT> bindings;
+    for (std::uint32_t i = 0; i < shader::BIND_COUNT; ++i) {
+        bindings.at(i) = {i, i <= shader::BIND_BURIED ? Type::eStorageImage : Type::eCombinedImageSampler, 1, stages};
+    }
+    set_layout_ = vk::raii::DescriptorSetLayout(device.handle(), {{}, bindings});
+    const vk::PushConstantRange push(stages | vk::ShaderStageFlagBits::eVertex, 0, sizeof(shader::FramePush));
+    layout_ = vk::raii::PipelineLayout(device.handle(), {{}, *set_layout_, push});
+}
+
+vk::raii::ShaderModule Pipelines::load(const char* shader) const {
+    const auto words = find_shader(shader);
+    return {device_->handle(), vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data())};
+}
+
+vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
+    const std::string key = key_of(shader, constants);
+    if (const auto found = made_.find(key); found != made_.end()) return *found->second;
+    const auto module = load(shader);
+    const SpecializationData data(constants);
+    const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
+    return *made_.emplace(key, vk::raii::Pipeline(device_->handle(), nullptr,
+                                                  vk::ComputePipelineCreateInfo({}, stage, *layout_))).first->second;
+}
+
+vk::Pipeline Pipelines::draw(const DrawState& state) {
+    const std::string key = key_of(state.fragment, state.constants) +
+        fmt::format(" {} {} {} {}", state.vertex, vk::to_string(state.color), vk::to_string(state.depth),
+                    static_cast<int>(state.blend));
+    if (const auto found = made_.find(key); found != made_.end()) return *found->second;
+
+    const auto vertex = load(state.vertex), fragment = load(state.fragment);
+    const SpecializationData data(state.constants);
+    const std::array stages{
+        vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main", &data.info),
+        vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main", &data.info)};
+    const vk::PipelineVertexInputStateCreateInfo no_vertices;
+    const auto topology = state.depth_use == DrawState::Depth::TestLess ? vk::PrimitiveTopology::eTriangleList
+                                                                        : vk::PrimitiveTopology::eTriangleStrip;
+    const vk::PipelineInputAssemblyStateCreateInfo assembly({}, topology);
+    vk::PipelineViewportStateCreateInfo viewport;
+    viewport.viewportCount = viewport.scissorCount = 1;
+    vk::PipelineRasterizationStateCreateInfo raster;
+    raster.lineWidth = 1.0F;
+    const vk::PipelineMultisampleStateCreateInfo samples;
+    vk::PipelineDepthStencilStateCreateInfo depth;
+    if (state.depth != vk::Format::eUndefined) {
+        const bool write = state.depth_use == DrawState::Depth::Write;
+        depth.setDepthTestEnable(VK_TRUE).setDepthWriteEnable(write ? VK_TRUE : VK_FALSE);
+        depth.setDepthCompareOp(write ? vk::CompareOp::eAlways : vk::CompareOp::eLess);
+    }
+    const auto attachment = blend_state(state.blend);
+    vk::PipelineColorBlendStateCreateInfo blend;
+    blend.setAttachments(attachment);
+    const std::array dynamics{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
+    const vk::PipelineDynamicStateCreateInfo dynamic({}, dynamics);
+    const vk::PipelineRenderingCreateInfo rendering(0, state.color, state.depth);
+    vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples, &depth,
+                                        &blend, &dynamic, *layout_);
+    info.pNext = &rendering;
+    return *made_.emplace(key, vk::raii::Pipeline(device_->handle(), nullptr, info)).first->second;
+}
+
+}  // namespace edgesplat::gpu

@@ -1,0 +1,46 @@
+// Pipelines by shader name and specialization constants, made on first use and kept.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+#include <vulkan/vulkan_raii.hpp>
+
+#include "engine/gpu/device.h"
+
+namespace edgesplat::gpu {
+
+/// (constant id, value) pairs: shaders/shared/limits.h names the ids.
+using Specialization = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+/// A draw into float targets.
+struct DrawState {
+    const char* vertex;
+    const char* fragment;
+    Specialization constants;
+    vk::Format color;
+    vk::Format depth = vk::Format::eUndefined;  ///< undefined: no depth attachment
+    enum class Blend { None, Add, Under } blend = Blend::None;
+    enum class Depth { Write, TestLess } depth_use = Depth::Write;
+};
+
+class Pipelines {
+  public:
+    explicit Pipelines(const Device& device);
+
+    vk::Pipeline compute(const char* shader, const Specialization& constants);
+    vk::Pipeline draw(const DrawState& state);
+    vk::PipelineLayout layout() const { return *layout_; }
+    vk::DescriptorSetLayout set_layout() const { return *set_layout_; }
+
+  private:
+    vk::raii::ShaderModule load(const char* shader) const;
+    const Device* device_;
+    vk::raii::DescriptorSetLayout set_layout_ = nullptr;
+    vk::raii::PipelineLayout layout_ = nullptr;
+    std::map<std::string, vk::raii::Pipeline> made_;
+};
+
+}  // namespace edgesplat::gpu

@@ -1,0 +1,21 @@
+// SPIR-V compiled at build time and embedded (cmake/CompileShaders.cmake).
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+
+namespace edgesplat::gpu {
+
+struct EmbeddedShader {
+    std::string_view name;  ///< file name in shaders/, e.g. "3_select_footprints.comp"
+    std::span<const std::uint32_t> words;
+};
+
+/// Every shader of the engine, by file name.
+std::span<const EmbeddedShader> embedded_shaders();
+
+/// The SPIR-V of a shader. Throws std::logic_error for a name that was not compiled in.
+std::span<const std::uint32_t> find_shader(std::string_view name);
+
+}  // namespace edgesplat::gpu

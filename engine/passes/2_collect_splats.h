@@ -1,0 +1,27 @@
+// Edge field -> compact list of the voxels that can be seen.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+namespace edgesplat::passes {
+
+struct CollectSplats {
+    shader::Address scene;  ///< SceneParams
+    glm::ivec3 dims;
+    bool edges = true;   ///< the edge field exists
+    bool buried = true;  ///< the buried mask exists: `mark_buried` has run
+};
+
+/// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
+std::uint64_t collect_runs(const glm::ivec3& dims);
+
+/// Marks voxels that opaque ones hide from every side (three line sweeps).
+void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims);
+
+/// Writes how many splats each run holds to SceneParams::run_offsets.
+void count_splats(gpu::Commands& commands, const CollectSplats& in);
+
+/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels.
+void write_splats(gpu::Commands& commands, const CollectSplats& in);
+
+}  // namespace edgesplat::passes

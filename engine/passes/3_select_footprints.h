@@ -1,0 +1,11 @@
+// Splat records -> which of them are in the picture, in which sheet, and the pixels that each sheet group touches.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+namespace edgesplat::passes {
+
+/// FrameParams at `frame`: reads `splats`, writes `sheets`, grows the `rect` of `groups` (which must start out empty).
+void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count);
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,15 @@
+#include "engine/passes/4_sort_sheets.h"
+
+namespace edgesplat::passes {
+
+void sort_sheets(gpu::Commands& commands, shader::Address frame) {
+    const shader::FramePush push{frame, 0, 0};
+    commands.dispatch("4a_count_sheets.comp", {}, push, {shader::SORT_BLOCKS / 64});
+    commands.barrier();
+    commands.dispatch("4b_scan_sheets.comp", {}, push, {1});
+    commands.barrier();
+    commands.dispatch("4c_scatter_splats.comp", {}, push, {shader::SORT_BLOCKS / 64});
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,11 @@
+#include "engine/passes/7_resolve.h"
+
+namespace edgesplat::passes {
+
+void resolve(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t payload) {
+    const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
+    commands.dispatch("7_resolve.comp", {{shader::SPEC_PAYLOAD, payload}}, {frame, 0, 0}, {groups.x, groups.y});
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes

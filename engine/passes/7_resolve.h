@@ -1,0 +1,11 @@
+// Accumulated picture -> pixels for the host.
+#pragma once
+
+#include "engine/gpu/commands.h"
+
+namespace edgesplat::passes {
+
+/// FrameParams at `frame`: writes `output_pixels`, (height, width) vec4, linear light.
+void resolve(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t payload);
+
+}  // namespace edgesplat::passes

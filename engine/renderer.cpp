@@ -1,0 +1,244 @@
+#include "engine/renderer.h"
+
+#include <algorithm>
+#include <chrono>
+
+#include "engine/error.h"
+#include "engine/renderer_impl.h"
+#include "engine/volume/filters.h"
+#include "footprints/paper_warp.h"
+
+namespace edgesplat {
+namespace {
+
+using Place = gpu::Buffer::Place;
+using Usage = vk::ImageUsageFlagBits;
+using Clock = std::chrono::steady_clock;
+
+double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+/// Makes `buffer` at least `bytes` long. True if it was made anew.
+bool grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
+    if (buffer && buffer.bytes() >= bytes) return false;
+    buffer = {};
+    buffer = gpu::Buffer(device, bytes, place, name);
+    return true;
+}
+
+bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
+    return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) && image.shape().layers >= layers;
+}
+
+/// Channels [first, first + count) of the RGBA picture in `pixels`.
+Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {
+    Image image(size.x, size.y, count);
+    for (std::size_t i = 0; i < image.pixels.size() / static_cast<std::size_t>(count); ++i) {
+        for (int c = 0; c < count; ++c) {
+            image.pixels[i * static_cast<std::size_t>(count) + static_cast<std::size_t>(c)] = pixels[4 * i + static_cast<std::size_t>(first + c)];
+        }
+    }
+    return image;
+}
+
+}  // namespace
+
+Renderer::Impl::Impl(const DeviceChoice& choice) : device(choice) {
+    targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
+    targets.drawn = gpu::Buffer(device, sizeof(std::uint32_t), Place::Host, "drawn splats");
+    const auto indices = passes::quad_indices();
+    targets.indices = gpu::Buffer(device, indices.size() * sizeof(indices[0]), Place::Host, "quad indices");
+    std::copy(indices.begin(), indices.end(), targets.indices.mapped<std::uint32_t>(indices.size()).begin());
+    bindings.write(volume_resources, footprint_resources, targets);
+    commands.run([&] { bindings.prepare(commands); });
+}
+
+double Renderer::Impl::collect(const Scene& scene, const Settings& settings, bool keep_buried) {
+    CollectionPlan wanted = plan_collection(*volume, scene, settings, keep_buried);
+    if (collected && *collected == wanted) return 0;
+    const auto start = Clock::now();
+    collected.reset();
+    if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic && !volume_resources.coefficients) {
+        const auto coefficients = bspline_coefficients(scaled_field(*volume), wanted.dims);
+        volume_resources.coefficients = gpu::GpuImage(
+            device, {.format = vk::Format::eR32Sfloat, .size = wanted.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferDst},
+            "B-spline coefficients");
+        upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
+    }
+    collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
+    collected = wanted;
+    return milliseconds_since(start);
+}
+
+void Renderer::Impl::provide_footprints(const Settings& settings) {
+    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
+    const bool table = settings.warp == WarpFamily::Edge && settings.edges != EdgeEstimator::Off &&
+                       (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp);
+    if (table && !(table_band && table_band->half_width == band.half_width && table_band->strength == band.strength)) {
+        table_band.reset();
+        const auto loaded = load_footprint_table(band);
+        if (!loaded.warning.empty()) fmt::print(stderr, "edgesplat: {}\n", loaded.warning);
+        const auto& size = loaded.table.size();
+        auto& out = footprint_resources;
+        out.table = gpu::GpuImage(device, {.format = vk::Format::eR16Sfloat, .size = {size.width, size.height, 1},
+                                           .layers = size.distances * size.directions, .array = true,
+                                           .usage = Usage::eSampled | Usage::eTransferDst}, "footprint table");
+        upload_image(commands, device, out.table, loaded.table.texels().data(), sizeof(std::uint16_t));
+        out.params.table_extent = static_cast<float>(loaded.table.extent());
+        out.params.table_width = static_cast<float>(size.width);
+        out.params.table_height = static_cast<float>(size.height);
+        out.params.table_distances = static_cast<float>(size.distances);
+        out.params.table_directions = static_cast<float>(size.directions);
+        table_band = band;
+    }
+    const PaperShape paper;
+    footprint_resources.params.half_width = static_cast<float>(band.half_width);
+    footprint_resources.params.strength = static_cast<float>(band.strength);
+    footprint_resources.params.paper_inset = static_cast<float>(paper.inset);
+    footprint_resources.params.paper_rise = static_cast<float>(paper.rise);
+    // What this picture does not use is not kept.
+    if (!table) {
+        footprint_resources.table = {};
+        table_band.reset();
+    }
+}
+
+void Renderer::Impl::provide_targets(FramePlan& plan_in_use) {
+    auto& p = plan_in_use.params;
+    const auto layers = static_cast<int>(p.sheets_per_group);
+    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
+    if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
+        !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
+        !has_shape(targets.accumulated, vk::Format::eR32G32B32A32Sfloat, p.size, 1)) {
+        targets.sheets = {};
+        targets.depth = {};
+        targets.accumulated = {};
+        const glm::ivec3 size(p.size, 1);
+        targets.sheets = gpu::GpuImage(device, {.format = plan_in_use.sheet_format, .size = size, .layers = layers, .array = true,
+                                                .usage = Usage::eColorAttachment | Usage::eSampled}, "sheet group");
+        targets.depth = gpu::GpuImage(device, {.format = vk::Format::eD16Unorm, .size = size, .layers = layers, .array = true,
+                                               .usage = Usage::eDepthStencilAttachment}, "sheet depth");
+        targets.accumulated = gpu::GpuImage(device, {.format = vk::Format::eR32G32B32A32Sfloat, .size = size,
+                                                     .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferDst},
+                                            "accumulated picture");
+        commands.run([&] { commands.prepare({&targets.sheets, &targets.depth, &targets.accumulated}); });
+    }
+    const auto words = sizeof(std::uint32_t);
+    grow(device, targets.sheet_of, p.splat_count * words, Place::Device, "sheets of splats");
+    grow(device, targets.order, p.splat_count * words, Place::Device, "splat order");
+    grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * words, Place::Device, "sort counters");
+    grow(device, targets.groups, p.group_count * sizeof(shader::SheetGroup), Place::Host, "sheet groups");
+    grow(device, targets.draws, p.group_count * sizeof(shader::DrawCommand), Place::Device, "draw commands");
+    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
+
+    p.splats = volume_resources.splats.address();
+    p.sheets = targets.sheet_of.address();
+    p.order = targets.order.address();
+    p.counters = targets.counters.address();
+    p.groups = targets.groups.address();
+    p.draws = targets.draws.address();
+    p.partial_sums = targets.drawn.address();
+    p.output_pixels = targets.output.address();
+    p.footprint = footprint_resources.params;
+    targets.frame.mapped<shader::FrameParams>(1)[0] = p;
+    const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
+    std::ranges::fill(targets.groups.mapped<shader::SheetGroup>(p.group_count), empty);
+    bindings.write(volume_resources, footprint_resources, targets);
+}
+
+void Renderer::Impl::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+                          std::uint32_t payload) {
+    plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count, volume_resources.box_low,
+                      volume_resources.box_high);
+    provide_targets(plan);
+    run_frame(commands, plan, targets);
+}
+
+Renderer::Renderer(const DeviceChoice& choice) {
+    try {
+        impl_ = std::make_unique<Impl>(choice);
+    } catch (const vk::SystemError& error) {
+        fail("Vulkan: {}", error.what());
+    }
+}
+
+Renderer::~Renderer() = default;
+Renderer::Renderer(Renderer&&) noexcept = default;
+Renderer& Renderer::operator=(Renderer&&) noexcept = default;
+
+const DeviceInfo& Renderer::device() const { return impl_->device.info(); }
+
+std::uint64_t Renderer::validation_messages() const { return impl_->device.validation_messages(); }
+
+void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
+    auto& self = *impl_;
+    self.collected.reset();
+    self.volume_resources = {};
+    self.volume = std::move(volume);
+    try {
+        const auto field = scaled_field(*self.volume);
+        self.volume_resources.volume = gpu::GpuImage(
+            self.device, {.format = vk::Format::eR32Sfloat, .size = self.volume->geometry.dims, .volume = true,
+                          .usage = Usage::eStorage | Usage::eTransferDst}, "volume");
+        upload_image(self.commands, self.device, self.volume_resources.volume, field.data(), sizeof(float));
+    } catch (const vk::SystemError& error) {
+        fail("Vulkan: {}", error.what());
+    }
+}
+
+RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
+                              const AovRequest& aovs) {
+    auto& self = *impl_;
+    if (!self.volume) fail("render: no volume has been set");
+    if (width < 1 || height < 1 || width > 16384 || height > 16384) {
+        fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
+    }
+    validate(scene);
+    validate(settings);
+    const glm::ivec2 size(width, height);
+    RenderResult result;
+    try {
+        const bool keep_buried = aovs.tau || eye_in_opaque(*self.volume, scene, camera);
+        self.provide_footprints(settings);
+        result.stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
+        if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
+
+        const auto pixels = [&] {
+            return std::span<const float>(self.targets.output.mapped<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4));
+        };
+        const auto start = Clock::now();
+        self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR);
+        result.stats.frame_milliseconds = milliseconds_since(start);
+        const auto times = self.commands.span_times();
+        result.stats.passes.insert(result.stats.passes.end(), times.begin(), times.end());
+        result.stats.splats_drawn = self.targets.drawn.mapped<std::uint32_t>(1)[0];
+        result.stats.sheets = self.plan.params.sheet_count;
+        result.stats.sheet_groups = self.plan.params.group_count;
+        result.color = take(pixels(), size, 0, 4);
+
+        if (aovs.tau) {
+            self.draw(scene, camera, settings, size, shader::PAYLOAD_TAU);
+            result.tau = take(pixels(), size, 3, 1);
+        }
+        if (aovs.depth || aovs.distance) {
+            self.draw(scene, camera, settings, size, shader::PAYLOAD_DEPTH_DISTANCE);
+            if (aovs.depth) result.depth = take(pixels(), size, 0, 1);
+            if (aovs.distance) result.distance = take(pixels(), size, 1, 1);
+        }
+        if (aovs.normal) {
+            self.draw(scene, camera, settings, size, shader::PAYLOAD_NORMAL);
+            result.normal = take(pixels(), size, 0, 3);
+        }
+    } catch (const vk::SystemError& error) {
+        fail("Vulkan: {}", error.what());
+    }
+    result.stats.device = self.device.info();
+    result.stats.voxels = self.volume->geometry.voxel_count();
+    result.stats.splats_collected = self.volume_resources.splat_count;
+    result.stats.device_bytes = self.device.allocated_bytes();
+    result.stats.validation_messages = self.device.validation_messages();
+    return result;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,172 @@
+// For every voxel that can be seen: distance and direction to the nearest edge of its own material interval.
+// docs/method.md, pass 1, steps 1-3; paper, section 3 (Taylor estimate).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/lib/edge_record.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
+const uint OFF = 0u, TAYLOR = 1u, QUADRATIC = 2u, MARCH = 3u, CUBIC = 4u;
+
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
+layout(binding = BIND_EDGES, rg32ui) uniform writeonly uimage3D edges;
+layout(push_constant) uniform Push { SceneRef params; };
+
+ivec3 dims;
+#include "shaders/lib/volume_sampling.glsl"
+
+float field(vec3 p) { return ESTIMATOR == CUBIC ? bspline(p) : trilinear(p); }
+
+// Central difference of the interpolated field; a side cut off by the border shortens the span.
+vec3 field_gradient(vec3 p) {
+    vec3 g = vec3(0.0);
+    for (int axis = 0; axis < 3; ++axis) {
+        vec3 high = p, low = p;
+        high[axis] = min(p[axis] + 1.0, float(dims[axis] - 1));
+        low[axis] = max(p[axis] - 1.0, 0.0);
+        float span = high[axis] - low[axis];
+        g[axis] = span > 0.0 ? (field(high) - field(low)) / span : 0.0;
+    }
+    return g;
+}
+
+// Direction in which the data change most around a voxel: principal axis of the structure tensor; 0 where flat.
+vec3 change_axis(ivec3 p) {
+    vec3 diagonal = vec3(0.0), mixed = vec3(0.0);  // xx yy zz; yz xz xy
+    for (int i = 0; i < 7; ++i) {
+        ivec3 o = ivec3(0);
+        if (i > 0) o[(i - 1) >> 1] = (i & 1) == 1 ? -1 : 1;
+        vec3 g = voxel_gradient(clamp(p + o, ivec3(0), dims - 1));
+        diagonal += g * g;
+        mixed += g.yxx * g.zzy;
+    }
+    float trace = diagonal.x + diagonal.y + diagonal.z;
+    if (!(trace >= GRADIENT_MIN * GRADIENT_MIN)) return vec3(0.0);
+    mat3 t = mat3(diagonal.x, mixed.z, mixed.y, mixed.z, diagonal.y, mixed.x, mixed.y, mixed.x, diagonal.z) / trace;
+    vec3 axis = diagonal.x >= diagonal.y && diagonal.x >= diagonal.z ? t[0] : diagonal.y >= diagonal.z ? t[1] : t[2];
+    axis = normalize(axis);
+    for (int i = 0; i < 8; ++i) axis = normalize(t * axis);
+    return axis;
+}
+
+struct Hit {
+    float t;     // along the walk, voxels; > EDGE_REACH where there is none
+    bool upper;  // the interval's upper end was crossed
+};
+
+// Walks from the voxel at x along q until the field leaves [low, high), then three steps of regula falsi.
+Hit walk(vec3 x, vec3 q, float value, float low, float high) {
+    float previous = value, current = value, t = 0.0;
+    bool left = false;
+    for (int i = 1; i <= 6 && !left; ++i) {
+        t = 0.5 * float(i);
+        previous = current;
+        current = field(x + t * q);
+        left = current < low || current >= high;
+    }
+    Hit hit = Hit(1e9, current >= high);
+    float iso = hit.upper ? high : low;
+    float a = t - 0.5, fa = previous - iso, b = t, fb = current - iso;
+    for (int i = 0; i < (left ? 3 : 0); ++i) {
+        float m = a + (b - a) * fa / (fa - fb);
+        float fm = field(x + m * q) - iso;
+        bool own_side = hit.upper ? fm < 0.0 : fm >= 0.0;
+        a = own_side ? m : a;
+        fa = own_side ? fm : fa;
+        b = own_side ? b : m;
+        fb = own_side ? fb : fm;
+    }
+    if (left) hit.t = a + (b - a) * fa / (fa - fb);
+    return hit;
+}
+
+Edge march(ivec3 p, float value, float low, float high) {
+    Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    vec3 x = vec3(p), axis = change_axis(p);
+    Hit hits[2];
+    bool has_axis = dot(axis, axis) > 0.0;
+    for (int side = 0; side < 2; ++side) {
+        hits[side] = Hit(1e9, false);
+        if (has_axis) hits[side] = walk(x, side == 0 ? -axis : axis, value, low, high);
+    }
+    for (int side = 0; side < 2; ++side) {
+        Hit hit = hits[side];
+        vec3 q = side == 0 ? -axis : axis;
+        if (hit.t <= EDGE_REACH) {
+            vec3 g = field_gradient(x + hit.t * q);
+            float steepness = length(g);
+            vec3 n = g / max(steepness, 1e-30);
+            float alignment = dot(n, q);
+            n = alignment < 0.0 ? -n : n;
+            alignment = abs(alignment);
+            float d = hit.t * alignment;
+            if (steepness >= GRADIENT_MIN && alignment >= 0.5 && d < e.d) {
+                float other = hits[1 - side].t;
+                e = Edge(n, d, other <= EDGE_REACH ? other * abs(dot(axis, n)) : 1e9,
+                         hit.upper ? EDGE_UPPER : EDGE_LOWER);
+            }
+        }
+    }
+    return e;
+}
+
+// One step from the voxel's own derivatives: Taylor (paper; Levoy 1988), or with the curvature along the gradient.
+Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
+    Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    vec3 g = voxel_gradient(p);
+    float slope = length(g);
+    if (!(slope >= GRADIENT_MIN)) return e;
+    vec3 n = g / slope;
+    float curvature = 0.0;
+    if (ESTIMATOR == QUADRATIC) {
+        ivec3 l = max(p - 1, ivec3(0)), h = min(p + 1, dims - 1);
+        float xx = voxel(ivec3(h.x, p.yz)) - 2.0 * value + voxel(ivec3(l.x, p.yz));
+        float yy = voxel(ivec3(p.x, h.y, p.z)) - 2.0 * value + voxel(ivec3(p.x, l.y, p.z));
+        float zz = voxel(ivec3(p.xy, h.z)) - 2.0 * value + voxel(ivec3(p.xy, l.z));
+        float xy = voxel(ivec3(h.xy, p.z)) - voxel(ivec3(h.x, l.y, p.z)) - voxel(ivec3(l.x, h.y, p.z)) + voxel(ivec3(l.xy, p.z));
+        float xz = voxel(ivec3(h.x, p.y, h.z)) - voxel(ivec3(h.x, p.y, l.z)) - voxel(ivec3(l.x, p.y, h.z)) + voxel(ivec3(l.x, p.y, l.z));
+        float yz = voxel(ivec3(p.x, h.yz)) - voxel(ivec3(p.x, h.y, l.z)) - voxel(ivec3(p.x, l.y, h.z)) + voxel(ivec3(p.x, l.yz));
+        curvature = n.x * n.x * xx + n.y * n.y * yy + n.z * n.z * zz +
+                    0.5 * (n.x * n.y * xy + n.x * n.z * xz + n.y * n.z * yz);
+    }
+    for (int end = 0; end < 2; ++end) {
+        float iso = end == 0 ? low : high;
+        float q = abs(iso - value);
+        float bend = end == 0 ? -curvature : curvature;
+        float d = ESTIMATOR == QUADRATIC ? 2.0 * q / (slope + sqrt(max(slope * slope + 2.0 * bend * q, 0.0))) : q / slope;
+        if (d < e.d && d <= band) e = Edge(end == 0 ? -n : n, d, 1e9, end == 0 ? EDGE_LOWER : EDGE_UPPER);
+    }
+    return e;
+}
+
+void main() {
+    ivec3 p = ivec3(gl_GlobalInvocationID);
+    dims = params.scene.dims;
+    if (any(greaterThanEqual(p, dims))) return;
+
+    float value = voxel(p);
+    uint material = 0u;
+    float low = -3e38;
+    for (uint j = 0u; j < params.scene.iso_count; ++j)
+        if (params.scene.iso[j] <= value) {
+            material = j + 1u;
+            low = params.scene.iso[j];
+        }
+    float high = params.scene.iso[material];
+
+    uvec2 code = uvec2(0u);
+    if ((params.scene.visible_mask >> material & 1u) == 1u) {
+        Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+        if (ESTIMATOR == TAYLOR || ESTIMATOR == QUADRATIC) e = extrapolate(p, value, low, high, params.scene.band);
+        if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) e = march(p, value, low, high);
+        if (e.state == EDGE_NONE) {
+            vec3 g = voxel_gradient(p);
+            float slope = length(g);
+            if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
+        }
+        if (e.state != EDGE_NONE) code = uvec2(pack_normal(e.n), pack_edge(e));
+    }
+    imageStore(edges, p, uvec4(code, 0u, 0u));
+}

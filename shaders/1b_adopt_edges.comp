@@ -1,0 +1,50 @@
+// A voxel without a trustworthy edge of its own takes the plane of the neighbour whose foot point is nearest.
+// docs/method.md, pass 1, step 4. Writes only voxels without an edge and reads only edges that are not adopted, so the
+// order of invocations does not show.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/lib/edge_record.glsl"
+
+layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_EDGES, rg32ui) uniform coherent uimage3D edges;
+layout(push_constant) uniform Push { SceneRef params; };
+
+uint material_of(ivec3 p) {
+    float value = imageLoad(volume, p).r;
+    uint material = 0u;
+    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
+    return material;
+}
+
+void main() {
+    ivec3 p = ivec3(gl_GlobalInvocationID), dims = params.scene.dims;
+    if (any(greaterThanEqual(p, dims))) return;
+    uint material = material_of(p);
+    uint state = imageLoad(edges, p).y >> 26 & 3u;
+    bool wanting = state < EDGE_LOWER && (params.scene.visible_mask >> material & 1u) == 1u;
+
+    Edge best = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    float nearest = params.scene.band * params.scene.band;
+    // The loop's bounds, not an if, spare the work: lavapipe runs both sides of a branch.
+    int reach = wanting ? 2 : -1;
+    for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x) {
+                ivec3 q = p + ivec3(x, y, z);
+                if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, dims))) continue;
+                uvec2 code = imageLoad(edges, q).xy;
+                if ((code.y >> 26 & 3u) < EDGE_LOWER || (code.y & EDGE_ADOPTED) != 0u) continue;
+                Edge e = unpack_edge(code.x, code.y);
+                vec3 foot = vec3(x, y, z) + e.d * e.n;
+                float distance2 = dot(foot, foot);
+                if (distance2 < nearest && material_of(q) == material) {
+                    nearest = distance2;
+                    float d = dot(e.n, foot);
+                    best = Edge(e.n, d, e.d2 < FACE_DISTANCE_UNIT ? max(e.d + e.d2 - d, 0.0) : 1e9, e.state);
+                }
+            }
+    if (best.state != EDGE_NONE && best.d >= -0.5)
+        imageStore(edges, p, uvec4(pack_normal(best.n), pack_edge(best) | EDGE_ADOPTED, 0u, 0u));
+}

@@ -1,0 +1,56 @@
+// Compacts the voxels that can be seen into splat records, in the order of the voxels. Each invocation owns a run of
+// consecutive voxels; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/lib/edge_record.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
+layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
+layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
+layout(push_constant) uniform Push {
+    SceneRef params;
+    uint write;
+};
+
+void main() {
+    ivec3 dims = params.scene.dims;
+    uint voxels = uint(dims.x) * uint(dims.y) * uint(dims.z);
+    uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint first = run * COLLECT_RUN;
+    if (run >= (voxels + COLLECT_RUN - 1u) / COLLECT_RUN) return;
+    uint last = min(first + COLLECT_RUN, voxels);
+    UintsRef offsets = UintsRef(params.scene.run_offsets);
+    SplatsRef splats = SplatsRef(params.scene.splats);
+
+    ivec3 p = ivec3(first % uint(dims.x), first / uint(dims.x) % uint(dims.y), first / uint(dims.x) / uint(dims.y));
+    uint out_at = write == 1u ? offsets.at[run] : 0u;
+    for (uint v = first; v < last; ++v) {
+        float value = imageLoad(volume, p).r;
+        uint material = 0u;
+        for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
+        bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
+        if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
+        if (visible) {
+            if (write == 1u) {
+                uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
+                uint state = code.y >> 26 & 3u;
+                float d = abs(float(int(code.y << 16) >> 16)) / 32767.0 * EDGE_DISTANCE_UNIT;
+                if (state >= EDGE_LOWER && d > params.scene.band) state = EDGE_NORMAL;
+                splats.at[out_at] = Splat(v, code.x, (code.y & 0x03ffffffu) | (state << 26) | (material << 28));
+            }
+            ++out_at;
+        }
+        if (++p.x == dims.x) {
+            p.x = 0;
+            if (++p.y == dims.y) {
+                p.y = 0;
+                ++p.z;
+            }
+        }
+    }
+    if (write == 0u) offsets.at[run] = out_at;
+}

@@ -1,0 +1,32 @@
+// For every splat record: is it in the picture, in which sheet, and which pixels does its sheet group touch.
+// docs/method.md, pass 3.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { FrameRef params; };
+#include "shaders/lib/splat_projection.glsl"
+
+// A box grows only outwards, so a look before the atomic spares nearly all of them.
+void grow(GroupsRef groups, uint g, ivec4 box) {
+    ivec4 now = groups.at[g].rect;
+    if (box.x < now.x) atomicMin(groups.at[g].rect.x, box.x);
+    if (box.y < now.y) atomicMin(groups.at[g].rect.y, box.y);
+    if (box.z > now.z) atomicMax(groups.at[g].rect.z, box.z);
+    if (box.w > now.w) atomicMax(groups.at[g].rect.w, box.w);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= params.frame.splat_count) return;
+    Splat splat = SplatsRef(params.frame.splats).at[i];
+    Projection p = project_splat(splat.voxel, unpack_edge(splat.normal, splat.edge));
+    ivec4 box = pixel_box(p);
+    bool drawn = p.visible && box.x < box.z && box.y < box.w;
+    int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
+    sheet = clamp(sheet, 0, int(params.frame.sheet_count) - 1);
+    UintsRef(params.frame.sheets).at[i] = drawn ? uint(sheet) : SHEET_NONE;
+    if (drawn) grow(GroupsRef(params.frame.groups), uint(sheet) / params.frame.sheets_per_group, box);
+}

@@ -1,0 +1,19 @@
+// Counting sort, last third: every splat number goes to its place; inside a sheet the order of the records stays.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 64) in;
+layout(push_constant) uniform Push { FrameRef params; };
+
+void main() {
+    uint block = gl_GlobalInvocationID.x;
+    uint per_block = (params.frame.splat_count + SORT_BLOCKS - 1u) / SORT_BLOCKS;
+    uint first = block * per_block, last = min(first + per_block, params.frame.splat_count);
+    UintsRef sheets = UintsRef(params.frame.sheets), counters = UintsRef(params.frame.counters);
+    UintsRef order = UintsRef(params.frame.order);
+    for (uint i = first; i < last; ++i) {
+        uint sheet = sheets.at[i];
+        if (sheet != SHEET_NONE) order.at[counters.at[sheet * SORT_BLOCKS + block]++] = i;
+    }
+}

@@ -1,0 +1,68 @@
+// One quad a splat, 64 an instance: its corners, its layer of the sheet group, its colour. docs/method.md, pass 5.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_ARB_shader_viewport_layer_array : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_LIGHT) const uint LIGHT = 1u;
+const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u, LIGHT_DIRECTIONAL = 2u;
+
+layout(push_constant) uniform Push {
+    FrameRef params;
+    uint group;
+};
+#include "shaders/lib/splat_projection.glsl"
+
+layout(location = 0) out vec3 offset;              // a point of the pixel's ray, relative to the voxel, index space
+layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
+layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
+layout(location = 3) flat out vec4 normal_distance;  // n, D
+layout(location = 4) flat out float face_distance;   // D2; negative: the splat is not warped
+
+vec3 lit(vec3 color, Edge e, vec3 world_normal, vec3 to_eye) {
+    if (LIGHT == LIGHT_NONE) return color;
+    vec3 to_light = LIGHT == LIGHT_HEADLIGHT ? to_eye : params.frame.light;
+    float cosine = e.state == EDGE_NONE ? 0.5 : max(dot(world_normal, to_light), 0.0);
+    return color * (params.frame.ambient + params.frame.diffuse * cosine);
+}
+
+void main() {
+    SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
+    uint nth = uint(gl_InstanceIndex) * QUADS_PER_INSTANCE + uint(gl_VertexIndex) / 4u;
+    bool real = nth < sheets.count;
+    uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
+    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    Projection p = project_splat(splat.voxel, e);
+
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
+    vec2 slope = mix(p.low, p.high, corner);
+    from_eye = p.position - params.frame.eye;
+    // A full-screen splat may lie behind the eye plane: its rays are described where every ray passes.
+    offset = p.full_screen
+        ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
+        : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    if (!p.full_screen) offset += splat_support(e).x * e.n;
+
+    vec4 material = params.frame.materials[splat.edge >> 28];
+    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * e.n);
+    vec3 payload = vec3(0.0);
+    if (PAYLOAD == PAYLOAD_COLOR)
+        payload = lit(material.rgb, e, world_normal, -normalize(params.frame.index_to_world * from_eye));
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
+        float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
+        payload = vec3(p.view.z, signed_distance, 0.0);
+    }
+    if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
+    color_sigma = vec4(payload, material.a);
+    normal_distance = vec4(e.n, e.d);
+    bool warped = params.frame.edge_warped == 1u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
+    face_distance = warped ? e.d2 : -1.0;
+
+    vec2 ndc = (p.slope + slope) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    gl_Position = real ? vec4(ndc, 0.5, 1.0) : vec4(2.0, 2.0, 0.5, 1.0);
+    uint sheet = UintsRef(params.frame.sheets).at[number];
+    gl_Layer = int(sheet % params.frame.sheets_per_group);
+}

@@ -1,0 +1,24 @@
+// Accumulated sheets to the picture that the host reads: background behind colour, means for the other quantities.
+// docs/method.md, pass 7.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
+layout(push_constant) uniform Push { FrameRef params; };
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
+    if (any(greaterThanEqual(pixel, size))) return;
+    vec4 sum = texelFetch(accumulated, pixel, 0);
+    if (PAYLOAD == PAYLOAD_COLOR) sum.rgb += (1.0 - sum.a) * params.frame.background;
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) sum.rgb = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
+    if (PAYLOAD == PAYLOAD_NORMAL) {
+        float norm = length(sum.rgb);
+        sum.rgb = norm > 0.0 ? sum.rgb / norm : vec3(0.0);
+    }
+    PixelsRef(params.frame.output_pixels).at[pixel.y * size.x + pixel.x] = sum;
+}

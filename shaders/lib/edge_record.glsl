@@ -1,0 +1,44 @@
+// Packing of a voxel's edge: the edge field (64 bits) and the splat record share it. docs/method.md, pass 1.
+#ifndef EDGE_RECORD_GLSL
+#define EDGE_RECORD_GLSL
+#include "shaders/shared/scene_params.h"
+
+struct Edge {
+    vec3 n;        // index space, unit; towards the edge
+    float d;       // distance along n, voxels
+    float d2;      // distance along -n to the second edge; > FACE_DISTANCE_UNIT where none is in reach
+    uint state;    // EdgeState
+};
+
+// Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors", octahedral map.
+uint pack_normal(vec3 n) {
+    vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));
+    vec2 folded = (1.0 - abs(p.yx)) * vec2(p.x >= 0.0 ? 1.0 : -1.0, p.y >= 0.0 ? 1.0 : -1.0);
+    return packSnorm2x16(n.z < 0.0 ? folded : p);
+}
+
+vec3 unpack_normal(uint code) {
+    vec2 p = unpackSnorm2x16(code);
+    vec3 n = vec3(p, 1.0 - abs(p.x) - abs(p.y));
+    float fold = max(-n.z, 0.0);
+    n.x += n.x >= 0.0 ? -fold : fold;
+    n.y += n.y >= 0.0 ? -fold : fold;
+    return normalize(n);
+}
+
+uint pack_edge(Edge e) {
+    int d = int(round(clamp(e.d / EDGE_DISTANCE_UNIT, -1.0, 1.0) * 32767.0));
+    uint d2 = e.d2 >= FACE_DISTANCE_UNIT ? FACE_NONE : uint(round(max(e.d2, 0.0) / FACE_DISTANCE_UNIT * 1022.0));
+    return (uint(d) & 0xffffu) | (d2 << 16) | (e.state << 26);
+}
+
+Edge unpack_edge(uint normal_code, uint code) {
+    Edge e;
+    e.state = (code >> 26) & 3u;
+    e.n = unpack_normal(normal_code);
+    e.d = float(int(code << 16) >> 16) / 32767.0 * EDGE_DISTANCE_UNIT;
+    uint d2 = (code >> 16) & 1023u;
+    e.d2 = d2 == FACE_NONE ? 1e9 : float(d2) / 1022.0 * FACE_DISTANCE_UNIT;
+    return e;
+}
+#endif

@@ -1,0 +1,71 @@
+// Where a splat's support lies on the screen. The including shader declares the push constant `FrameRef params`; its fields are
+// read in place, since a copy of the struct would load all of it for every splat.
+#include "shaders/lib/edge_record.glsl"
+#include "shaders/shared/frame_params.h"
+
+struct Projection {
+    vec3 position;    // voxel centre relative to the anchor, index space
+    vec3 view;        // voxel centre, mm: right, down, forward of the eye
+    float depth;      // of the support's centre, mm
+    vec2 slope;       // view.xy / view.z of the support's centre
+    vec2 low, high;   // box of the support in slopes, relative to `slope`
+    bool full_screen;  // the support reaches the eye plane: every pixel may see it
+    bool visible;
+};
+
+vec3 view_position(vec3 position) {
+    return vec3(dot(params.frame.view_x, position) + params.frame.anchor_x, dot(params.frame.view_y, position) + params.frame.anchor_y,
+                dot(params.frame.view_z, position) + params.frame.anchor_z);
+}
+
+// Centre (along n) and radius of the sphere that holds the warped kernel, docs/method.md, pass 3.
+vec2 splat_support(Edge e) {
+    if (params.frame.edge_warped == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
+    if (e.d2 < params.frame.band) return vec2(0.0, params.frame.wall_support);
+    float at = min(abs(e.d) / params.frame.band, 1.0) * float(SUPPORT_STEPS - 1u);
+    uint i = min(uint(at), SUPPORT_STEPS - 2u);
+    vec2 s = mix(params.frame.support_table[i], params.frame.support_table[i + 1u], at - float(i));
+    return vec2(e.d < 0.0 ? -s.x : s.x, s.y);
+}
+
+// Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from
+// the slope of the centre, the plane touches the sphere where s^2 (z^2 - r^2 |Z|^2) + 2 s r^2 X.Z - r^2 |X|^2 = 0, X the
+// axis functional of slope 0. Relative to the centre nothing cancels, however far the eye.
+vec2 touching_slopes(vec3 x_axis, vec3 z_axis, float depth, float radius) {
+    float r2 = radius * radius;
+    float a = depth * depth - r2 * dot(z_axis, z_axis);
+    float b = r2 * dot(x_axis, z_axis);
+    float c = r2 * dot(x_axis, x_axis);
+    float root = sqrt(b * b + a * c);
+    return vec2(-b - root, -b + root) / a;
+}
+
+Projection project_splat(uint voxel, Edge e) {
+    Projection p;
+    uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
+    p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
+    p.view = view_position(p.position);
+    vec2 support = splat_support(e);
+    vec3 centre = view_position(p.position + support.x * e.n);
+    p.depth = centre.z;
+    float reach = support.y * length(params.frame.view_z);
+    p.visible = centre.z + reach > 0.0;
+    p.full_screen = centre.z < 1.05 * reach;
+    p.slope = p.full_screen ? vec2(0.0) : centre.xy / centre.z;
+    vec2 x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+    vec2 y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+    vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    // Clipped to the picture (a little beyond, so that rounding loses no pixel).
+    p.low = p.full_screen ? -edge : max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
+    p.high = p.full_screen ? edge : min(vec2(x.y, y.y), edge * 1.001 - p.slope);
+    p.visible = p.visible && all(lessThan(p.low, p.high));
+    return p;
+}
+
+// Slopes to pixels: x0 y0 x1 y1, half open, clipped.
+ivec4 pixel_box(Projection p) {
+    vec2 scale = 0.5 * vec2(params.frame.size) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    vec2 low = (p.slope + p.low) * scale + 0.5 * vec2(params.frame.size);
+    vec2 high = (p.slope + p.high) * scale + 0.5 * vec2(params.frame.size);
+    return ivec4(clamp(ivec2(floor(low)), ivec2(0), params.frame.size), clamp(ivec2(ceil(high)), ivec2(0), params.frame.size));
+}

@@ -1,0 +1,54 @@
+// The scalar field between voxels, in index space, samples scaled to their range. docs/method.md, pass 1.
+// The including shader declares `volume` and `coefficients` (r32f image3D) and the variable `dims`.
+
+float voxel(ivec3 p) { return imageLoad(volume, p).r; }
+
+float trilinear(vec3 p) {
+    p = clamp(p, vec3(0.0), vec3(dims - 1));
+    ivec3 c = clamp(ivec3(floor(p)), ivec3(0), max(dims - 2, ivec3(0)));
+    ivec3 e = min(c + 1, dims - 1);
+    vec3 t = p - vec3(c);
+    vec4 low = vec4(voxel(c), voxel(ivec3(c.x, e.y, c.z)), voxel(ivec3(c.x, c.y, e.z)), voxel(ivec3(c.x, e.y, e.z)));
+    vec4 high = vec4(voxel(ivec3(e.x, c.y, c.z)), voxel(ivec3(e.x, e.y, c.z)), voxel(ivec3(e.x, c.y, e.z)), voxel(e));
+    vec4 x = low + t.x * (high - low);
+    vec2 y = x.xz + t.y * (x.yw - x.xz);
+    return y.x + t.z * (y.y - y.x);
+}
+
+vec4 bspline_weights(float t) {
+    float s = 1.0 - t;
+    return vec4(s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t) / 6.0;
+}
+
+// Mirror at the border, as the prefilter assumes.
+int mirrored(int i, int n) {
+    i = abs(i);
+    i = i >= n ? 2 * n - 2 - i : i;
+    return clamp(i, 0, n - 1);
+}
+
+float bspline(vec3 p) {
+    p = clamp(p, vec3(0.0), vec3(dims - 1));
+    vec3 c = floor(p);
+    vec4 wx = bspline_weights(p.x - c.x), wy = bspline_weights(p.y - c.y), wz = bspline_weights(p.z - c.z);
+    ivec3 b = ivec3(c) - 1;
+    float sum = 0.0;
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j) {
+            ivec3 row = ivec3(0, mirrored(b.y + j, dims.y), mirrored(b.z + k, dims.z));
+            float line = 0.0;
+            for (int i = 0; i < 4; ++i)
+                line += wx[i] * imageLoad(coefficients, ivec3(mirrored(b.x + i, dims.x), row.yz)).r;
+            sum += wy[j] * wz[k] * line;
+        }
+    return sum;
+}
+
+// Central difference at a voxel, one-sided at the border, 0 along an axis of one voxel; value range per voxel.
+vec3 voxel_gradient(ivec3 p) {
+    ivec3 low = max(p - 1, ivec3(0)), high = min(p + 1, dims - 1);
+    vec3 span = vec3(max(high - low, ivec3(1)));
+    return vec3(voxel(ivec3(high.x, p.yz)) - voxel(ivec3(low.x, p.yz)),
+                voxel(ivec3(p.x, high.y, p.z)) - voxel(ivec3(p.x, low.y, p.z)),
+                voxel(ivec3(p.xy, high.z)) - voxel(ivec3(p.xy, low.z))) / span;
+}

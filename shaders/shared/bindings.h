@@ -1,0 +1,17 @@
+// The one descriptor set. Buffers are not in it: they travel as device addresses.
+#ifndef EDGESPLAT_BINDINGS_H
+#define EDGESPLAT_BINDINGS_H
+#include "shaders/shared/glue.h"
+EDGESPLAT_SHARED_BEGIN
+
+EDGESPLAT_CONSTANT uint BIND_VOLUME = 0u;        // r32f (z, y, x), samples scaled to their range
+EDGESPLAT_CONSTANT uint BIND_COEFFICIENTS = 1u;  // r32f, cubic B-spline coefficients (estimator `cubic` only)
+EDGESPLAT_CONSTANT uint BIND_EDGES = 2u;         // rg32ui, edge field (shared/edge.h)
+EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = every voxel around is opaque
+EDGESPLAT_CONSTANT uint BIND_SHEETS = 4u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
+EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 5u;   // rgba32f, premultiplied colour and alpha so far
+EDGESPLAT_CONSTANT uint BIND_TABLE = 6u;         // r16f, footprint layers
+EDGESPLAT_CONSTANT uint BIND_COUNT = 7u;
+
+EDGESPLAT_SHARED_END
+#endif

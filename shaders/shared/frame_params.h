@@ -1,0 +1,94 @@
+// What passes 3 to 7 need: camera, materials and where the frame's buffers are. Written every frame.
+#ifndef EDGESPLAT_FRAME_PARAMS_H
+#define EDGESPLAT_FRAME_PARAMS_H
+#include "shaders/shared/footprint_params.h"
+#include "shaders/shared/scene_params.h"
+EDGESPLAT_SHARED_BEGIN
+
+/// A group of consecutive sheets drawn together. `rect` is in pixels, x0 y0 x1 y1, empty when x0 >= x1.
+struct SheetGroup {
+    uint first;  // into `order`
+    uint count;  // splats
+    ivec2 pad;
+    ivec4 rect;
+};
+
+/// VkDrawIndexedIndirectCommand.
+struct DrawCommand {
+    uint index_count, instance_count, first_index;
+    int vertex_offset;
+    uint first_instance;
+};
+
+struct FrameParams {
+    // Positions are relative to `anchor`, the centre of the splats' box, so that a far eye costs no digits.
+    vec3 anchor;             // index space, voxels
+    float support;           // kernel radius R, voxels
+    vec3 view_x;             // right . S : mm per index step
+    float anchor_x;          // view coordinates of the anchor, mm
+    vec3 view_y;             // down . S
+    float anchor_y;
+    vec3 view_z;             // forward . S
+    float anchor_z;
+    vec3 eye;                // index space relative to anchor
+    float tan_half_x;
+    vec3 ray_x;              // S^-1 right: index units per mm
+    float tan_half_y;
+    vec3 ray_y;              // S^-1 down
+    float sheet_thickness;   // mm
+    vec3 ray_z;              // S^-1 forward
+    int sheet_base;          // first sheet that can hold a splat
+    mat3 index_to_world;     // S
+    mat3 normal_to_world;    // S^-T
+    vec3 light;              // world unit vector towards the light (Directional)
+    float ambient;
+    vec3 background;         // linear light
+    float diffuse;
+    vec4 materials[16];      // rgb, extinction per mm
+    vec2 support_table[64];  // over |D| / (R + a): shift of the support's centre along n, its radius; voxels
+    ivec3 dims;
+    uint splat_count;
+    ivec2 size;              // pixels
+    uint sheet_count;
+    uint sheets_per_group;
+    uint group_count;
+    float band;              // R + a
+    float saturation;        // alpha at which a pixel takes no more
+    float near_depth;        // mm: depth of the plane that rays of full-screen splats are described in
+    uint edge_warped;        // 1 when a warp is drawn at all (footprints are not `isotropic`)
+    float wall_support;      // support radius of a splat with two faces, voxels
+    FootprintParams footprint;
+    Address splats;          // (splat_count) Splat
+    Address sheets;          // (splat_count) uint: sheet of each splat or SHEET_NONE
+    Address counters;        // (sheet_count, SORT_BLOCKS) uint: counts, then offsets
+    Address order;           // (drawn) uint: splat numbers sorted by sheet
+    Address groups;          // (group_count) SheetGroup
+    Address draws;           // (group_count) DrawCommand
+    Address partial_sums;    // (1024) uint, scratch of the scan
+    Address output_pixels;   // (size.y, size.x) vec4
+};
+
+/// Push constants of every pass of the frame.
+struct FramePush {
+    Address frame;
+    uint group;  // sheet group drawn or composited
+    uint pad;
+};
+
+EDGESPLAT_SHARED_END
+
+#ifdef __cplusplus
+static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
+static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
+static_assert(sizeof(edgesplat::shader::FramePush) == 16);
+static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
+static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 232);
+static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1000);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1168);
+#else
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef { FrameParams frame; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef { SheetGroup at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawsRef { DrawCommand at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PixelsRef { vec4 at[]; };
+#endif
+#endif

@@ -1,0 +1,37 @@
+// Numbers that C++ and the shaders must agree on, each with its reason.
+#ifndef EDGESPLAT_LIMITS_H
+#define EDGESPLAT_LIMITS_H
+#include "shaders/shared/glue.h"
+EDGESPLAT_SHARED_BEGIN
+
+EDGESPLAT_CONSTANT float KERNEL_RADIUS = 1.6f;       // R of kernel K7, voxels
+EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;          // how far an edge is searched, voxels; >= R + a of the default warp
+EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;       // value range per voxel; flatter data has no trustworthy direction
+EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 of D / 4: steps of 1.2e-4 voxel
+EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
+EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge in reach
+EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
+EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;           // voxels per invocation of 2_collect_splats (measured best on lavapipe)
+EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;          // columns of the sort's histogram: serial inside, stable across
+EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;         // entries of the warped-support table over |D| in [0, R + a]
+EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;    // most even vertex cost on lavapipe in near and far views
+EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;    // sheet of a splat that is not drawn
+
+// Specialization constants: ids are the same in every shader.
+EDGESPLAT_CONSTANT uint SPEC_ESTIMATOR = 0u;   // EdgeEstimator
+EDGESPLAT_CONSTANT uint SPEC_FOOTPRINTS = 1u;  // FootprintMode
+EDGESPLAT_CONSTANT uint SPEC_WARP = 2u;        // WarpFamily
+EDGESPLAT_CONSTANT uint SPEC_PAYLOAD = 3u;     // Payload
+EDGESPLAT_CONSTANT uint SPEC_LIGHT = 4u;       // Light::Kind
+EDGESPLAT_CONSTANT uint SPEC_AXIS = 5u;        // 0 x, 1 y, 2 z
+EDGESPLAT_CONSTANT uint SPEC_EDGES = 6u;       // 1: the edge field exists
+EDGESPLAT_CONSTANT uint SPEC_BURIED = 7u;      // 1: the buried mask exists
+
+// Payload: the quantity that a frame carries in place of colour.
+EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;
+EDGESPLAT_CONSTANT uint PAYLOAD_TAU = 1u;
+EDGESPLAT_CONSTANT uint PAYLOAD_DEPTH_DISTANCE = 2u;
+EDGESPLAT_CONSTANT uint PAYLOAD_NORMAL = 3u;
+
+EDGESPLAT_SHARED_END
+#endif
