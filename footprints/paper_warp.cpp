@@ -73,18 +73,19 @@ double cosine_slope(double x, const PaperProfile& q) {
 }
 
 void require(bool holds, const char* name, double value, const std::string& range) {
-    if (!holds) throw std::invalid_argument(fmt::format("paper profile: {} = {} must be {}", name, value, range));
+    if (!holds) throw std::invalid_argument(fmt::format("paper profile: {} = {:.6g} must be {}", name, value, range));
 }
 
 }  // namespace
 
 void validate(const PaperProfile& q) {
     require(q.t1 > 0 && q.t1 < 1, "t1", q.t1, "in (0, 1)");
-    require(q.t2 > q.t1 && q.t2 < 1, "t2", q.t2, fmt::format("in (t1, 1) = ({}, 1)", q.t1));
-    require(q.m1 >= q.t1 / 3, "m1", q.m1, fmt::format("at least t1/3 = {}, or the profile is not monotone", q.t1 / 3));
-    require(q.m2 > q.m1, "m2", q.m2, fmt::format("above m1 = {}", q.m1));
+    require(q.t2 > q.t1 && q.t2 < 1, "t2", q.t2, fmt::format("in (t1, 1) = ({:.6g}, 1)", q.t1));
+    require(q.m1 >= q.t1 / 3, "m1", q.m1,
+            fmt::format("at least t1/3 = {:.6g}, or the profile is not monotone", q.t1 / 3));
+    require(q.m2 > q.m1, "m2", q.m2, fmt::format("above m1 = {:.6g}", q.m1));
     require(q.m2 <= (2 + q.t2) / 3, "m2", q.m2,
-            fmt::format("at most (2 + t2)/3 = {}, or the profile is not monotone", (2 + q.t2) / 3));
+            fmt::format("at most (2 + t2)/3 = {:.6g}, or the profile is not monotone", (2 + q.t2) / 3));
 }
 
 double paper_profile(double x, const PaperProfile& q) {
