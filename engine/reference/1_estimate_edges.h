@@ -1,0 +1,41 @@
+// Pass 1: the plane of the nearest edge of every voxel (method.md, 1_estimate_edges).
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "engine/reference/field.h"
+#include "engine/scene/settings.h"
+
+namespace edgesplat::reference {
+
+constexpr double kEdgeReach = 3.0;          ///< voxels, how far an edge is searched
+constexpr double kSmallestGradient = 1e-3;  ///< G_MIN, of the value range per voxel
+
+/// What a voxel knows about its nearest edge. Lengths in voxels, index space.
+struct VoxelEdge {
+    glm::dvec3 n{0};  ///< unit, from the voxel's own side across the edge; without an edge along -gradient
+    double D = 0;     ///< distance to the edge along n; -0.5 .. R + a
+    double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to the second edge
+    bool has_normal = false;
+    bool has_edge = false;
+    bool upper = false;    ///< the edge is the upper end of the voxel's interval
+    bool adopted = false;  ///< the plane is a neighbour's
+};
+
+/// First dispatch: each voxel on its own. An edge farther than R + a is still there, for neighbours to adopt.
+std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene& scene, const Settings& settings);
+
+/// Second dispatch: adoption (march and cubic only), then edges that cannot matter are dropped.
+std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
+                                   const std::vector<VoxelEdge>& own);
+
+/// Both dispatches. (dims.z, dims.y, dims.x) edges, in double; with `quantised`, what each dispatch stores goes
+/// through `quantise`, as on the GPU.
+std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
+                                      bool quantised = false);
+
+/// The edge after its way through the 64 stored bits.
+VoxelEdge quantise(const VoxelEdge& edge);
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,57 @@
+// Pass 3: which splats the camera sees, and which sheet each belongs to (method.md, 3_select_footprints).
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/reference/2_collect_splats.h"
+#include "engine/reference/footprints.h"
+#include "engine/scene/camera.h"
+
+namespace edgesplat::reference {
+
+/// A camera looking at a grid through a picture.
+struct View {
+    CameraFrame frame;
+    VolumeGeometry geometry;
+    int width = 0, height = 0;      ///< pixels
+    glm::dmat3 world_to_index{1};   ///< S^-1
+    glm::dvec3 eye_index{0};        ///< the eye in index space
+    double mm_per_voxel_along = 1;  ///< l_view
+
+    View(const Camera& camera, const VolumeGeometry& geometry, int width, int height);
+    /// Unit direction, index space, of the ray through the centre of pixel (x, y); y counts from the top.
+    glm::dvec3 ray(int x, int y) const;
+    /// z of an index-space point: mm along the view axis from the eye.
+    double depth(const glm::dvec3& index) const;
+};
+
+/// Pixels [x0, x1) x [y0, y1).
+struct PixelBox {
+    int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    bool empty() const { return x0 >= x1 || y0 >= y1; }
+};
+
+/// Sphere, index space, outside which a splat is 0.
+struct SplatSupport {
+    glm::dvec3 center{0};
+    double radius = 0;
+};
+
+/// Pixels whose centres a sphere in index space can cover, clipped to the picture; exact while the sphere lies in front
+/// of the eye plane, the whole picture while it touches that plane, empty behind it.
+PixelBox screen_box(const View& view, const SplatSupport& support);
+
+struct Selected {
+    bool kept = false;
+    int sheet = 0;  ///< from the first sheet that can occur
+    double z = 0;   ///< of the voxel centre, mm
+    SplatSupport support;
+    PixelBox box;
+};
+
+/// One entry per record.
+std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
+                                        const Settings& settings, const Footprints& footprints);
+
+}  // namespace edgesplat::reference

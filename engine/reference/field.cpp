@@ -1,0 +1,145 @@
+#include "engine/reference/field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace edgesplat::reference {
+
+namespace {
+
+double spline(const Field& field, const glm::dvec3& clamped_point) {
+    const glm::dvec3 base = glm::floor(clamped_point);
+    std::array<std::array<double, 4>, 3> weight{};
+    std::array<std::array<int, 4>, 3> index{};
+    for (int axis = 0; axis < 3; ++axis) {
+        const double t = clamped_point[axis] - base[axis];
+        const double s = 1 - t;
+        weight[axis] = {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
+                        t * t * t / 6};
+        const int last = field.dims[axis] - 1;
+        for (int k = 0; k < 4; ++k) {
+            int i = static_cast<int>(base[axis]) + k - 1;
+            if (i < 0) i = -i;
+            if (i > last) i = 2 * last - i;
+            index[axis][k] = std::clamp(i, 0, last);
+        }
+    }
+    double sum = 0;
+    for (int z = 0; z < 4; ++z) {
+        for (int y = 0; y < 4; ++y) {
+            for (int x = 0; x < 4; ++x) {
+                const glm::ivec3 i{index[0][x], index[1][y], index[2][z]};
+                sum += weight[0][x] * weight[1][y] * weight[2][z] *
+                       static_cast<double>(field.coefficients[field.offset(i)]);
+            }
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::size_t Field::offset(const glm::ivec3& i) const {
+    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
+               static_cast<std::size_t>(dims.x) +
+           static_cast<std::size_t>(i.x);
+}
+
+glm::ivec3 Field::voxel(std::size_t at) const {
+    const auto nx = static_cast<std::size_t>(dims.x);
+    const auto ny = static_cast<std::size_t>(dims.y);
+    return {static_cast<int>(at % nx), static_cast<int>(at / nx % ny), static_cast<int>(at / (nx * ny))};
+}
+
+int ScaledScene::material(double f) const {
+    return static_cast<int>(std::count_if(iso.begin(), iso.end(), [f](double j) { return j <= f; }));
+}
+
+double ScaledScene::lower(int m) const {
+    return m == 0 ? -std::numeric_limits<double>::infinity() : iso[static_cast<std::size_t>(m) - 1];
+}
+
+double ScaledScene::upper(int m) const {
+    return static_cast<std::size_t>(m) == iso.size() ? std::numeric_limits<double>::infinity()
+                                                     : iso[static_cast<std::size_t>(m)];
+}
+
+ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
+    const double low = static_cast<double>(volume.min_value);
+    const double range = static_cast<double>(volume.max_value) - low;
+    ScaledScene scaled;
+    for (const double iso : scene.iso_values) {
+        const double j = range > 0 ? (iso - low) / range : (iso <= low ? 0.0 : 1.0);
+        scaled.iso.push_back(static_cast<double>(static_cast<float>(j)));
+    }
+    for (const Material& material : scene.materials)
+        scaled.drawn.push_back(material.extinction > 0);
+    scaled.light = scene.light.kind != Light::Kind::None;
+    return scaled;
+}
+
+double sample(const Field& field, const glm::dvec3& p, bool cubic) {
+    const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
+    if (cubic) return spline(field, q);
+    const glm::ivec3 cell = glm::max(glm::min(glm::ivec3(glm::floor(q)), field.dims - 2), glm::ivec3(0));
+    const glm::dvec3 t = q - glm::dvec3(cell);
+    const auto row = [&](int y, int z) {
+        const double a = field.at(cell + glm::ivec3(0, y, z));
+        return a + t.x * (field.at(cell + glm::ivec3(1, y, z)) - a);
+    };
+    const auto slice = [&](int z) {
+        const double a = row(0, z);
+        return a + t.y * (row(1, z) - a);
+    };
+    const double a = slice(0);
+    return a + t.z * (slice(1) - a);
+}
+
+glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i) {
+    glm::dvec3 g(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 before = i;
+        glm::ivec3 after = i;
+        before[axis] = std::max(i[axis] - 1, 0);
+        after[axis] = std::min(i[axis] + 1, field.dims[axis] - 1);
+        const int span = after[axis] - before[axis];
+        if (span > 0) g[axis] = (field.at(after) - field.at(before)) / span;
+    }
+    return g;
+}
+
+glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic) {
+    const glm::dvec3 centre = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
+    glm::dvec3 g(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 before = centre;
+        glm::dvec3 after = centre;
+        before[axis] = std::max(centre[axis] - 1, 0.0);
+        after[axis] = std::min(centre[axis] + 1, static_cast<double>(field.dims[axis] - 1));
+        const double span = after[axis] - before[axis];
+        if (span > 0) g[axis] = (sample(field, after, cubic) - sample(field, before, cubic)) / span;
+    }
+    return g;
+}
+
+glm::dmat3 voxel_hessian(const Field& field, const glm::ivec3& i) {
+    glm::dmat3 h(0);
+    const auto step = [](int axis, int sign) {
+        glm::ivec3 e(0);
+        e[axis] = sign;
+        return e;
+    };
+    for (int a = 0; a < 3; ++a) {
+        h[a][a] = field.at(i + step(a, 1)) - 2 * field.at(i) + field.at(i + step(a, -1));
+        for (int b = a + 1; b < 3; ++b) {
+            h[a][b] = (field.at(i + step(a, 1) + step(b, 1)) - field.at(i + step(a, 1) + step(b, -1)) -
+                       field.at(i + step(a, -1) + step(b, 1)) + field.at(i + step(a, -1) + step(b, -1))) /
+                      4;
+            h[b][a] = h[a][b];
+        }
+    }
+    return h;
+}
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,51 @@
+// The scaled field F and the ways it is sampled and differentiated (method.md, 1_estimate_edges).
+#pragma once
+
+#include <array>
+#include <glm/glm.hpp>
+#include <span>
+#include <vector>
+
+#include "engine/scene/scene.h"
+#include "engine/volume/volume.h"
+
+namespace edgesplat::reference {
+
+/// Samples as the GPU holds them. Positions are in index space (voxels); p is clamped to the volume.
+struct Field {
+    glm::ivec3 dims{0};                   ///< voxels per axis, each >= 1
+    std::span<const float> values;        ///< F, scaled to 0..1, (dims.z, dims.y, dims.x)
+    std::span<const float> coefficients;  ///< cubic B-spline coefficients, alike; empty unless `cubic` is asked for
+
+    std::size_t offset(const glm::ivec3& i) const;
+    glm::ivec3 voxel(std::size_t offset) const;
+    glm::ivec3 clamped(const glm::ivec3& i) const { return glm::clamp(i, glm::ivec3(0), dims - 1); }
+    double at(const glm::ivec3& i) const { return static_cast<double>(values[offset(clamped(i))]); }
+};
+
+/// What estimation needs of a scene, in the units of F.
+struct ScaledScene {
+    std::vector<double> iso;       ///< J_j, ascending; float32 precision, as the GPU compares them
+    std::vector<bool> drawn;       ///< per material: extinction > 0
+    bool light = false;            ///< the scene has a light, so splats want normals
+    int material(double f) const;  ///< number of iso-values <= f
+    double lower(int m) const;     ///< J_{m-1}, -infinity below the first
+    double upper(int m) const;     ///< J_m, +infinity above the last
+};
+
+/// The scene in F's units. In a constant volume J is 0 for iso-values <= the value and 1 for the others.
+ScaledScene scale_scene(const Scene& scene, const Volume& volume);
+
+/// T(p), trilinear; with `cubic` the cubic B-spline of the coefficients (mirrored at the borders).
+double sample(const Field& field, const glm::dvec3& p, bool cubic = false);
+
+/// g(i): central differences, one-sided at a border, 0 along an axis of one voxel.
+glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i);
+
+/// G(p): differences of `sample` one voxel to either side, divided by the length left after clamping.
+glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic = false);
+
+/// H(i) by central differences with clamped neighbours; symmetric.
+glm::dmat3 voxel_hessian(const Field& field, const glm::ivec3& i);
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,73 @@
+#include "engine/reference/footprints.h"
+
+#include <cmath>
+
+#include "footprints/kernel.h"
+
+namespace edgesplat::reference {
+
+namespace {
+
+PaperEdge paper_edge(const VoxelEdge& edge) {
+    return {edge.D, {}};
+}
+
+}  // namespace
+
+Footprints::Footprints(const Settings& settings)
+    : settings_(settings),
+      band_{settings.edge_half_width, settings.edge_strength},
+      largest_radius_(largest_support_radius(band_)) {
+    const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
+    if (tabled && settings.warp == WarpFamily::Edge) {
+        table_ = std::make_shared<const FootprintTable>(load_footprint_table(band_).table);
+    }
+}
+
+bool Footprints::is_wall(const VoxelEdge& edge) const {
+    return edge.D2 < kKernelRadius + band_.half_width;
+}
+
+Edge Footprints::faces(const VoxelEdge& edge) const {
+    // The two-dimensional short cut knows one face only.
+    if (settings_.footprints == FootprintMode::Warp2d) return {edge.D, band_};
+    return wall_edge(edge.D, edge.D2, band_);
+}
+
+bool Footprints::warped(const VoxelEdge& edge) const {
+    if (!edge.has_edge || settings_.footprints == FootprintMode::Isotropic) return false;
+    if (settings_.warp == WarpFamily::Paper) return edge.D < kKernelRadius;
+    return std::abs(edge.D) < kKernelRadius + band_.half_width && faces(edge).band.strength > 1;
+}
+
+double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
+    const double r2 = glm::dot(r, r);
+    if (!warped(edge)) return kernel(r2);
+    const double t = glm::dot(r, edge.n);
+    const double w = settings_.warp == WarpFamily::Paper ? warped_coordinate(t, paper_edge(edge))
+                                                         : warped_coordinate(t, faces(edge));
+    return kernel(r2 - t * t + w * w);
+}
+
+double Footprints::along_ray(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
+    const Ray ray{glm::dot(p, p), glm::dot(p, edge.n), glm::dot(u, edge.n)};
+    if (!warped(edge)) return kernel_footprint(ray.rho2);
+    const bool flat = settings_.footprints == FootprintMode::Warp2d;
+    if (settings_.warp == WarpFamily::Paper) {
+        return flat ? warp2d_footprint(ray, paper_edge(edge)) : procedural_footprint(ray, paper_edge(edge));
+    }
+    if (flat) return warp2d_footprint(ray, faces(edge));
+    if (table_ && !is_wall(edge)) {
+        return settings_.footprints == FootprintMode::Table ? table_->nearest(ray, edge.D) : table_->lerp(ray, edge.D);
+    }
+    return procedural_footprint(ray, faces(edge));
+}
+
+Support Footprints::support(const VoxelEdge& edge) const {
+    if (!warped(edge)) return {0, kKernelRadius, kKernelRadius};
+    // The paper's curve moves points by less than a voxel, both ways: a bound, not the exact support.
+    if (settings_.warp == WarpFamily::Paper) return {0, kKernelRadius + 1, kKernelRadius + 1};
+    return {0, largest_radius_, largest_radius_};
+}
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,42 @@
+// One splat's kernel, at a point and along a ray: footprints/ behind the settings' choice of warp and mode.
+#pragma once
+
+#include <memory>
+
+#include "engine/reference/1_estimate_edges.h"
+#include "footprints/footprint_cache.h"
+#include "footprints/footprint_integral.h"
+
+namespace edgesplat::reference {
+
+/// What the settings make of a voxel's edge. Lengths in voxels, index space; positions relative to the voxel centre.
+class Footprints {
+  public:
+    /// Builds (or loads from the cache) the table where the mode needs one, which takes seconds.
+    explicit Footprints(const Settings& settings);
+
+    /// Whether the kernel is warped at all; otherwise the closed-form isotropic footprint holds in every mode.
+    bool warped(const VoxelEdge& edge) const;
+
+    /// h at the point r: K of the warped position.
+    double at_point(const VoxelEdge& edge, const glm::dvec3& r) const;
+
+    /// Integral of h along the line p + z u in the settings' footprint mode; p the line's point nearest to the voxel,
+    /// u a unit vector.
+    double along_ray(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
+
+    /// Sphere around x + shift n outside which h is 0. A bound that holds for every edge of these settings, since the
+    /// smallest sphere takes a search per edge; `warped_support` gives that one.
+    Support support(const VoxelEdge& edge) const;
+
+  private:
+    Edge faces(const VoxelEdge& edge) const;  ///< edge family, with the rule for thin walls
+    bool is_wall(const VoxelEdge& edge) const;
+
+    Settings settings_;
+    EdgeBand band_;
+    double largest_radius_;  ///< of any warped kernel, voxels
+    std::shared_ptr<const FootprintTable> table_;
+};
+
+}  // namespace edgesplat::reference

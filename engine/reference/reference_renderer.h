@@ -1,0 +1,51 @@
+// The whole frame in double precision, passes 1 to 7: the oracle the GPU is compared with.
+#pragma once
+
+#include "engine/image.h"
+#include "engine/reference/4_sort_sheets.h"
+#include "engine/reference/5_draw_splats.h"
+
+namespace edgesplat::reference {
+
+enum class Output { Color, Tau, Depth, Distance, Normal };
+
+/// Sheets drawn before pixels are tested for saturation again.
+constexpr int kSheetsPerGroup = 16;
+
+/// Passes 1 of a volume and a scene, kept for several frames. The volume must outlive it.
+class PreparedVolume {
+  public:
+    /// With `quantised`, edges go through the 64 bits the GPU stores. Throws Error for an invalid scene or settings.
+    PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised = false);
+
+    const Volume& volume() const { return *volume_; }
+    const Scene& scene() const { return scene_; }
+    const Settings& settings() const { return settings_; }
+    const ScaledScene& scaled_scene() const { return scaled_; }
+    Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }
+    const std::vector<VoxelEdge>& edges() const { return edges_; }
+
+    /// Passes 2 to 7. 4 channels (Color), 3 (Normal) or 1, as engine/renderer.h says of each. Throws Error for an
+    /// invalid camera or a picture without pixels.
+    Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
+
+  private:
+    const Volume* volume_;
+    Scene scene_;
+    Settings settings_;
+    ScaledScene scaled_;
+    std::vector<float> values_, coefficients_;
+    std::vector<VoxelEdge> edges_;
+    Footprints footprints_;
+};
+
+/// All passes at once.
+Image render(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings, int width,
+             int height, Output output = Output::Color);
+
+/// The model itself, without splats, sheets or tables (design.md, 9): rays marched in steps of `step` voxels through
+/// the sum of tau_i h_i(x). Color (4 channels) or Tau (1); other outputs throw Error.
+Image direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
+                        Output output = Output::Color, double step = 0.05);
+
+}  // namespace edgesplat::reference
