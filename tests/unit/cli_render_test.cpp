@@ -97,9 +97,9 @@ TEST_F(CliRender, StatisticsAreComplete) {
 }
 
 TEST_F(CliRender, VoxelCoordinatesAndWorldCoordinatesAgree) {
-    // The grid of builtin:sphere starts at 0,0,0 with 1 mm: index and world are the same there.
-    render("builtin:sphere:24 -o a.exr --size 24x24 --eye 12,-30,12 --direction 0,1,0.05 --fov 40");
-    render("builtin:sphere:24 -o b.exr --size 24x24 --eye 12,-30,12 --direction 0,1,0.05 --fov 40 --voxel");
+    // On its default grid builtin:sphere starts at 0,0,0 with 1 mm: index and world are the same there.
+    render("builtin:sphere -o a.exr --size 24x24 --eye 32,-30,32 --direction 0,1,0.05 --fov 40");
+    render("builtin:sphere -o b.exr --size 24x24 --eye 32,-30,32 --direction 0,1,0.05 --fov 40 --voxel");
     EXPECT_EQ(read_image(folder_ / "a.exr").image.pixels, read_image(folder_ / "b.exr").image.pixels);
 }
 
