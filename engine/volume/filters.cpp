@@ -198,12 +198,18 @@ std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
                 const double other = mean[static_cast<std::size_t>(i)];
                 peak = i < bin ? other < here : other <= here;
             }
-            if (peak) result.push_back({low + (static_cast<double>(bin) + 0.5) * width, here});
+            // Rare bright voxels have the steepest gradients, noise in air has the most voxels: the mean times the root
+            // of the count lets neither win.
+            if (peak) {
+                const double voxels = static_cast<double>(gradients.count[static_cast<std::size_t>(bin)]);
+                result.push_back({low + (static_cast<double>(bin) + 0.5) * width, here * std::sqrt(voxels)});
+            }
         }
         std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.strength > b.strength; });
+        const double strongest = result.empty() ? 1 : result.front().strength;
+        std::erase_if(result, [&](const auto& suggestion) { return !(suggestion.strength > 1e-3 * strongest); });
         for (auto& suggestion : result)
-            suggestion.strength /= std::max(1e-300, result.front().strength + 0.0);
-        if (!result.empty()) result.front().strength = 1;
+            suggestion.strength /= strongest;
     }
     if (result.size() > static_cast<std::size_t>(count)) result.resize(static_cast<std::size_t>(count));
     return result;

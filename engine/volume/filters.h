@@ -39,11 +39,12 @@ Histogram histogram(const Volume& volume, int bins);
 
 struct IsoSuggestion {
     double value = 0;     ///< in the volume's unit
-    double strength = 0;  ///< mean gradient magnitude at that value, relative to the strongest one, (0, 1]
+    double strength = 0;  ///< mean gradient magnitude x root of the number of voxels, relative to the strongest, (0, 1]
 };
 
 /// Values at which surfaces are likely: peaks of the mean gradient magnitude over the value axis (Kindlmann and Durkin
-/// 1998, in their simplest form). Strongest first, at most `count`; empty for a constant volume.
+/// 1998, in their simplest form); halfway between neighbouring values where there are few (masks, labels).
+/// Strongest first, at most `count`; empty for a constant volume.
 std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count = 4);
 
 }  // namespace edgesplat

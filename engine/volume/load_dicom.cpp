@@ -27,6 +27,7 @@ struct Slice {
 };
 
 itk::GDCMImageIO::Pointer opened(const std::string& file, std::string& chatter) {
+    check_dicom_is_whole(file);
     auto io = itk::GDCMImageIO::New();
     std::string reason;
     {

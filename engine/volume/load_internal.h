@@ -29,6 +29,10 @@ std::size_t checked_bytes(const std::string& path, const std::vector<std::size_t
 /// Fails when `needed` bytes cannot come out of `stored` bytes even by the best ratio deflate can reach.
 void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored);
 
+/// Fail with "truncated" when the structure of the file goes on after its end; files they do not understand pass.
+void check_dicom_is_whole(const std::string& path);
+void check_netcdf_is_whole(const std::string& path);
+
 /// Which component and frame to take of those the file has; fails with how to choose where it is not said.
 std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count);
 std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count);
@@ -71,10 +75,12 @@ enum class ItkFormat { Nrrd, Meta, Nifti, Vtk, Minc, Gipl };
 /// How a file is handed to ITK and what is said of it.
 struct ItkRequest {
     ItkFormat format = ItkFormat::Nrrd;
-    std::string path;                 ///< what the user gave: the name in messages
-    std::string read_path;            ///< what ITK opens; empty: `path`
-    std::string stored_type;          ///< empty: as ITK says
-    std::size_t stored_bytes = 0;     ///< size of the data on disk; 0: not to be checked
+    std::string path;              ///< what the user gave: the name in messages
+    std::string read_path;         ///< what ITK opens; empty: `path`
+    std::string stored_type;       ///< empty: as ITK says
+    std::size_t stored_bytes = 0;  ///< size of the data on disk; 0: not to be checked
+    /// Called with the bytes and samples that will be read, before they are; may throw.
+    std::function<void(std::size_t bytes, std::size_t samples)> check_data;
     bool bits_are_floats = false;     ///< integers are the bit patterns of floats (see load_nifti.cpp)
     double slope = 1, intercept = 0;  ///< applied to those floats
 };

@@ -77,9 +77,13 @@ void guarded(const ItkRequest& request, bool strict, Call&& call) {
         chatter = capture.text();
     }
     if (reason.empty() && strict) reason = chatter;
-    if (tidy(reason).empty()) return;
     auto text = tidy(reason);
+    if (text.empty()) return;
     if (reason != chatter && !tidy(chatter).empty()) text += " (" + tidy(chatter) + ")";
+    // The user never saw our temporary files.
+    if (!request.read_path.empty() && request.read_path != request.path)
+        for (auto at = text.find(request.read_path); at != std::string::npos; at = text.find(request.read_path))
+            text.replace(at, request.read_path.size(), "the file");
     fail("{}: cannot be read as {}: {}", request.path, name_of(request.format), text);
 }
 
@@ -179,6 +183,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
     const std::size_t components = io->GetNumberOfComponents();
     const std::size_t needed = checked_bytes(path, dims, components * size_of(type));
     if (request.stored_bytes > 0) check_stored_size(path, needed, request.stored_bytes);
+    if (request.check_data) request.check_data(needed, needed / size_of(type));
     const std::size_t component = chosen_component(path, options, components);
     std::size_t frames = 1;
     for (std::size_t axis = 3; axis < dims.size(); ++axis)

@@ -1,5 +1,6 @@
-// NIfTI-1/2 and Analyze through ITK. Two of its habits are worked around by handing it a temporary file with the same
+// NIfTI-1/2 and Analyze through ITK. Three of its habits are worked around by handing it a temporary file with the same
 // header, slightly edited, and the same bytes:
+//  - it does not notice that voxels are missing at the end of a file: the bytes are counted on their way;
 //  - its NIfTI library replaces NaN and infinity by 0 without a word: floats travel as integers of the same size and
 //    become floats again here, after which slope and intercept are applied;
 //  - with a vector intent and a slope it writes past its buffers (heap corruption, ITK 5.2.1), and 4-D files are read
@@ -86,6 +87,17 @@ class Stream {
             fail("{}: truncated: no data at byte {}", name_, offset);
     }
 
+    // A gzip file ends with a sum of all it held: worth reading on for, in what is left of it.
+    void check_end() {
+        std::vector<char> rest(1 << 18);
+        if (gzdirect(file_) != 0) return;
+        while (read(rest.data(), rest.size()) > 0) {
+        }
+        int code = Z_OK;
+        (void)gzerror(file_, &code);
+        if (code == Z_BUF_ERROR) fail("{}: truncated: its gzip data have no end", name_);
+    }
+
   private:
     std::string name_;
     gzFile file_;
@@ -132,6 +144,8 @@ Header parse(const std::string& path, const std::string& header_file) {
     for (std::size_t axis = 1; axis < 8; ++axis) {
         if (static_cast<long long>(axis) > header.dim[0]) header.dim[axis] = 1;
         if (axis > 3 && header.dim[axis] == 0) header.dim[axis] = 1;  // Analyze writers leave them so
+        if (axis > 3 && header.dim[axis] > 65535)
+            fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
         if (header.dim[axis] < 1) fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
     }
     return header;
@@ -208,84 +222,82 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
                        .stored_bytes = stored};
     if (request.stored_type.empty()) fail("{}: voxels of NIfTI type {} cannot be read", path, header.datatype);
 
-    Volume volume;
-    if (!more_axes && !floats) {
-        volume = load_through_itk(request, options);
-    } else {
-        LoadOptions rest = options;
-        std::size_t index = 0;
-        if (more_axes) {
-            const std::size_t frames = unsigned_dim(4) * unsigned_dim(6) * unsigned_dim(7);
-            std::size_t frame = 0;
-            if (dim[5] > 1 || frames == 1) {
-                index = chosen_component(path, options, unsigned_dim(5));
-                rest.component.reset();
-            }
-            frame = chosen_frame(path, options, frames);
-            rest.frame.reset();
-            const std::size_t t = frame % unsigned_dim(4), rest_of_frame = frame / unsigned_dim(4);
-            index = t + unsigned_dim(4) * (index + unsigned_dim(5) * rest_of_frame);
+    LoadOptions rest = options;
+    std::size_t index = 0;
+    if (more_axes) {
+        const std::size_t frames = unsigned_dim(4) * unsigned_dim(6) * unsigned_dim(7);
+        std::size_t frame = 0;
+        if (dim[5] > 1 || frames == 1) {
+            index = chosen_component(path, options, unsigned_dim(5));
+            rest.component.reset();
         }
-        const Layout& at = *header.layout;
-        const std::size_t data_offset = header.single_file ? at.header_size + 4 : 0;
-        header.set_dim(0, 3);
-        for (std::size_t axis = 1; axis < 8; ++axis)
-            header.set_dim(axis, axis <= 3 ? dim[axis] : 1);
-        if (at.wide)
-            header.set<std::int64_t>(at.vox_offset, static_cast<std::int64_t>(data_offset));
-        else
-            header.set<float>(at.vox_offset, static_cast<float>(data_offset));
-        if (!header.analyze) {
-            if (at.wide)
-                header.set<std::int32_t>(at.intent_code, 0);
-            else
-                header.set<std::int16_t>(at.intent_code, 0);
-        }
-        if (floats) {
-            header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
-            if (!header.analyze && at.wide) {
-                header.set<double>(at.scl_slope, 0);
-                header.set<double>(at.scl_inter, 0);
-            } else if (!header.analyze) {
-                header.set<float>(at.scl_slope, 0);
-                header.set<float>(at.scl_inter, 0);
-            }
-            request.bits_are_floats = true;
-            const bool scaled = std::isfinite(header.slope) && header.slope != 0 && std::isfinite(header.intercept);
-            request.slope = scaled ? header.slope : 1;
-            request.intercept = scaled ? header.intercept : 0;
-        }
-        const TemporaryFolder folder;
-        const auto head_path = folder.path() / (header.single_file ? "block.nii" : "block.hdr");
-        std::ofstream head(head_path, std::ios::binary);
-        head.write(reinterpret_cast<const char*>(header.bytes.data()),
-                   static_cast<std::streamsize>(header.bytes.size()));
-        std::ofstream body;
-        if (header.single_file)
-            head.write("\0\0\0\0", 4);
-        else
-            body.open(folder.path() / "block.img", std::ios::binary);
-        std::ofstream& out = header.single_file ? head : body;
-        Stream data(path, data_file);
-        data.skip_to(header.offset + index * bytes);
-        std::vector<char> buffer(1 << 20);
-        for (std::size_t done = 0; done < bytes;) {
-            const std::size_t want = std::min(buffer.size(), bytes - done);
-            const std::size_t got = data.read(buffer.data(), want);
-            if (got == 0)
-                fail("{}: truncated: {} of {} bytes of voxels{}", path, done, bytes,
-                     more_axes ? " of the chosen frame" : "");
-            out.write(buffer.data(), static_cast<std::streamsize>(got));
-            done += got;
-            report(options, 0.5 * static_cast<double>(done) / static_cast<double>(bytes), "reading voxels");
-        }
-        head.close();
-        if (body.is_open()) body.close();
-        if (!head || (!header.single_file && !body)) fail("{}: cannot write a temporary file of {} bytes", path, bytes);
-        request.read_path = head_path.string();
-        request.stored_bytes = 0;
-        volume = load_through_itk(request, rest);
+        frame = chosen_frame(path, options, frames);
+        rest.frame.reset();
+        const std::size_t t = frame % unsigned_dim(4), rest_of_frame = frame / unsigned_dim(4);
+        index = t + unsigned_dim(4) * (index + unsigned_dim(5) * rest_of_frame);
     }
+    // Also keeps the product below from overflowing.
+    if (static_cast<double>(index) * static_cast<double>(bytes) > 1040.0 * static_cast<double>(stored) + 4096)
+        fail("{}: truncated: the chosen frame lies beyond the end of the file", path);
+    const Layout& at = *header.layout;
+    const std::size_t data_offset = header.single_file ? at.header_size + 4 : 0;
+    header.set_dim(0, 3);
+    for (std::size_t axis = 1; axis < 8; ++axis)
+        header.set_dim(axis, axis <= 3 ? dim[axis] : 1);
+    if (at.wide)
+        header.set<std::int64_t>(at.vox_offset, static_cast<std::int64_t>(data_offset));
+    else
+        header.set<float>(at.vox_offset, static_cast<float>(data_offset));
+    if (!header.analyze) {
+        if (at.wide)
+            header.set<std::int32_t>(at.intent_code, 0);
+        else
+            header.set<std::int16_t>(at.intent_code, 0);
+    }
+    if (floats) {
+        header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
+        if (!header.analyze && at.wide) {
+            header.set<double>(at.scl_slope, 0);
+            header.set<double>(at.scl_inter, 0);
+        } else if (!header.analyze) {
+            header.set<float>(at.scl_slope, 0);
+            header.set<float>(at.scl_inter, 0);
+        }
+        request.bits_are_floats = true;
+        const bool scaled = std::isfinite(header.slope) && header.slope != 0 && std::isfinite(header.intercept);
+        request.slope = scaled ? header.slope : 1;
+        request.intercept = scaled ? header.intercept : 0;
+    }
+    const TemporaryFolder folder;
+    const auto head_path = folder.path() / (header.single_file ? "block.nii" : "block.hdr");
+    std::ofstream head(head_path, std::ios::binary);
+    head.write(reinterpret_cast<const char*>(header.bytes.data()), static_cast<std::streamsize>(header.bytes.size()));
+    std::ofstream body;
+    if (header.single_file)
+        head.write("\0\0\0\0", 4);
+    else
+        body.open(folder.path() / "block.img", std::ios::binary);
+    std::ofstream& out = header.single_file ? head : body;
+    Stream data(path, data_file);
+    data.skip_to(header.offset + index * bytes);
+    std::vector<char> buffer(1 << 20);
+    for (std::size_t done = 0; done < bytes;) {
+        const std::size_t want = std::min(buffer.size(), bytes - done);
+        const std::size_t got = data.read(buffer.data(), want);
+        if (got == 0)
+            fail("{}: truncated: {} of {} bytes of voxels{}", path, done, bytes,
+                 more_axes ? " of the chosen frame" : "");
+        out.write(buffer.data(), static_cast<std::streamsize>(got));
+        done += got;
+        report(options, 0.5 * static_cast<double>(done) / static_cast<double>(bytes), "reading voxels");
+    }
+    data.check_end();
+    head.close();
+    if (body.is_open()) body.close();
+    if (!head || (!header.single_file && !body)) fail("{}: cannot write a temporary file of {} bytes", path, bytes);
+    request.read_path = head_path.string();
+    request.stored_bytes = 0;
+    auto volume = load_through_itk(request, rest);
     if (header.analyze)
         volume.notes.push_back("Analyze files do not say which side is left: the axes are taken as they are stored.");
     return volume;

@@ -44,7 +44,7 @@ void check_readable_file(const std::string& path) {
 
 std::string first_bytes(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    std::string bytes(512, '\0');
+    std::string bytes(1024, '\0');
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     return bytes;
@@ -57,17 +57,34 @@ Volume load_vtk(const std::string& path, const std::string& head, const LoadOpti
     const auto at = upper.find("\nDATASET");
     if (at != std::string::npos && upper.find("STRUCTURED_POINTS", at) == std::string::npos)
         fail("{}: a VTK file, but not image data (DATASET STRUCTURED_POINTS)", path);
-    std::size_t stored = fs::file_size(path);
-    if (upper.find("\nASCII") != std::string::npos) stored = 0;
-    auto volume = load_through_itk({.format = ItkFormat::Vtk, .path = path, .stored_bytes = stored}, options);
-    // ITK's reader fills what a short binary file lacks with nothing at all.
-    SampleType type{};
-    if (stored > 0 && sample_type_named(volume.stored_type, type)) {
-        const auto bytes = volume.values.size() * size_of(type);
-        if (bytes > stored)
-            fail("{}: truncated: {} bytes of voxels promised, the file has {} bytes", path, bytes, stored);
+    // ITK's reader leaves what a short file lacks as it was in memory. The values begin after the line that names their
+    // table, or the one that names them where they have none.
+    std::size_t begin = 0;
+    for (const char* key : {"\nLOOKUP_TABLE", "\nSCALARS", "\nCOLOR_SCALARS", "\nVECTORS", "\nTENSORS"}) {
+        const auto found = upper.find(key);
+        if (found == std::string::npos) continue;
+        begin = upper.find('\n', found + 1);
+        break;
     }
-    return volume;
+    if (begin == 0 || begin == std::string::npos) fail("{}: a VTK file without values at its points", path);
+    const bool ascii = upper.find("\nASCII") != std::string::npos;
+    const auto check_data = [&](std::size_t bytes, std::size_t samples) {
+        const std::size_t stored = fs::file_size(path) - begin - 1;
+        if (!ascii && bytes > stored) fail("{}: truncated: {} of {} bytes of voxels", path, stored, bytes);
+        if (!ascii) return;
+        std::ifstream file(path);
+        file.seekg(static_cast<std::streamoff>(begin));
+        std::size_t found = 0;
+        for (std::string word; found < samples && file >> word;)
+            ++found;
+        if (found < samples) fail("{}: truncated: {} of {} values", path, found, samples);
+    };
+    return load_through_itk({.format = ItkFormat::Vtk, .path = path, .check_data = check_data}, options);
+}
+
+Volume load_minc(const std::string& path, const LoadOptions& options) {
+    check_netcdf_is_whole(path);
+    return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)}, options);
 }
 
 Volume load_file(const std::string& path, const LoadOptions& options) {
@@ -78,8 +95,7 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
     if (starts("# vtk DataFile")) return load_vtk(path, head, options);
     if (head.find("<VTKFile") != std::string::npos) return load_vti(path, options);
     if (starts("CDF\x01") || starts("CDF\x02") || (starts("\x89HDF") && ends_with_any(path, {".mnc", ".mnc2"})))
-        return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)},
-                                options);
+        return load_minc(path, options);
     if (ends_with_any(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}))
         return load_nifti(path, options);
     if (ends_with_any(path, {".mha", ".mhd"})) return load_meta(path, options);

@@ -5,9 +5,11 @@
 #include <vtkCellData.h>
 #include <vtkDataArray.h>
 #include <vtkImageData.h>
+#include <vtkInformation.h>
 #include <vtkMatrix3x3.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
+#include <vtkStreamingDemandDrivenPipeline.h>
 #include <vtkXMLImageDataReader.h>
 #endif
 
@@ -68,6 +70,7 @@ Volume load_vti(const std::string& path, const LoadOptions& options) {
         chatter = capture.text();
     }
     if (!readable) fail("{}: a VTK XML file, but not image data: {}", path, tidy(chatter));
+    if (chatter.find("rror") != std::string::npos) fail("{}: truncated or damaged: {}", path, tidy(chatter));
     int extent[6] = {0, -1, 0, -1, 0, -1};
     reader->GetOutputInformation(0)->Get(vtkStreamingDemandDrivenPipeline::WHOLE_EXTENT(), extent);
     std::vector<std::size_t> dims;

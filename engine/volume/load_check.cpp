@@ -1,0 +1,193 @@
+// Is all of the file there? Libraries that go on with what memory held (netCDF, NIfTI) or abort the program on an
+// assertion (GDCM as Debian builds it) are only given files whose structure ends where the file does.
+#include <cstdint>
+#include <fstream>
+
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat::detail {
+namespace {
+
+class Bytes {
+  public:
+    explicit Bytes(const std::string& path)
+        : file_(path, std::ios::binary), size_(std::filesystem::file_size(path)), path_(path) {}
+
+    std::uint64_t size() const { return size_; }
+    std::uint64_t at() const { return at_; }
+    std::uint64_t left() const { return size_ - at_; }
+    void skip(std::uint64_t count) {
+        if (count > left()) truncated();
+        at_ += count;
+    }
+    std::uint64_t number(int bytes, bool big) {
+        if (left() < static_cast<std::uint64_t>(bytes)) truncated();
+        unsigned char raw[8] = {};
+        file_.seekg(static_cast<std::streamoff>(at_));
+        file_.read(reinterpret_cast<char*>(raw), bytes);
+        at_ += static_cast<std::uint64_t>(bytes);
+        std::uint64_t value = 0;
+        for (int i = 0; i < bytes; ++i)
+            value = (value << 8) | raw[big ? i : bytes - 1 - i];
+        return value;
+    }
+    std::string text(std::uint64_t count) {
+        if (count > left()) truncated();
+        std::string value(count, '\0');
+        file_.seekg(static_cast<std::streamoff>(at_));
+        file_.read(value.data(), static_cast<std::streamsize>(count));
+        at_ += count;
+        return value;
+    }
+    [[noreturn]] void truncated() const { fail("{}: truncated: its data go on after the end of the file", path_); }
+
+  private:
+    std::ifstream file_;
+    std::uint64_t size_, at_ = 0;
+    std::string path_;
+};
+
+constexpr std::uint32_t kUndefined = 0xffffffff;
+constexpr std::uint32_t kItem = 0xfffee000, kItemEnd = 0xfffee00d, kSequenceEnd = 0xfffee0dd;
+// Not a fault: a file whose structure this walk does not understand is left to GDCM.
+struct NotUnderstood {};
+
+struct Dataset {
+    Bytes& bytes;
+    bool big, explicit_vr;
+
+    std::uint32_t tag() {
+        const auto group = bytes.number(2, big);
+        return static_cast<std::uint32_t>(group << 16 | bytes.number(2, big));
+    }
+    // Length of the value after the tag; `vr` is empty where there is none.
+    std::uint32_t length(std::string& vr) {
+        vr.clear();
+        if (!explicit_vr) return static_cast<std::uint32_t>(bytes.number(4, big));
+        vr = bytes.text(2);
+        for (const char c : vr)
+            if (c < 'A' || c > 'Z') throw NotUnderstood{};
+        static constexpr std::string_view kLong = "OB OW OF OD OL OV SQ UT UN UC UR SV UV";
+        if (kLong.find(vr) == std::string_view::npos) return static_cast<std::uint32_t>(bytes.number(2, big));
+        bytes.skip(2);
+        return static_cast<std::uint32_t>(bytes.number(4, big));
+    }
+    // Elements up to `end`, or up to the end-of-item tag.
+    void elements(std::uint64_t end, int depth) {
+        std::string vr;
+        while (bytes.at() < end) {
+            const auto here = tag();
+            if (here == kItemEnd) {
+                bytes.skip(4);
+                return;
+            }
+            const auto count = length(vr);
+            if (count != kUndefined)
+                bytes.skip(count);
+            else
+                items(here == 0x7fe00010, depth + 1);
+        }
+    }
+    // Items of a sequence of undefined length, or the fragments of compressed pixels.
+    void items(bool fragments, int depth) {
+        if (depth > 32) throw NotUnderstood{};
+        while (true) {
+            const auto here = tag();
+            const auto count = static_cast<std::uint32_t>(bytes.number(4, big));
+            if (here == kSequenceEnd) return;
+            if (here != kItem || (fragments && count == kUndefined)) throw NotUnderstood{};
+            if (count != kUndefined)
+                bytes.skip(count);
+            else
+                elements(bytes.size(), depth + 1);
+        }
+    }
+};
+
+std::uint64_t padded(std::uint64_t count) {
+    return (count + 3) / 4 * 4;
+}
+
+std::uint64_t netcdf_type_size(std::uint64_t type) {
+    constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8};
+    if (type < 1 || type > 6) throw NotUnderstood{};
+    return kSizes[type];
+}
+
+void skip_attributes(Bytes& bytes) {
+    bytes.skip(4);
+    const auto count = bytes.number(4, true);
+    for (std::uint64_t i = 0; i < count; ++i) {
+        bytes.skip(padded(bytes.number(4, true)));
+        const auto size = netcdf_type_size(bytes.number(4, true));
+        bytes.skip(padded(size * bytes.number(4, true)));
+    }
+}
+
+}  // namespace
+
+void check_dicom_is_whole(const std::string& path) {
+    Bytes bytes(path);
+    if (bytes.size() < 132 || (bytes.skip(128), bytes.text(4)) != "DICM") return;
+    try {
+        Dataset meta{bytes, false, true};
+        std::string vr, syntax;
+        while (bytes.left() > 0) {
+            const auto start = bytes.at();
+            const auto group = bytes.number(2, false), element = bytes.number(2, false);
+            if (group != 2) {
+                Bytes rest(path);
+                rest.skip(start);
+                const bool big = syntax == "1.2.840.10008.1.2.2";
+                if (syntax.empty() || syntax == "1.2.840.10008.1.2.1.99") return;  // unknown, or deflated
+                Dataset data{rest, big, syntax != "1.2.840.10008.1.2"};
+                data.elements(rest.size(), 0);
+                return;
+            }
+            const auto count = meta.length(vr);
+            if (count == kUndefined) return;
+            auto value = bytes.text(count);
+            while (!value.empty() && (value.back() == '\0' || value.back() == ' '))
+                value.pop_back();
+            if (element == 0x10) syntax = value;
+        }
+    } catch (const NotUnderstood&) {
+        return;
+    }
+}
+
+void check_netcdf_is_whole(const std::string& path) {
+    Bytes bytes(path);
+    if (bytes.text(3) != "CDF") return;
+    const bool wide = bytes.number(1, true) == 2;
+    bytes.skip(4);
+    try {
+        bytes.skip(4);
+        std::vector<std::uint64_t> dims(bytes.number(4, true));
+        for (auto& dim : dims) {
+            bytes.skip(padded(bytes.number(4, true)));
+            dim = bytes.number(4, true);
+        }
+        skip_attributes(bytes);
+        bytes.skip(4);
+        const auto variables = bytes.number(4, true);
+        for (std::uint64_t i = 0; i < variables; ++i) {
+            bytes.skip(padded(bytes.number(4, true)));
+            std::uint64_t items = 1;
+            for (auto left = bytes.number(4, true); left > 0; --left) {
+                const auto id = bytes.number(4, true);
+                if (id >= dims.size()) throw NotUnderstood{};
+                items *= dims[id];
+            }
+            skip_attributes(bytes);
+            const auto size = items * netcdf_type_size(bytes.number(4, true));
+            bytes.skip(4);
+            const auto begin = bytes.number(wide ? 8 : 4, true);
+            if (begin > bytes.size() || size > bytes.size() - begin) bytes.truncated();
+        }
+    } catch (const NotUnderstood&) {
+        return;
+    }
+}
+
+}  // namespace edgesplat::detail
