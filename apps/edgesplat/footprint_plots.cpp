@@ -54,8 +54,6 @@ std::vector<Figure> figures(const EdgeBand& band) {
     PaperProfile smooth = profile;
     smooth.curve = PaperCurve::Smooth;
     const auto edge = [band](double x) { return kEdge + edge_warp(x - kEdge, band); };
-    // The edge family puts the data's own transition, which is at 1/2, where the edge is.
-    const auto edge_reconstructed = [edge](double x) { return reconstruct(edge(x) + 0.5 - kEdge); };
 
     Figure profile_figure = {"figure4_profile.png", "Figure 4: warp profile p", "x", "p(x)", 0, 1, {},
                              "set key left top"};
@@ -63,7 +61,7 @@ std::vector<Figure> figures(const EdgeBand& band) {
                              {"paper-smooth", [=](double x) { return paper_profile(x, smooth); }, "lw 2 dt 2"},
                              {"no warp", [](double x) { return x; }, "lw 1 lc rgb 'gray'"}};
     profile_figure.extra +=
-        fmt::format("\nset xtics add ('t1' {}, 't2' {})\nset ytics add ('m1' {}, 'm2' {})\nset grid", profile.t1,
+        fmt::format("\nset xtics (0, 't1' {}, 't2' {}, 1)\nset ytics (0, 'm1' {}, 'm2' {}, 1)\nset grid", profile.t1,
                     profile.t2, profile.m1, profile.m2);
 
     Figure map_figure = {
@@ -102,7 +100,7 @@ std::vector<Figure> figures(const EdgeBand& band) {
     two_tone.curves = {{"normal", reconstruct},
                        {"paper (corrected)", [=](double x) { return reconstruct(paper_map(x, profile)); }},
                        {"paper-smooth", [=](double x) { return reconstruct(paper_map(x, smooth)); }, "lw 2 dt 2"},
-                       {"edge", edge_reconstructed}};
+                       {"edge", [=](double x) { return reconstruct(edge(x)); }}};
     two_tone.extra += fmt::format("\nset arrow from {0},graph 0 to {0},graph 1 nohead dt 3", kEdge);
     return {profile_figure, map_figure, splats, two_tone};
 }
