@@ -42,7 +42,8 @@ double sample(const Field& field, const glm::dvec3& p, bool cubic = false);
 /// g(i): central differences, one-sided at a border, 0 along an axis of one voxel.
 glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i);
 
-/// G(p): differences of `sample` one voxel to either side, divided by the length left after clamping.
+/// G(p): mean slope over the unit sphere around p, by the 14-point Lebedev rule; p is moved to at least one
+/// voxel inside the border.
 glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic = false);
 
 /// H(i) by central differences with clamped neighbours; symmetric.
