@@ -102,7 +102,7 @@ Support warped_support(const Edge& edge) {
     };
     // A maximum of parabolas is convex: narrow the interval by thirds.
     double low = -R - edge.band.half_width, high = -low;
-    for (int i = 0; i < 80; ++i) {
+    for (int i = 0; i < 40; ++i) {
         const double third = (high - low) / 3;
         if (radius_about(low + third) < radius_about(high - third))
             high -= third;
@@ -122,6 +122,30 @@ std::vector<Support> warped_support_table(const EdgeBand& band, int entries) {
     for (int i = 0; i < entries; ++i)
         table.push_back(warped_support({reach * (2.0 * i / (entries - 1) - 1), band}));
     return table;
+}
+
+std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
+    if (cells < 1) throw std::invalid_argument("covering_supports: cells must be at least 1");
+    constexpr int kPerCell = 16;
+    const double step = (kKernelRadius + band.half_width) / (cells * kPerCell);
+    std::vector<Support> spheres;
+    for (int i = 0; i < cells; ++i) {
+        std::vector<Support> inside;
+        for (int j = 0; j <= kPerCell; ++j)
+            inside.push_back(warped_support({step * (i * kPerCell + j), band}));
+        const auto [least, most] =
+            std::ranges::minmax_element(inside, {}, [](const Support& support) { return support.shift; });
+        Support cover = {(least->shift + most->shift) / 2, 0, 0};
+        for (const Support& support : inside) {
+            cover.radius = std::max(cover.radius, support.radius + std::abs(support.shift - cover.shift));
+            cover.radius_about_voxel = std::max(cover.radius_about_voxel, support.radius_about_voxel);
+        }
+        // Where the edge only just reaches the kernel the support grows fast; between two samples by at most this.
+        cover.radius += step / 2;
+        cover.radius_about_voxel += step;
+        spheres.push_back(cover);
+    }
+    return spheres;
 }
 
 double largest_support_radius(const EdgeBand& band) {

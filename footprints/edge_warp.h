@@ -56,6 +56,11 @@ Support warped_support(const Edge& edge);
 /// `entries` >= 2 supports of single faces, at D equally spaced over [-(R + a), R + a].
 std::vector<Support> warped_support_table(const EdgeBand& band, int entries);
 
+/// Spheres that hold the support of every single face with |D| in the cell i/cells ... (i+1)/cells of R + a, i < cells:
+/// entry min(int(|D| / (R + a) * cells), cells - 1) serves D, with sign(D) * shift. No interpolation, so nothing is cut
+/// off.
+std::vector<Support> covering_supports(const EdgeBand& band, int cells);
+
 /// The largest radius_about_voxel over every D, walls included: a bound that needs no look-up.
 double largest_support_radius(const EdgeBand& band);
 

@@ -175,6 +175,26 @@ TEST(Support, GrowsNearAnEdgeAndIsPlainFarFromIt) {
     EXPECT_THROW(warped_support_table(band, 1), std::invalid_argument);
 }
 
+TEST(Support, CellsCoverEveryDistanceInThem) {
+    std::mt19937 random(4);
+    for (const EdgeBand& band : {EdgeBand{1.3, 12}, EdgeBand{0.3, 64}, EdgeBand{3, 16}, EdgeBand{3, 64}}) {
+        constexpr int kCells = 64;
+        const auto cells = covering_supports(band, kCells);
+        ASSERT_EQ(cells.size(), std::size_t{kCells});
+        const double reach = kR + band.half_width;
+        std::uniform_real_distribution<> uniform(0, reach);
+        for (int i = 0; i < 400; ++i) {
+            const Edge edge = {uniform(random), band};
+            const Support& cell = cells[static_cast<std::size_t>(edge.distance / reach * kCells)];
+            for (int j = 0; j <= 400; ++j) {
+                const double w = kR * (j / 200.0 - 1), t = unwarped_coordinate(w, edge), e2 = kR * kR - w * w;
+                ASSERT_LE(std::sqrt((t - cell.shift) * (t - cell.shift) + e2), cell.radius) << edge.distance;
+                ASSERT_LE(std::sqrt(t * t + e2), cell.radius_about_voxel) << edge.distance;
+            }
+        }
+    }
+}
+
 TEST(Support, TheLargestRadiusBoundsWallsToo) {
     const EdgeBand band = {1.3, 16};
     const double bound = largest_support_radius(band);
