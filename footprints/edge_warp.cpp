@@ -102,7 +102,7 @@ Support warped_support(const Edge& edge) {
     };
     // A maximum of parabolas is convex: narrow the interval by thirds.
     double low = -R - edge.band.half_width, high = -low;
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 50; ++i) {
         const double third = (high - low) / 3;
         if (radius_about(low + third) < radius_about(high - third))
             high -= third;
