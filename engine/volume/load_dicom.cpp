@@ -212,6 +212,11 @@ glm::dvec3 step_by_position(const std::string& name, std::vector<Slice>& slices,
             fail("{}: uneven slice spacing: {} are {:.4g} mm apart, the other slices {:.4g} mm; {}", name, where,
                  gaps[i - 1], usual,
                  gaps[i - 1] > 1.5 * usual ? "a slice may be missing" : "resample the series evenly first");
+    }
+    for (std::size_t i = 1; i < slices.size(); ++i) {
+        const auto &before = slices[i - 1], &here = slices[i];
+        const auto where = fmt::format("{} at {} and {} at {}", file_name(before), text_of(before.geometry.origin),
+                                       file_name(here), text_of(here.geometry.origin));
         const auto ideal = slices.front().geometry.origin + step * static_cast<double>(i);
         if (!(std::abs(glm::dot(normal, here.geometry.origin - ideal)) <= 0.05 * usual))
             fail("{}: uneven slice spacing: {} lies {:.4g} mm off an even spacing of {:.4g} mm ({})", name,

@@ -9,7 +9,6 @@
 
 #include <bit>
 #include <cmath>
-#include <fstream>
 
 #include "engine/volume/load_internal.h"
 #include "engine/volume/load_itk.h"
@@ -201,7 +200,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
         if (direct) {
             guarded(request, true, [&] { io->Read(volume.values.data()); });
         } else {
-            const auto buffer = std::make_unique_for_overwrite<std::byte[]>(needed);
+            const auto buffer = std::make_unique<std::byte[]>(needed);
             guarded(request, true, [&] { io->Read(buffer.get()); });
             report(options, 0.7, "converting voxels");
             const std::size_t first = frame * volume.values.size() * components + component;
@@ -215,44 +214,6 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
     } catch (const std::bad_alloc&) {
         fail("{}: not enough memory for {} voxels", path, volume.geometry.voxel_count());
     }
-    return volume;
-}
-
-// MetaIO takes what it needs from a header that contradicts itself and says nothing.
-Volume load_meta(const std::string& path, const LoadOptions& options) {
-    std::ifstream file(path, std::ios::binary);
-    std::size_t declared = 0, spacings = 0, stored = 0;
-    for (std::string line; std::getline(file, line) && line.size() < 4096;) {
-        const auto equals = line.find('=');
-        if (equals == std::string::npos) continue;
-        std::string key = line.substr(0, equals), value = line.substr(equals + 1);
-        while (!key.empty() && (key.back() == ' ' || key.back() == '\t'))
-            key.pop_back();
-        while (!value.empty() && std::isspace(static_cast<unsigned char>(value.back())) != 0)
-            value.pop_back();
-        while (!value.empty() && std::isspace(static_cast<unsigned char>(value.front())) != 0)
-            value.erase(0, 1);
-        std::istringstream words(value);
-        if (key == "NDims") words >> declared;
-        if (key == "ElementSpacing")
-            for (std::string word; words >> word;)
-                ++spacings;
-        if (key != "ElementDataFile") continue;
-        if (value == "LOCAL" || value == "Local" || value == "local") {
-            std::error_code ignored;
-            stored = std::filesystem::file_size(path, ignored);
-        } else if (value.rfind("LIST", 0) != 0 && value.find('%') == std::string::npos) {
-            const auto data = std::filesystem::path(path).parent_path() / value;
-            std::error_code error;
-            stored = std::filesystem::file_size(data, error);
-            if (error) fail("{}: its data file {} cannot be opened: {}", path, data.string(), error.message());
-        }
-        break;
-    }
-    auto volume = load_through_itk({.format = ItkFormat::Meta, .path = path, .stored_bytes = stored}, options);
-    if (declared > 0 && spacings > 0 && spacings != declared)
-        volume.notes.push_back(
-            fmt::format("The header says NDims = {} but gives {} spacings; NDims was believed.", declared, spacings));
     return volume;
 }
 

@@ -1,0 +1,189 @@
+// DICOM series and sequences of images, written here.
+#include <OpenImageIO/imageio.h>
+#include <itkGDCMImageIO.h>
+#include <itkMetaDataObject.h>
+
+#include "volume_test_files.h"
+
+namespace {
+
+using namespace volume_test;
+using edgesplat::load_volume;
+using edgesplat::LoadOptions;
+using testing::AllOf;
+using testing::HasSubstr;
+
+class Series : public FolderTest {
+  protected:
+    // One 4 x 3 CT slice at `position`, axes along x and y; pixel (x, y) of it holds first + x + 10 y after the slope.
+    void write_slice(const std::string& name, const glm::dvec3& position, int first, const std::string& series = "1",
+                     unsigned width = 4) const {
+        const auto io = itk::GDCMImageIO::New();
+        auto& tags = io->GetMetaDataDictionary();
+        const auto set = [&](const char* tag, const std::string& value) {
+            itk::EncapsulateMetaData<std::string>(tags, tag, value);
+        };
+        set("0008|0060", "CT");
+        set("0028|0004", "MONOCHROME2");
+        set("0008|0016", "1.2.840.10008.5.1.4.1.1.2");
+        set("0020|000d", "1.2.3.4");
+        set("0020|000e", "1.2.3.4." + series);
+        set("0008|103e", "series " + series);
+        set("0028|1052", "-1000");
+        set("0028|1053", "1");
+        io->KeepOriginalUIDOn();
+        io->SetNumberOfDimensions(3);
+        itk::ImageIORegion region(3);
+        const unsigned dims[] = {width, 3, 1};
+        const double spacing[] = {0.5, 0.75, 2};
+        for (unsigned axis = 0; axis < 3; ++axis) {
+            io->SetDimensions(axis, dims[axis]);
+            io->SetSpacing(axis, spacing[axis]);
+            io->SetOrigin(axis, position[static_cast<int>(axis)]);
+            std::vector<double> direction(3, 0.0);
+            direction[axis] = 1;
+            io->SetDirection(axis, direction);
+            region.SetSize(axis, dims[axis]);
+        }
+        io->SetIORegion(region);
+        io->SetNumberOfComponents(1);
+        io->SetPixelType(itk::IOPixelEnum::SCALAR);
+        io->SetComponentType(itk::IOComponentEnum::SHORT);
+        std::vector<short> pixels;
+        for (int y = 0; y < 3; ++y)
+            for (int x = 0; x < static_cast<int>(width); ++x)
+                pixels.push_back(static_cast<short>(first + x + 10 * y));
+        io->SetFileName(file(name));
+        io->WriteImageInformation();
+        io->Write(pixels.data());
+    }
+    void write_image(const std::string& name, const std::vector<std::vector<std::uint16_t>>& pages,
+                     int channels = 1) const {
+        const auto output = OIIO::ImageOutput::create(file(name));
+        ASSERT_NE(output, nullptr) << OIIO::geterror();
+        const int width = 2;
+        const OIIO::ImageSpec spec(width, static_cast<int>(pages[0].size()) / width / channels, channels,
+                                   OIIO::TypeDesc::UINT16);
+        for (std::size_t page = 0; page < pages.size(); ++page) {
+            ASSERT_TRUE(output->open(file(name), spec,
+                                     page == 0 ? OIIO::ImageOutput::Create : OIIO::ImageOutput::AppendSubimage))
+                << output->geterror();
+            ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT16, pages[page].data())) << output->geterror();
+        }
+        ASSERT_TRUE(output->close());
+    }
+};
+
+TEST_F(Series, DicomInAnyOrderIsSortedByPosition) {
+    write_slice("b.dcm", {1, 2, 10}, 0);
+    write_slice("a.dcm", {1, 2, 14}, 200);
+    write_slice("z.dcm", {1, 2, 12}, 100);
+    const auto volume = load_volume(folder_.string());
+    ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+    for (int z = 0; z < 3; ++z)
+        EXPECT_EQ(volume.at(3, 2, z), static_cast<float>(100 * z + 23)) << z;
+    expect_place(volume, {.directions = glm::dmat3(1), .spacing = {0.5, 0.75, 2}, .origin = {1, 2, 10}});
+    EXPECT_THAT(volume.stored_type, HasSubstr("int16"));
+}
+
+TEST_F(Series, DicomGantryTiltStaysInTheMatrix) {
+    for (int z = 0; z < 4; ++z)
+        write_slice(std::to_string(9 - z) + ".dcm", {0, 0.5 * z, 2.0 * z}, z);
+    const auto volume = load_volume(folder_.string());
+    EXPECT_LT(glm::length(volume.geometry.index_to_world_axes[2] - glm::dvec3(0, 0.5, 2)), 1e-6);
+    ASSERT_FALSE(volume.notes.empty());
+    EXPECT_THAT(volume.notes[0], AllOf(HasSubstr("14.04 degrees"), HasSubstr("tilt")));
+}
+
+TEST_F(Series, DicomUnevenSpacingIsRefused) {
+    for (const double z : {0.0, 2.0, 4.0, 6.1, 8.1})
+        write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)")));
+}
+
+TEST_F(Series, DicomMissingSliceIsRefused) {
+    for (const double z : {0.0, 2.0, 6.0, 8.0})
+        write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("missing"), HasSubstr("2.000)"), HasSubstr("6.000)")));
+}
+
+TEST_F(Series, DicomSlicesAtOnePlaceAreRefused) {
+    for (int i = 0; i < 4; ++i)
+        write_slice(std::to_string(i) + ".dcm", {0, 0, 2.0 * (i / 2)}, 0);
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("same place"));
+}
+
+TEST_F(Series, DicomSlicesOffTheLineAreRefused) {
+    for (int i = 0; i < 4; ++i)
+        write_slice(std::to_string(i) + ".dcm", {i == 2 ? 1.0 : 0.0, 0, 2.0 * i}, 0);
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("one line"));
+}
+
+TEST_F(Series, DicomOfTwoSeriesMustBeChosen) {
+    for (int z = 0; z < 3; ++z) {
+        write_slice("a" + std::to_string(z), {0, 0, 2.0 * z}, 0, "1");
+        write_slice("b" + std::to_string(z), {0, 0, 2.0 * z}, 50, "2");
+    }
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("--series"), HasSubstr("1.2.3.4.2"), HasSubstr("3 files")));
+    EXPECT_EQ(load_volume(folder_.string(), {.series = "1"}).at(0, 0, 0), 50.0F);
+    EXPECT_EQ(load_volume(folder_.string(), {.series = "1.2.3.4.1"}).at(0, 0, 0), 0.0F);
+    EXPECT_THAT(refusal(folder_.string(), {.series = "7"}), HasSubstr("none of its 2 series"));
+}
+
+TEST_F(Series, DicomOfTwoSizesIsRefused) {
+    write_slice("a", {0, 0, 0}, 0);
+    write_slice("b", {0, 0, 2}, 0, "1", 6);
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("pixels"));
+}
+
+// GDCM aborts the program on some of these; all must be errors.
+TEST_F(Series, DicomTruncatedAnywhereIsRefused) {
+    write_slice("a.dcm", {0, 0, 0}, 0);
+    const auto whole = content_of(file("a.dcm"));
+    for (std::size_t lost = 1; lost < whole.size() - 140; lost += 1 + lost / 6) {
+        write("a.dcm", whole.substr(0, whole.size() - lost));
+        EXPECT_THAT(refusal(file("a.dcm")), HasSubstr("a.dcm")) << lost;
+    }
+}
+
+TEST_F(Series, TiffStackKeepsStoredValues) {
+    write_image("a.tif", {{1, 2, 3, 4}, {5, 6, 7, 65535}});
+    const auto volume = load_volume(file("a.tif"), {.spacing = glm::dvec3(0.1, 0.1, 0.3)});
+    EXPECT_EQ(volume.geometry.dims, glm::ivec3(2, 2, 2));
+    EXPECT_THAT(volume.values, testing::ElementsAre(1, 2, 3, 4, 5, 6, 7, 65535));
+    EXPECT_EQ(volume.stored_type, "uint16");
+    EXPECT_NEAR(volume.geometry.spacing().z, 0.3, 1e-12);
+    const auto whole = content_of(file("a.tif"));
+    write("b.tif", whole.substr(0, whole.size() / 2));
+    EXPECT_THAT(refusal(file("b.tif")), HasSubstr("b.tif"));
+}
+
+TEST_F(Series, ColourImagesNeedAComponent) {
+    write_image("a.tif", {{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12}}, 3);
+    EXPECT_THAT(refusal(file("a.tif")), HasSubstr("--component 0..2"));
+    EXPECT_THAT(load_volume(file("a.tif"), {.component = 2}).values, testing::ElementsAre(3, 6, 9, 12));
+}
+
+TEST_F(Series, ImagesAreSortedByNumber) {
+    for (int i = 8; i <= 11; ++i) {
+        const auto v = static_cast<std::uint16_t>(i);
+        write_image("slice_" + std::to_string(i) + ".png", {{v, v, v, v}});
+    }
+    for (const auto& path : {folder_.string(), file("slice_%d.png")}) {
+        const auto volume = load_volume(path);
+        ASSERT_EQ(volume.geometry.dims, glm::ivec3(2, 2, 4));
+        for (int z = 0; z < 4; ++z)
+            EXPECT_EQ(volume.at(0, 0, z), static_cast<float>(8 + z));
+    }
+    EXPECT_THAT(refusal(file("other_%d.png")), HasSubstr("no file matches"));
+    EXPECT_THAT(refusal(file("slice_%s.png")), HasSubstr("pattern"));
+    write_image("slice_12.png", {{1, 1}});
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("slice_12.png"));
+    fs::remove(file("slice_12.png"));
+    fs::remove(file("slice_10.png"));
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("missing"), HasSubstr("slice_11.png")));
+    write_image("odd.png", {{1, 1, 1, 1}});
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("odd.png"));
+}
+
+}  // namespace
