@@ -147,7 +147,9 @@ class TemporaryFile {
 
 }  // namespace
 
-bool is_png_path(const fs::path& path) { return lower_extension(path) == ".png"; }
+bool is_png_path(const fs::path& path) {
+    return lower_extension(path) == ".png";
+}
 
 void check_output_path(const fs::path& path, std::span<const std::string_view> extensions) {
     const std::string extension = lower_extension(path);
