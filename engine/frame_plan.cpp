@@ -7,7 +7,6 @@
 
 #include "engine/error.h"
 #include "engine/volume/filters.h"
-#include "footprints/edge_warp.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
@@ -128,14 +127,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
         p.materials[m] = glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));
     }
 
-    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
-    const double reach = kKernelRadius + band.half_width;
-    for (std::uint32_t i = 0; i < shader::SUPPORT_STEPS; ++i) {
-        const auto support = warped_support({.distance = reach * i / (shader::SUPPORT_STEPS - 1), .band = band});
-        p.support_table[i] = {static_cast<float>(support.shift), static_cast<float>(support.radius)};
-    }
-    p.wall_support = static_cast<float>(largest_support_radius(band));
-    p.band = static_cast<float>(reach);
+    p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
     p.edge_warped = plan.variant.footprints == FootprintMode::Isotropic ? 0 : 1;
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;

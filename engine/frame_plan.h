@@ -29,7 +29,7 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
 struct FramePlan {
     passes::DrawVariant variant{};
     vk::Format sheet_format{};
-    shader::FrameParams params{};  ///< without addresses and footprint table
+    shader::FrameParams params{};  ///< without addresses and what FootprintResources holds
 };
 
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them

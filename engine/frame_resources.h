@@ -1,6 +1,7 @@
 // Every image and buffer of a frame in one place: shape, format, who writes it, who reads it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -27,7 +28,9 @@ struct VolumeResources {
 /// What stands until the footprint settings change.
 struct FootprintResources {
     gpu::GpuImage table;  ///< (layers, height, width) r16f; host -> 5, modes `table` and `table-lerp` of family `edge`
-    shader::FootprintParams params{};  ///< host -> 5
+    shader::FootprintParams params{};
+    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};  ///< FrameParams::support_table
+    float wall_support = 0;
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes.

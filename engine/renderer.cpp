@@ -92,6 +92,12 @@ void Renderer::Impl::provide_footprints(const Settings& settings) {
         out.params.table_directions = static_cast<float>(size.directions);
         table_band = band;
     }
+    if (!(band_in_use && band_in_use->half_width == band.half_width && band_in_use->strength == band.strength)) {
+        const auto supports = covering_supports(band, shader::SUPPORT_STEPS);
+        std::ranges::transform(supports, footprint_resources.supports.begin(), [](const Support& s) { return glm::vec2(s.shift, s.radius); });
+        footprint_resources.wall_support = static_cast<float>(largest_support_radius(band));
+        band_in_use = band;
+    }
     const PaperShape paper;
     footprint_resources.params.half_width = static_cast<float>(band.half_width);
     footprint_resources.params.strength = static_cast<float>(band.strength);
@@ -141,6 +147,8 @@ void Renderer::Impl::provide_targets(FramePlan& plan_in_use) {
     p.partial_sums = targets.drawn.address();
     p.output_pixels = targets.output.address();
     p.footprint = footprint_resources.params;
+    std::ranges::copy(footprint_resources.supports, p.support_table);
+    p.wall_support = footprint_resources.wall_support;
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
     const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
     std::ranges::fill(targets.groups.mapped<shader::SheetGroup>(p.group_count), empty);

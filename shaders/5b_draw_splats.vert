@@ -40,11 +40,11 @@ void main() {
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
     vec2 slope = mix(p.low, p.high, corner);
     from_eye = p.position - params.frame.eye;
-    // A full-screen splat may lie behind the eye plane: its rays are described where every ray passes.
-    offset = p.full_screen
+    // A splat at the eye may lie behind the eye plane: its rays are described where every ray passes.
+    offset = p.at_eye
         ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
         : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    if (!p.full_screen) offset += splat_support(e).x * e.n;
+    if (!p.at_eye) offset += splat_support(e).x * e.n;
 
     vec4 material = params.frame.materials[splat.edge >> 28];
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * e.n);

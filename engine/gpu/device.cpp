@@ -22,10 +22,11 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
+// Performance hints are left out: images stay in layout GENERAL on purpose (see Commands).
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
     using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
     using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    return {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::ePerformance | Type::eGeneral, &on_message, log};
+    return {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::eGeneral, &on_message, log};
 }
 
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
@@ -47,8 +48,10 @@ const Need kNeeds[] = {
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout; }},
     {"shaderOutputLayer", "each sheet is a layer of the target",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer; }},
-    {"synchronization2", "barriers", 
+    {"synchronization2", "barriers name both of their ends",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().synchronization2; }},
+    {"maintenance4", "workgroup sizes are given by id",
+     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().maintenance4; }},
     {"dynamicRendering", "no render pass objects are made",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering; }},
 };

@@ -9,7 +9,7 @@ struct Projection {
     float depth;      // of the support's centre, mm
     vec2 slope;       // view.xy / view.z of the support's centre
     vec2 low, high;   // box of the support in slopes, relative to `slope`
-    bool full_screen;  // the support reaches the eye plane: every pixel may see it
+    bool at_eye;      // the support reaches the eye plane: the box is of slopes from the view axis, `slope` is 0
     bool visible;
 };
 
@@ -22,9 +22,8 @@ vec3 view_position(vec3 position) {
 vec2 splat_support(Edge e) {
     if (params.frame.edge_warped == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
     if (e.d2 < params.frame.band) return vec2(0.0, params.frame.wall_support);
-    float at = min(abs(e.d) / params.frame.band, 1.0) * float(SUPPORT_STEPS - 1u);
-    uint i = min(uint(at), SUPPORT_STEPS - 2u);
-    vec2 s = mix(params.frame.support_table[i], params.frame.support_table[i + 1u], at - float(i));
+    uint cell = min(uint(abs(e.d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u);
+    vec2 s = params.frame.support_table[cell];
     return vec2(e.d < 0.0 ? -s.x : s.x, s.y);
 }
 
@@ -40,6 +39,27 @@ vec2 touching_slopes(vec3 x_axis, vec3 z_axis, float depth, float radius) {
     return vec2(-b - root, -b + root) / a;
 }
 
+// The same for a support that reaches the eye plane. Seen along the other screen axis it is an ellipse; with the eye
+// inside, every slope meets it, else the slopes beyond the one tangent that touches it in front of the eye.
+vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, float edge) {
+    float r2 = radius * radius;
+    float a = z * z - r2 * dot(z_axis, z_axis);
+    float b = x * z - r2 * dot(x_axis, z_axis);
+    float c = x * x - r2 * dot(x_axis, x_axis);
+    float discriminant = b * b - a * c;
+    vec2 range = vec2(-edge, edge);
+    if (discriminant <= 0.0 || abs(a) < 1e-12) return range;
+    for (int i = 0; i < 2; ++i) {
+        float s = (b + (i == 0 ? -1.0 : 1.0) * sqrt(discriminant)) / a;
+        vec3 q = x_axis - s * z_axis;
+        float side = x - s * z;
+        float touching_depth = z - sign(side) * radius * dot(z_axis, q) / length(q);
+        if (touching_depth > 0.0 && side > 0.0) range.x = max(range.x, s);
+        if (touching_depth > 0.0 && side < 0.0) range.y = min(range.y, s);
+    }
+    return range;
+}
+
 Projection project_splat(uint voxel, Edge e) {
     Projection p;
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
@@ -50,14 +70,20 @@ Projection project_splat(uint voxel, Edge e) {
     p.depth = centre.z;
     float reach = support.y * length(params.frame.view_z);
     p.visible = centre.z + reach > 0.0;
-    p.full_screen = centre.z < 1.05 * reach;
-    p.slope = p.full_screen ? vec2(0.0) : centre.xy / centre.z;
-    vec2 x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, support.y);
-    vec2 y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+    p.at_eye = centre.z < 1.05 * reach;
+    p.slope = p.at_eye ? vec2(0.0) : centre.xy / centre.z;
     vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
-    // Clipped to the picture (a little beyond, so that rounding loses no pixel).
-    p.low = p.full_screen ? -edge : max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
-    p.high = p.full_screen ? edge : min(vec2(x.y, y.y), edge * 1.001 - p.slope);
+    vec2 x, y;
+    if (p.at_eye) {
+        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, support.y, edge.x);
+        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, support.y, edge.y);
+    } else {
+        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+    }
+    // Clipped to a little more than the picture, so that rounding loses no pixel.
+    p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
+    p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);
     p.visible = p.visible && all(lessThan(p.low, p.high));
     return p;
 }

@@ -45,7 +45,7 @@ struct FrameParams {
     vec3 background;         // linear light
     float diffuse;
     vec4 materials[16];      // rgb, extinction per mm
-    vec2 support_table[64];  // over |D| / (R + a): shift of the support's centre along n, its radius; voxels
+    vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
     ivec3 dims;
     uint splat_count;
     ivec2 size;              // pixels

@@ -13,7 +13,7 @@ EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge 
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
 EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;           // voxels per invocation of 2_collect_splats (measured best on lavapipe)
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;          // columns of the sort's histogram: serial inside, stable across
-EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;         // entries of the warped-support table over |D| in [0, R + a]
+EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;         // cells of |D| in [0, R + a], each with a sphere that covers its supports
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;    // most even vertex cost on lavapipe in near and far views
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;    // sheet of a splat that is not drawn
 
