@@ -20,12 +20,35 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
+// MetaIO gives the pattern to printf as it is, and reads fewer files than there are slices without a word.
+void check_several(const std::string& path, const std::string& value, std::size_t listed, std::size_t slices) {
+    std::size_t files = listed;
+    if (value.rfind("LIST", 0) != 0) {
+        std::istringstream words(value);
+        std::string pattern;
+        long long first = 0, last = 0, step = 1;
+        words >> pattern >> first >> last;
+        if (!(words >> step)) step = 1;
+        const auto percent = pattern.find('%');
+        auto end = percent + 1;
+        while (end < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[end])) != 0)
+            ++end;
+        if (end >= pattern.size() || end - percent > 4 || (pattern[end] != 'd' && pattern[end] != 'u') ||
+            pattern.find('%', end) != std::string::npos || step < 1 || last < first || last - first > 1'000'000)
+            fail("{}: ElementDataFile '{}': expected a name with one number like %03d, then first, last and step", path,
+                 value);
+        files = static_cast<std::size_t>((last - first) / step + 1);
+    }
+    if (files != slices) fail("{}: {} data files for {} slices", path, files, slices);
+}
+
 struct MetaHeader {
     std::vector<std::string> lines;  // all but those about compression and the data file
     std::vector<std::size_t> dims;
     std::size_t axes = 0, spacings = 0, channels = 1;
     bool compressed = false;
     std::string data_file;
+    std::size_t listed = 0;       // data files after "LIST"
     std::size_t data_offset = 0;  // of data in the header's own file
 };
 
@@ -40,6 +63,9 @@ MetaHeader parse(const std::string& path) {
         if (key == "ElementDataFile") {
             header.data_file = value;
             header.data_offset = file.good() ? static_cast<std::size_t>(file.tellg()) : 0;
+            if (value.rfind("LIST", 0) == 0)
+                while (std::getline(file, line))
+                    header.listed += trimmed(line).empty() ? 0 : 1;
             return header;
         }
         if (key == "NDims") words >> header.axes;
@@ -102,6 +128,14 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
     const bool several = header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
     const auto data = local ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
     ItkRequest request{.format = ItkFormat::Meta, .path = path};
+    if (several && header.dims.size() == 3) {
+        // "LIST 3" and the like say how many axes a file has; without it each holds one slice.
+        std::size_t axes = 2;
+        if (header.data_file.rfind("LIST", 0) == 0) std::istringstream(header.data_file.substr(4)) >> axes;
+        if (axes < 2) axes = 2;
+        checked_bytes(path, header.dims, 1);
+        check_several(path, header.data_file, header.listed, axes == 2 ? header.dims[2] : 1);
+    }
     if (!several) {
         std::error_code error;
         if (!fs::is_regular_file(data, error))

@@ -150,7 +150,7 @@ void apply_spacing(Volume& volume, const LoadOptions& options) {
 std::string tidy(std::string_view message) {
     static const std::regex noise(
         R"((^|\n)[^\n]*\.(cxx|hxx|txx|h|cpp):\d+:|\b(itk::|ITK )?ERROR: |\w+ ?\(0x[0-9a-f]+\): )"
-        R"(|(^|\n)(Warning|WARNING): In [^\n]*)");
+        R"(|(^|\n)(Warning|WARNING): In [^\n]*|\x1b\[[0-9;]*m|\d{4}-\d\d-\d\d [^\n|]*\| *)");
     std::string text = std::regex_replace(std::string(message), noise, "\n");
     std::string line;
     for (const char c : text) {

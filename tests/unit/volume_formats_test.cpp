@@ -50,6 +50,16 @@ TEST_F(Formats, MetaImageWithAWrongCompressedSizeIsReadToItsEnd) {
     EXPECT_THAT(refusal(write("b.mha", bytes.substr(0, bytes.size() - 9))), HasSubstr("truncated"));
 }
 
+TEST_F(Formats, MetaImageInSeveralFiles) {
+    write("s1", "abcd");
+    write("s2", "efgh");
+    const std::string head = "NDims = 3\nDimSize = 2 2 2\nElementType = MET_UCHAR\nElementDataFile = ";
+    for (const char* files : {"LIST\ns1\ns2\n", "s%d 1 2 1\n"})
+        EXPECT_EQ(load_volume(write("a.mhd", head + files)).values[4], 101.0F) << files;
+    for (const char* files : {"LIST\ns1\n", "LIST\ns1\ns3\n", "s%d 1 3 1\n", "s%d 2 3 1\n", "s%s%n 1 2 1\n", "s%d\n"})
+        EXPECT_THAT(refusal(write("a.mhd", head + files)), HasSubstr("a.mhd")) << files;
+}
+
 TEST_F(Formats, NiftiKeepsVoxelsAndGeometry) {
     for (const char* name : {"a.nii", "b.nii.gz", "c.hdr"}) {
         write_itk(itk::NiftiImageIO::New(), file(name));
