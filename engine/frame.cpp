@@ -44,9 +44,12 @@ std::uint64_t scan_runs(const glm::ivec3& dims, VolumeResources& resources) {
 }  // namespace
 
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
-                    const CollectionPlan& plan, VolumeResources& resources) {
+                                     const CollectionPlan& plan, VolumeResources& resources) {
     const auto volume_image = [&](vk::Format format, const char* name) {
-        return gpu::GpuImage(device, {.format = format, .size = plan.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc}, name);
+        return gpu::GpuImage(
+            device,
+            {.format = format, .size = plan.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc},
+            name);
     };
     resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
     resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
@@ -60,7 +63,8 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     params = plan.params;
     params.run_offsets = resources.run_offsets.address();
     const auto scene = resources.scene.address();
-    const passes::CollectSplats collect{scene, plan.dims, plan.edge_field, plan.buried};
+    const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
+    const passes::CollectSplats collect{scene, plan.dims, plan.edge_field, plan.buried, plan.edge_field && marched};
 
     commands.run([&] {
         if (plan.edge_field) {
@@ -85,14 +89,16 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
         fail("{} voxels can be seen at once; the splat list holds {}", resources.splat_count,
              std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat));
     }
-    resources.splats = gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
+    resources.splats =
+        gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
     params.splats = resources.splats.address();
     commands.run([&] {
         commands.begin_span("2_collect_splats");
         passes::write_splats(commands, collect);
         commands.end_span();
     });
-    for (const auto& writing : commands.span_times()) times.back().milliseconds += writing.milliseconds;
+    for (const auto& writing : commands.span_times())
+        times.back().milliseconds += writing.milliseconds;
     return times;
 }
 
@@ -112,9 +118,8 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
         timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
-            timed("6_composite_sheet", [&] {
-                passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group);
-            });
+            timed("6_composite_sheet",
+                  [&] { passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group); });
         }
         timed("7_resolve", [&] { passes::resolve(commands, frame, plan.params.size, plan.variant.payload); });
     });

@@ -10,7 +10,7 @@ namespace edgesplat {
 /// volume (and coefficients), and fills `splats`, `splat_count` and the box. Runs, waits, and returns
 /// what each pass took.
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
-                    const CollectionPlan& plan, VolumeResources& resources);
+                                     const CollectionPlan& plan, VolumeResources& resources);
 
 /// View-dependent: splat list -> pixels in `targets.output`. Runs and waits.
 void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);

@@ -35,13 +35,15 @@ int bury_distance(double extinction_per_voxel) {
     return static_cast<int>(std::ceil(kKernelRadius + std::log(256.0) / extinction_per_voxel));
 }
 
-glm::vec3 to_float(const glm::dvec3& v) { return {v}; }
+glm::vec3 to_float(const glm::dvec3& v) {
+    return {v};
+}
 
 }  // namespace
 
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
-    return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field && buried == other.buried &&
-           std::memcmp(&params, &other.params, sizeof params) == 0;
+    return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
+           buried == other.buried && std::memcmp(&params, &other.params, sizeof params) == 0;
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -55,7 +57,10 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
     std::fill(std::begin(params.iso), std::end(params.iso), 3e38F);
     for (std::size_t j = 0; j < scene.iso_values.size(); ++j) {
-        params.iso[j] = static_cast<float>(scaled_value(volume, scene.iso_values[j]));
+        // In a constant volume every sample is 0 and an iso-value is either reached or not.
+        const double constant = scene.iso_values[j] <= static_cast<double>(volume.min_value) ? 0.0 : 1.0;
+        params.iso[j] = static_cast<float>(
+            volume.max_value > volume.min_value ? scaled_value(volume, scene.iso_values[j]) : constant);
     }
     int farthest = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -75,7 +80,8 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera) {
     const auto index = glm::round(volume.geometry.to_index(camera.eye));
     const glm::dvec3 last(volume.geometry.dims - 1);
-    if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last))) return false;
+    if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
+        return false;
     const glm::ivec3 voxel(index);
     const double value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
     const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
@@ -83,8 +89,8 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
 }
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
-                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count, const glm::ivec3& box_low,
-                     const glm::ivec3& box_high) {
+                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
+                     const glm::ivec3& box_low, const glm::ivec3& box_high) {
     const auto& geometry = volume.geometry;
     const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
     const CameraFrame view = camera_frame(camera);
@@ -95,7 +101,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double thickness = settings.sheet_spacing * voxel_along_view;
 
     FramePlan plan;
-    plan.variant = {settings.footprints, settings.warp, payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None, payload};
+    plan.variant = {settings.footprints, settings.warp,
+                    payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None, payload};
     const bool half = settings.sheet_format == SheetFormat::Half && payload == shader::PAYLOAD_COLOR;
     plan.sheet_format = half ? vk::Format::eR16G16B16A16Sfloat : vk::Format::eR32G32B32A32Sfloat;
     if (settings.edges == EdgeEstimator::Off) plan.variant.footprints = FootprintMode::Isotropic;
@@ -124,7 +131,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.diffuse = static_cast<float>(scene.light.diffuse);
     p.background = to_float(scene.background);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        p.materials[m] = glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));
+        p.materials[m] =
+            glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));
     }
 
     p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
@@ -141,10 +149,13 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double base = std::floor(std::max(nearest, 0.0) / thickness);
     const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
     if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
-        fail("the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; {:.0f} are possible: choose a larger --sheet-spacing",
-             sheets, thickness, base, kMaxSheets);
+        fail(
+            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; {:.0f} are possible: choose a larger "
+            "--sheet-spacing",
+            sheets, thickness, base, kMaxSheets);
     }
-    const std::uint64_t layer_bytes = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * (half ? 8 : 16);
+    const std::uint64_t layer_bytes =
+        static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * (half ? 8 : 16);
     p.sheet_base = static_cast<int>(base);
     p.sheet_count = static_cast<std::uint32_t>(sheets);
     p.sheets_per_group = static_cast<std::uint32_t>(
@@ -154,7 +165,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.splat_count = static_cast<std::uint32_t>(splat_count);
     p.size = size;
     // Optical depth is wanted whole.
-    p.saturation = payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 2.0F : static_cast<float>(settings.saturation);
+    p.saturation =
+        payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 2.0F : static_cast<float>(settings.saturation);
     return plan;
 }
 

@@ -11,8 +11,8 @@ namespace edgesplat {
 struct CollectionPlan {
     glm::ivec3 dims{0};
     EdgeEstimator estimator = EdgeEstimator::March;
-    bool edge_field = true;  ///< edges are preserved, or a light wants normals
-    bool buried = true;      ///< some material is opaque enough to hide what lies behind it
+    bool edge_field = true;        ///< edges are preserved, or a light wants normals
+    bool buried = true;            ///< some material is opaque enough to hide what lies behind it
     shader::SceneParams params{};  ///< without addresses
 
     /// Whether the same splats come out of it.
@@ -35,7 +35,7 @@ struct FramePlan {
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
 /// come from the collection.
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
-                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count, const glm::ivec3& box_low,
-                     const glm::ivec3& box_high);
+                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
+                     const glm::ivec3& box_low, const glm::ivec3& box_high);
 
 }  // namespace edgesplat

@@ -11,8 +11,10 @@ using Usage = vk::ImageUsageFlagBits;
 
 constexpr std::size_t kStagingBytes = std::size_t{64} << 20U;
 
-gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool volume, bool array, vk::ImageUsageFlags usage) {
-    return {device, {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage}, "placeholder"};
+gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool volume, bool array,
+                          vk::ImageUsageFlags usage) {
+    return {
+        device, {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage}, "placeholder"};
 }
 
 }  // namespace
@@ -60,8 +62,9 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
         const auto& image = slot.image ? slot.image : slot.otherwise;
         auto& info = infos.at(slot.binding);
         info = {slot.sampler, image.view(), vk::ImageLayout::eGeneral};
-        writes.emplace_back(*set_, slot.binding, 0, slot.sampler ? vk::DescriptorType::eCombinedImageSampler
-                                                                 : vk::DescriptorType::eStorageImage, info);
+        writes.emplace_back(
+            *set_, slot.binding, 0,
+            slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
     }
     device_->handle().updateDescriptorSets(writes, nullptr);
 }
@@ -73,19 +76,24 @@ void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu:
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
     // A slice may be larger than the staging buffer should be; then it goes up in bands of rows.
-    const std::size_t rows_at_once = std::clamp<std::size_t>(kStagingBytes / row, 1, static_cast<std::size_t>(shape.size.y));
-    const std::size_t slices_at_once = rows_at_once < static_cast<std::size_t>(shape.size.y) ? 1 : std::clamp<std::size_t>(kStagingBytes / slice, 1, slices);
+    const std::size_t rows_at_once =
+        std::clamp<std::size_t>(kStagingBytes / row, 1, static_cast<std::size_t>(shape.size.y));
+    const std::size_t slices_at_once = rows_at_once < static_cast<std::size_t>(shape.size.y)
+                                           ? 1
+                                           : std::clamp<std::size_t>(kStagingBytes / slice, 1, slices);
     const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, "staging buffer");
     commands.run([&] { commands.prepare({&image}); });
     for (std::size_t z = 0; z < slices; z += slices_at_once) {
         const std::size_t depth = std::min(slices_at_once, slices - z);
         for (std::size_t y = 0; y < static_cast<std::size_t>(shape.size.y); y += rows_at_once) {
             const std::size_t rows = std::min(rows_at_once, static_cast<std::size_t>(shape.size.y) - y);
-            std::memcpy(staging.mapped<char>(staging.bytes()).data(), static_cast<const char*>(bytes) + z * slice + y * row,
-                        depth * rows * row);
+            std::memcpy(staging.mapped<char>(staging.bytes()).data(),
+                        static_cast<const char*>(bytes) + z * slice + y * row, depth * rows * row);
             const auto layer = static_cast<std::uint32_t>(shape.volume ? 0 : z);
-            const vk::ImageSubresourceLayers layers(image.aspect(), 0, layer, static_cast<std::uint32_t>(shape.volume ? 1 : depth));
-            const vk::BufferImageCopy copy(0, 0, 0, layers, {0, static_cast<int>(y), static_cast<int>(shape.volume ? z : 0)},
+            const vk::ImageSubresourceLayers layers(image.aspect(), 0, layer,
+                                                    static_cast<std::uint32_t>(shape.volume ? 1 : depth));
+            const vk::BufferImageCopy copy(0, 0, 0, layers,
+                                           {0, static_cast<int>(y), static_cast<int>(shape.volume ? z : 0)},
                                            {static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(rows),
                                             static_cast<std::uint32_t>(shape.volume ? depth : 1)});
             commands.run([&] {

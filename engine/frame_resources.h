@@ -57,7 +57,8 @@ class Bindings {
     vk::DescriptorSet set() const { return *set_; }
     /// Moves the placeholders into layout GENERAL; once, while recording.
     void prepare(gpu::Commands& commands) const;
-    void write(const VolumeResources& volume, const FootprintResources& footprints, const TargetResources& targets) const;
+    void write(const VolumeResources& volume, const FootprintResources& footprints,
+               const TargetResources& targets) const;
 
   private:
     const gpu::Device* device_;

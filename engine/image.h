@@ -16,7 +16,9 @@ struct Image {
 
     Image() = default;
     Image(int w, int h, int c)
-        : width(w), height(h), channels(c),
+        : width(w),
+          height(h),
+          channels(c),
           pixels(static_cast<std::size_t>(w) * static_cast<std::size_t>(h) * static_cast<std::size_t>(c), 0.0F) {}
     float& at(int x, int y, int c) { return pixels[offset(x, y, c)]; }
     float at(int x, int y, int c) const { return pixels[offset(x, y, c)]; }
@@ -24,7 +26,8 @@ struct Image {
   private:
     std::size_t offset(int x, int y, int c) const {
         return (static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x)) *
-                   static_cast<std::size_t>(channels) + static_cast<std::size_t>(c);
+                   static_cast<std::size_t>(channels) +
+               static_cast<std::size_t>(c);
     }
 };
 

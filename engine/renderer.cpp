@@ -4,7 +4,7 @@
 #include <chrono>
 
 #include "engine/error.h"
-#include "engine/renderer_impl.h"
+#include "engine/renderer_state.h"
 #include "engine/volume/filters.h"
 #include "footprints/paper_warp.h"
 
@@ -28,7 +28,8 @@ bool grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Pla
 }
 
 bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
-    return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) && image.shape().layers >= layers;
+    return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) &&
+           image.shape().layers >= layers;
 }
 
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
@@ -36,7 +37,8 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
     Image image(size.x, size.y, count);
     for (std::size_t i = 0; i < image.pixels.size() / static_cast<std::size_t>(count); ++i) {
         for (int c = 0; c < count; ++c) {
-            image.pixels[i * static_cast<std::size_t>(count) + static_cast<std::size_t>(c)] = pixels[4 * i + static_cast<std::size_t>(first + c)];
+            image.pixels[i * static_cast<std::size_t>(count) + static_cast<std::size_t>(c)] =
+                pixels[4 * i + static_cast<std::size_t>(first + c)];
         }
     }
     return image;
@@ -44,7 +46,7 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
 
 }  // namespace
 
-Renderer::Impl::Impl(const DeviceChoice& choice) : device(choice) {
+RendererState::RendererState(const DeviceChoice& choice) : device(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
     targets.drawn = gpu::Buffer(device, sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
@@ -54,16 +56,31 @@ Renderer::Impl::Impl(const DeviceChoice& choice) : device(choice) {
     commands.run([&] { bindings.prepare(commands); });
 }
 
-double Renderer::Impl::collect(const Scene& scene, const Settings& settings, bool keep_buried) {
+void upload_volume(RendererState& state) {
+    const auto field = scaled_field(*state.volume);
+    auto& image = state.volume_resources.volume;
+    image = gpu::GpuImage(state.device,
+                          {.format = vk::Format::eR32Sfloat,
+                           .size = state.volume->geometry.dims,
+                           .volume = true,
+                           .usage = Usage::eStorage | Usage::eTransferDst},
+                          "volume");
+    upload_image(state.commands, state.device, image, field.data(), sizeof(float));
+}
+
+double RendererState::collect(const Scene& scene, const Settings& settings, bool keep_buried) {
     CollectionPlan wanted = plan_collection(*volume, scene, settings, keep_buried);
     if (collected && *collected == wanted) return 0;
     const auto start = Clock::now();
     collected.reset();
     if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic && !volume_resources.coefficients) {
         const auto coefficients = bspline_coefficients(scaled_field(*volume), wanted.dims);
-        volume_resources.coefficients = gpu::GpuImage(
-            device, {.format = vk::Format::eR32Sfloat, .size = wanted.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferDst},
-            "B-spline coefficients");
+        volume_resources.coefficients = gpu::GpuImage(device,
+                                                      {.format = vk::Format::eR32Sfloat,
+                                                       .size = wanted.dims,
+                                                       .volume = true,
+                                                       .usage = Usage::eStorage | Usage::eTransferDst},
+                                                      "B-spline coefficients");
         upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
     }
     collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
@@ -71,7 +88,7 @@ double Renderer::Impl::collect(const Scene& scene, const Settings& settings, boo
     return milliseconds_since(start);
 }
 
-void Renderer::Impl::provide_footprints(const Settings& settings) {
+void RendererState::provide_footprints(const Settings& settings) {
     const EdgeBand band{settings.edge_half_width, settings.edge_strength};
     const bool table = settings.warp == WarpFamily::Edge && settings.edges != EdgeEstimator::Off &&
                        (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp);
@@ -81,9 +98,13 @@ void Renderer::Impl::provide_footprints(const Settings& settings) {
         if (!loaded.warning.empty()) fmt::print(stderr, "edgesplat: {}\n", loaded.warning);
         const auto& size = loaded.table.size();
         auto& out = footprint_resources;
-        out.table = gpu::GpuImage(device, {.format = vk::Format::eR16Sfloat, .size = {size.width, size.height, 1},
-                                           .layers = size.distances * size.directions, .array = true,
-                                           .usage = Usage::eSampled | Usage::eTransferDst}, "footprint table");
+        out.table = gpu::GpuImage(device,
+                                  {.format = vk::Format::eR16Sfloat,
+                                   .size = {size.width, size.height, 1},
+                                   .layers = size.distances * size.directions,
+                                   .array = true,
+                                   .usage = Usage::eSampled | Usage::eTransferDst},
+                                  "footprint table");
         upload_image(commands, device, out.table, loaded.table.texels().data(), sizeof(std::uint16_t));
         out.params.table_extent = static_cast<float>(loaded.table.extent());
         out.params.table_width = static_cast<float>(size.width);
@@ -94,7 +115,8 @@ void Renderer::Impl::provide_footprints(const Settings& settings) {
     }
     if (!(band_in_use && band_in_use->half_width == band.half_width && band_in_use->strength == band.strength)) {
         const auto supports = covering_supports(band, shader::SUPPORT_STEPS);
-        std::ranges::transform(supports, footprint_resources.supports.begin(), [](const Support& s) { return glm::vec2(s.shift, s.radius); });
+        std::ranges::transform(supports, footprint_resources.supports.begin(),
+                               [](const Support& s) { return glm::vec2(s.shift, s.radius); });
         footprint_resources.wall_support = static_cast<float>(largest_support_radius(band));
         band_in_use = band;
     }
@@ -110,7 +132,7 @@ void Renderer::Impl::provide_footprints(const Settings& settings) {
     }
 }
 
-void Renderer::Impl::provide_targets(FramePlan& plan_in_use) {
+void RendererState::provide_targets(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
     const auto layers = static_cast<int>(p.sheets_per_group);
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
@@ -121,19 +143,33 @@ void Renderer::Impl::provide_targets(FramePlan& plan_in_use) {
         targets.depth = {};
         targets.accumulated = {};
         const glm::ivec3 size(p.size, 1);
-        targets.sheets = gpu::GpuImage(device, {.format = plan_in_use.sheet_format, .size = size, .layers = layers, .array = true,
-                                                .usage = Usage::eColorAttachment | Usage::eSampled}, "sheet group");
-        targets.depth = gpu::GpuImage(device, {.format = vk::Format::eD16Unorm, .size = size, .layers = layers, .array = true,
-                                               .usage = Usage::eDepthStencilAttachment}, "sheet depth");
-        targets.accumulated = gpu::GpuImage(device, {.format = vk::Format::eR32G32B32A32Sfloat, .size = size,
-                                                     .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferDst},
-                                            "accumulated picture");
+        targets.sheets = gpu::GpuImage(device,
+                                       {.format = plan_in_use.sheet_format,
+                                        .size = size,
+                                        .layers = layers,
+                                        .array = true,
+                                        .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc},
+                                       "sheet group");
+        targets.depth = gpu::GpuImage(device,
+                                      {.format = vk::Format::eD16Unorm,
+                                       .size = size,
+                                       .layers = layers,
+                                       .array = true,
+                                       .usage = Usage::eDepthStencilAttachment},
+                                      "sheet depth");
+        targets.accumulated = gpu::GpuImage(
+            device,
+            {.format = vk::Format::eR32G32B32A32Sfloat,
+             .size = size,
+             .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
+            "accumulated picture");
         commands.run([&] { commands.prepare({&targets.sheets, &targets.depth, &targets.accumulated}); });
     }
     const auto words = sizeof(std::uint32_t);
     grow(device, targets.sheet_of, p.splat_count * words, Place::Device, "sheets of splats");
     grow(device, targets.order, p.splat_count * words, Place::Device, "splat order");
-    grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * words, Place::Device, "sort counters");
+    grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * words, Place::Device,
+         "sort counters");
     grow(device, targets.groups, p.group_count * sizeof(shader::SheetGroup), Place::Host, "sheet groups");
     grow(device, targets.draws, p.group_count * sizeof(shader::DrawCommand), Place::Device, "draw commands");
     grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
@@ -155,17 +191,17 @@ void Renderer::Impl::provide_targets(FramePlan& plan_in_use) {
     bindings.write(volume_resources, footprint_resources, targets);
 }
 
-void Renderer::Impl::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
-                          std::uint32_t payload) {
-    plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count, volume_resources.box_low,
-                      volume_resources.box_high);
+void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+                         std::uint32_t payload) {
+    plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
+                      volume_resources.box_low, volume_resources.box_high);
     provide_targets(plan);
     run_frame(commands, plan, targets);
 }
 
 Renderer::Renderer(const DeviceChoice& choice) {
     try {
-        impl_ = std::make_unique<Impl>(choice);
+        state_ = std::make_unique<RendererState>(choice);
     } catch (const vk::SystemError& error) {
         fail("Vulkan: {}", error.what());
     }
@@ -175,21 +211,21 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-const DeviceInfo& Renderer::device() const { return impl_->device.info(); }
+const DeviceInfo& Renderer::device() const {
+    return state_->device.info();
+}
 
-std::uint64_t Renderer::validation_messages() const { return impl_->device.validation_messages(); }
+std::uint64_t Renderer::validation_messages() const {
+    return state_->device.validation_messages();
+}
 
 void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
-    auto& self = *impl_;
+    auto& self = *state_;
     self.collected.reset();
     self.volume_resources = {};
     self.volume = std::move(volume);
     try {
-        const auto field = scaled_field(*self.volume);
-        self.volume_resources.volume = gpu::GpuImage(
-            self.device, {.format = vk::Format::eR32Sfloat, .size = self.volume->geometry.dims, .volume = true,
-                          .usage = Usage::eStorage | Usage::eTransferDst}, "volume");
-        upload_image(self.commands, self.device, self.volume_resources.volume, field.data(), sizeof(float));
+        upload_volume(self);
     } catch (const vk::SystemError& error) {
         fail("Vulkan: {}", error.what());
     }
@@ -197,7 +233,7 @@ void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
 
 RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
                               const AovRequest& aovs) {
-    auto& self = *impl_;
+    auto& self = *state_;
     if (!self.volume) fail("render: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384) {
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
@@ -213,7 +249,8 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
 
         const auto pixels = [&] {
-            return std::span<const float>(self.targets.output.mapped<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4));
+            return std::span<const float>(self.targets.output.mapped<float>(static_cast<std::size_t>(width) *
+                                                                            static_cast<std::size_t>(height) * 4));
         };
         const auto start = Clock::now();
         self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR);

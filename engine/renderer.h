@@ -40,7 +40,7 @@ struct AovRequest {
 };
 
 struct PassTime {
-    std::string name;        ///< stem of the pass, e.g. "5_draw_splats"
+    std::string name;  ///< stem of the pass, e.g. "5_draw_splats"
     double milliseconds = 0;
 };
 
@@ -61,6 +61,9 @@ struct RenderResult {
     std::optional<Image> tau, depth, normal, distance;
     RenderStats stats;
 };
+
+/// What a Renderer owns (engine/renderer_state.h); of no use to those who embed it.
+struct RendererState;
 
 /// Owns the device and everything on it. Not thread-safe; one per thread. Every member throws Error.
 class Renderer {
@@ -84,8 +87,7 @@ class Renderer {
     std::uint64_t validation_messages() const;
 
   private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<RendererState> state_;
 };
 
 }  // namespace edgesplat

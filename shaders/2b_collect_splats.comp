@@ -1,13 +1,15 @@
 // Compacts the voxels that can be seen into splat records, in the order of the voxels. Each invocation owns a run of
 // consecutive voxels; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
+// On the way edge distances are smoothed along the surface (pass 1, step 5): here only voxels that are seen pay for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
-#include "shaders/lib/edge_record.glsl"
+#include "shaders/shared/scene_params.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
@@ -15,6 +17,14 @@ layout(push_constant) uniform Push {
     SceneRef params;
     uint write;
 };
+
+uint material_at(ivec3 p) {
+    float value = imageLoad(volume, p).r;
+    uint material = 0u;
+    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
+    return material;
+}
+#include "shaders/lib/edge_smoothing.glsl"
 
 void main() {
     ivec3 dims = params.scene.dims;
@@ -29,18 +39,20 @@ void main() {
     ivec3 p = ivec3(first % uint(dims.x), first / uint(dims.x) % uint(dims.y), first / uint(dims.x) / uint(dims.y));
     uint out_at = write == 1u ? offsets.at[run] : 0u;
     for (uint v = first; v < last; ++v) {
-        float value = imageLoad(volume, p).r;
-        uint material = 0u;
-        for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
+        uint material = material_at(p);
         bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
         if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
         if (visible) {
             if (write == 1u) {
                 uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
-                uint state = code.y >> 26 & 3u;
-                float d = abs(float(int(code.y << 16) >> 16)) / 32767.0 * EDGE_DISTANCE_UNIT;
-                if (state >= EDGE_LOWER && d > params.scene.band) state = EDGE_NORMAL;
-                splats.at[out_at] = Splat(v, code.x, (code.y & 0x03ffffffu) | (state << 26) | (material << 28));
+                Edge e = unpack_edge(code.x, code.y);
+                if (SMOOTH == 1u) {
+                    float correction = distance_correction(p, dims, e, material);
+                    e.d += correction;
+                    e.d2 -= correction;
+                }
+                if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
+                splats.at[out_at] = Splat(v, code.x, pack_edge(e) | (material << 28));
             }
             ++out_at;
         }

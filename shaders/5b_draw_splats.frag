@@ -33,11 +33,11 @@ float footprint(float rho2, float pn, float un) {
                                             : footprint_paper_procedural(rho2, pn, un, d, params.frame.footprint);
         return d2 < 0.0 ? footprint_isotropic(rho2) : warped;
     }
-    int faces = d2 < 0.0 ? 0 : footprint_faces(d, d2, params.frame.footprint);
     if (FOOTPRINTS == WARP2D) {
         float warped = footprint_warp2d(rho2, pn, un, d, params.frame.footprint);
-        return faces == 0 ? footprint_isotropic(rho2) : warped;
+        return d2 < 0.0 ? footprint_isotropic(rho2) : warped;
     }
+    int faces = d2 < 0.0 ? 0 : footprint_faces(d, d2, params.frame.footprint);
     // The table knows one face; walls are integrated. Without faces the loop is empty and the result is the plain
     // footprint: lavapipe runs both sides of a branch, but no loop that is empty in every lane.
     int integrated = FOOTPRINTS == PROCEDURAL || faces == 2 ? faces : 0;

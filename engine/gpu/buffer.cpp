@@ -13,9 +13,9 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, bytes_, usage));
     using Memory = vk::MemoryPropertyFlagBits;
     const auto requirements = buffer_.getMemoryRequirements();
-    memory_ = place == Place::Host
-        ? device.allocate(requirements, Memory::eHostCached, Memory::eHostVisible | Memory::eHostCoherent, true, name)
-        : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
+    memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
+                                                     Memory::eHostVisible | Memory::eHostCoherent, true, name)
+                                   : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
     buffer_.bindMemory(*memory_, 0);
     if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});

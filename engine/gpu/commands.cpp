@@ -21,8 +21,10 @@ Groups groups_for(std::uint64_t count, std::uint32_t local) {
 
 Commands::Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet set)
     : device_(&device), pipelines_(&pipelines), set_(set) {
-    pool_ = vk::raii::CommandPool(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
-    buffer_ = std::move(vk::raii::CommandBuffers(device.handle(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
+    pool_ = vk::raii::CommandPool(device.handle(),
+                                  {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
+    buffer_ =
+        std::move(vk::raii::CommandBuffers(device.handle(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
     fence_ = vk::raii::Fence(device.handle(), vk::FenceCreateInfo{});
     if (device.timestamp_period() > 0) {
         queries_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, kMaxTimestamps});
@@ -46,19 +48,22 @@ void Commands::run(const std::function<void()>& body) {
     device_->handle().resetFences(*fence_);
 }
 
-void Commands::dispatch(const char* shader, const Specialization& constants, const shader::FramePush& push, Groups groups) {
+void Commands::dispatch(const char* shader, const Specialization& constants, const shader::FramePush& push,
+                        Groups groups) {
     buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants));
-    buffer_.pushConstants<shader::FramePush>(pipelines_->layout(),
-                                             vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment |
-                                                 vk::ShaderStageFlagBits::eVertex, 0, push);
+    buffer_.pushConstants<shader::FramePush>(
+        pipelines_->layout(),
+        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
+        push);
     buffer_.dispatch(groups.x, groups.y, groups.z);
 }
 
 void Commands::bind_draw(const DrawState& state, const shader::FramePush& push) {
     buffer_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state));
-    buffer_.pushConstants<shader::FramePush>(pipelines_->layout(),
-                                             vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment |
-                                                 vk::ShaderStageFlagBits::eVertex, 0, push);
+    buffer_.pushConstants<shader::FramePush>(
+        pipelines_->layout(),
+        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
+        push);
 }
 
 void Commands::barrier() {
@@ -74,17 +79,18 @@ void Commands::prepare(std::initializer_list<const GpuImage*> images) {
     using Access = vk::AccessFlagBits2;
     std::vector<vk::ImageMemoryBarrier2> barriers;
     for (const GpuImage* image : images) {
-        barriers.emplace_back(Stage::eAllCommands, Access::eNone, Stage::eAllCommands,
-                              Access::eMemoryRead | Access::eMemoryWrite, vk::ImageLayout::eUndefined,
-                              vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED, image->handle(),
-                              vk::ImageSubresourceRange(image->aspect(), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS));
+        barriers.emplace_back(
+            Stage::eAllCommands, Access::eNone, Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite,
+            vk::ImageLayout::eUndefined, vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
+            image->handle(), vk::ImageSubresourceRange(image->aspect(), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS));
     }
     buffer_.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, barriers));
 }
 
 void Commands::write_timestamp() {
     const auto at = static_cast<std::uint32_t>(span_names_.size());
-    if (*queries_ && at < kMaxTimestamps) buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
+    if (*queries_ && at < kMaxTimestamps)
+        buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
 }
 
 void Commands::begin_span(const char* name) {
@@ -106,7 +112,8 @@ std::vector<PassTime> Commands::span_times() const {
         vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait);
     if (result != vk::Result::eSuccess) return times;
     for (std::size_t i = 0; i < count; i += 2) {
-        auto found = std::find_if(times.begin(), times.end(), [&](const PassTime& t) { return t.name == span_names_[i]; });
+        auto found =
+            std::find_if(times.begin(), times.end(), [&](const PassTime& t) { return t.name == span_names_[i]; });
         if (found == times.end()) found = times.insert(times.end(), PassTime{span_names_[i], 0.0});
         found->milliseconds += static_cast<double>(ticks[i + 1] - ticks[i]) * device_->timestamp_period() * 1e-6;
     }

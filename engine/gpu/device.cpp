@@ -14,8 +14,8 @@ namespace {
 constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
-                                          VkDebugUtilsMessageTypeFlagsEXT, const VkDebugUtilsMessengerCallbackDataEXT* data,
-                                          void* user) {
+                                          VkDebugUtilsMessageTypeFlagsEXT,
+                                          const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
     static_cast<ValidationLog*>(user)->messages++;
     std::fprintf(stderr, "vulkan %s: %s\n",
                  (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0 ? "error" : "warning", data->pMessage);
@@ -41,7 +41,9 @@ struct Need {
 
 const Need kNeeds[] = {
     {"shaderStorageImageExtendedFormats", "the edge field is an rg32ui image",
-     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceFeatures2>().features.shaderStorageImageExtendedFormats; }},
+     [](Features& f) -> vk::Bool32& {
+         return f.get<vk::PhysicalDeviceFeatures2>().features.shaderStorageImageExtendedFormats;
+     }},
     {"bufferDeviceAddress", "splat lists are larger than one storage buffer binding",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress; }},
     {"scalarBlockLayout", "C++ and shaders share their structs",
@@ -67,11 +69,16 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& p
 
 int rank(vk::PhysicalDeviceType type) {
     switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu: return 0;
-        case vk::PhysicalDeviceType::eIntegratedGpu: return 1;
-        case vk::PhysicalDeviceType::eVirtualGpu: return 2;
-        case vk::PhysicalDeviceType::eCpu: return 3;
-        default: return 4;
+        case vk::PhysicalDeviceType::eDiscreteGpu:
+            return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu:
+            return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu:
+            return 2;
+        case vk::PhysicalDeviceType::eCpu:
+            return 3;
+        default:
+            return 4;
     }
 }
 
@@ -88,7 +95,8 @@ std::vector<vk::raii::PhysicalDevice> sorted_devices(const vk::raii::Instance& i
 }
 
 std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return text;
 }
 
@@ -111,8 +119,9 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         if (std::none_of(present.begin(), present.end(), [](const vk::LayerProperties& layer) {
                 return std::string(layer.layerName.data()) == kValidationLayer;
             })) {
-            fail("validation was asked for, but the layer {} is not installed (Debian package: vulkan-validationlayers)",
-                 kValidationLayer);
+            fail(
+                "validation was asked for, but the layer {} is not installed (Debian package: vulkan-validationlayers)",
+                kValidationLayer);
         }
         layers.push_back(kValidationLayer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -126,8 +135,10 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
     try {
         return {context, info};
     } catch (const vk::SystemError& error) {
-        fail("no Vulkan instance could be made ({}); a driver is needed (software driver on Debian: mesa-vulkan-drivers)",
-             error.what());
+        fail(
+            "no Vulkan instance could be made ({}); a driver is needed (software driver on Debian: "
+            "mesa-vulkan-drivers)",
+            error.what());
     }
 }
 
@@ -142,7 +153,8 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
     info.type = vk::to_string(properties.deviceType);
     info.driver = driver.driverName.data();
     info.driver_version = driver.driverInfo.data();
-    info.api_version = fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api), VK_API_VERSION_PATCH(api));
+    info.api_version =
+        fmt::format("{}.{}.{}", VK_API_VERSION_MAJOR(api), VK_API_VERSION_MINOR(api), VK_API_VERSION_PATCH(api));
 
     if (api < VK_API_VERSION_1_3) {
         info.rejections.push_back(fmt::format("Vulkan {}, 1.3 is needed", info.api_version));
@@ -157,7 +169,8 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
     if (!find_queue_family(physical)) info.rejections.emplace_back("no queue that does graphics and compute");
     using Flag = vk::FormatFeatureFlagBits;
     const auto blends = physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).optimalTilingFeatures;
-    if (!(blends & Flag::eColorAttachmentBlend)) info.rejections.emplace_back("no blending to RGBA32F targets (sheets)");
+    if (!(blends & Flag::eColorAttachmentBlend))
+        info.rejections.emplace_back("no blending to RGBA32F targets (sheets)");
     return info;
 }
 
@@ -170,7 +183,8 @@ Device::Device(const DeviceChoice& choice) {
     for (auto& candidate : sorted_devices(instance_)) {
         DeviceInfo info = describe(candidate, index++);
         std::string verdict = info.rejections.empty() ? "usable" : "rejected:";
-        for (const auto& rejection : info.rejections) verdict += " " + rejection + ";";
+        for (const auto& rejection : info.rejections)
+            verdict += " " + rejection + ";";
         seen += fmt::format("\n  {}: {} ({}): {}", info.index, info.name, info.driver, verdict);
         if (!*physical_ && info.rejections.empty() && matches(info, choice.device)) {
             physical_ = std::move(candidate);
@@ -178,7 +192,8 @@ Device::Device(const DeviceChoice& choice) {
         }
     }
     if (!*physical_) {
-        if (seen.empty()) fail("no Vulkan device found; a driver is needed (software driver on Debian: mesa-vulkan-drivers)");
+        if (seen.empty())
+            fail("no Vulkan device found; a driver is needed (software driver on Debian: mesa-vulkan-drivers)");
         fail("no usable Vulkan device{}:{}", choice.device.empty() ? "" : " matches --device " + choice.device, seen);
     }
 
@@ -188,7 +203,8 @@ Device::Device(const DeviceChoice& choice) {
     timestamp_period_ = timestamps ? static_cast<double>(physical_.getProperties().limits.timestampPeriod) : 0.0;
 
     Features enabled;
-    for (const Need& need : kNeeds) need.field(enabled) = VK_TRUE;
+    for (const Need& need : kNeeds)
+        need.field(enabled) = VK_TRUE;
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
     vk::DeviceCreateInfo device_info({}, queue_info);
@@ -208,11 +224,12 @@ vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requiremen
         }
     }
     if (!type) fail("{}: the device {} has no memory of the kind it needs", name, info_.name);
-    const auto limits = physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
+    const auto limits =
+        physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
     const auto most = limits.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
     if (requirements.size > most) {
-        fail("{} needs {} MiB of device memory in one piece; {} allows {} MiB", name, requirements.size >> 20U, info_.name,
-             most >> 20U);
+        fail("{} needs {} MiB of device memory in one piece; {} allows {} MiB", name, requirements.size >> 20U,
+             info_.name, most >> 20U);
     }
     const vk::MemoryAllocateFlagsInfo address(vk::MemoryAllocateFlagBits::eDeviceAddress);
     vk::MemoryAllocateInfo info(requirements.size, *type);
@@ -220,11 +237,11 @@ vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requiremen
     try {
         return {device_, info};
     } catch (const vk::OutOfDeviceMemoryError&) {
-        fail("{} needs {} MiB of device memory; {} has no more ({} MiB are in use here)", name, requirements.size >> 20U,
-             info_.name, allocated_bytes() >> 20U);
+        fail("{} needs {} MiB of device memory; {} has no more ({} MiB are in use here)", name,
+             requirements.size >> 20U, info_.name, allocated_bytes() >> 20U);
     } catch (const vk::OutOfHostMemoryError&) {
-        fail("{} needs {} MiB of memory; this machine has no more ({} MiB are in use here)", name, requirements.size >> 20U,
-             allocated_bytes() >> 20U);
+        fail("{} needs {} MiB of memory; this machine has no more ({} MiB are in use here)", name,
+             requirements.size >> 20U, allocated_bytes() >> 20U);
     }
 }
 
@@ -236,7 +253,8 @@ std::vector<DeviceInfo> list_devices() {
     std::vector<DeviceInfo> infos;
     const vk::raii::Context context;
     const auto instance = gpu::create_instance(context, false, nullptr);
-    for (const auto& device : gpu::sorted_devices(instance)) infos.push_back(gpu::describe(device, static_cast<int>(infos.size())));
+    for (const auto& device : gpu::sorted_devices(instance))
+        infos.push_back(gpu::describe(device, static_cast<int>(infos.size())));
     return infos;
 }
 

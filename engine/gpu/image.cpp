@@ -17,15 +17,16 @@ GpuImage::GpuImage(const Device& device, const ImageShape& shape, const char* na
     const vk::Extent3D extent(static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(shape.size.y),
                               static_cast<std::uint32_t>(shape.size.z));
     const auto layers = static_cast<std::uint32_t>(shape.layers);
-    image_ = vk::raii::Image(device.handle(),
-                             vk::ImageCreateInfo({}, shape.volume ? vk::ImageType::e3D : vk::ImageType::e2D, shape.format,
-                                                 extent, 1, layers, vk::SampleCountFlagBits::e1,
-                                                 vk::ImageTiling::eOptimal, shape.usage));
+    image_ = vk::raii::Image(
+        device.handle(),
+        vk::ImageCreateInfo({}, shape.volume ? vk::ImageType::e3D : vk::ImageType::e2D, shape.format, extent, 1, layers,
+                            vk::SampleCountFlagBits::e1, vk::ImageTiling::eOptimal, shape.usage));
     const auto requirements = image_.getMemoryRequirements();
     memory_ = device.allocate(requirements, vk::MemoryPropertyFlagBits::eDeviceLocal, {}, false, name);
     image_.bindMemory(*memory_, 0);
-    const auto view_type = shape.volume ? vk::ImageViewType::e3D
-                           : shape.array ? vk::ImageViewType::e2DArray : vk::ImageViewType::e2D;
+    const auto view_type = shape.volume  ? vk::ImageViewType::e3D
+                           : shape.array ? vk::ImageViewType::e2DArray
+                                         : vk::ImageViewType::e2D;
     view_ = vk::raii::ImageView(device.handle(), vk::ImageViewCreateInfo({}, *image_, view_type, shape.format, {},
                                                                          {aspect(), 0, 1, 0, layers}));
     allocated_ = requirements.size;

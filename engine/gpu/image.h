@@ -10,10 +10,10 @@ namespace edgesplat::gpu {
 
 struct ImageShape {
     vk::Format format;
-    glm::ivec3 size;       ///< texels; z > 1 with `volume`
+    glm::ivec3 size;  ///< texels; z > 1 with `volume`
     int layers = 1;
-    bool volume = false;   ///< a 3-D image; else a 2-D array
-    bool array = false;    ///< the view is an array even with one layer
+    bool volume = false;  ///< a 3-D image; else a 2-D array
+    bool array = false;   ///< the view is an array even with one layer
     vk::ImageUsageFlags usage;
 };
 

@@ -13,7 +13,8 @@ namespace {
 
 std::string key_of(const char* name, const Specialization& constants) {
     std::string key = name;
-    for (const auto& [id, value] : constants) key += fmt::format(",{}={}", id, value);
+    for (const auto& [id, value] : constants)
+        key += fmt::format(",{}={}", id, value);
     return key;
 }
 
@@ -25,7 +26,8 @@ struct SpecializationData {
 
     explicit SpecializationData(const Specialization& constants) {
         for (const auto& [id, value] : constants) {
-            entries.emplace_back(id, static_cast<std::uint32_t>(values.size() * sizeof(std::uint32_t)), sizeof(std::uint32_t));
+            entries.emplace_back(id, static_cast<std::uint32_t>(values.size() * sizeof(std::uint32_t)),
+                                 sizeof(std::uint32_t));
             values.push_back(value);
         }
         info.setMapEntries(entries).setData<std::uint32_t>(values);
@@ -71,14 +73,16 @@ vk::Pipeline Pipelines::compute(const char* shader, const Specialization& consta
     const auto module = load(shader);
     const SpecializationData data(constants);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
-    return *made_.emplace(key, vk::raii::Pipeline(device_->handle(), nullptr,
-                                                  vk::ComputePipelineCreateInfo({}, stage, *layout_))).first->second;
+    return *made_
+                .emplace(key, vk::raii::Pipeline(device_->handle(), nullptr,
+                                                 vk::ComputePipelineCreateInfo({}, stage, *layout_)))
+                .first->second;
 }
 
 vk::Pipeline Pipelines::draw(const DrawState& state) {
     const std::string key = key_of(state.fragment, state.constants) +
-        fmt::format(" {} {} {} {}", state.vertex, vk::to_string(state.color), vk::to_string(state.depth),
-                    static_cast<int>(state.blend));
+                            fmt::format(" {} {} {} {}", state.vertex, vk::to_string(state.color),
+                                        vk::to_string(state.depth), static_cast<int>(state.blend));
     if (const auto found = made_.find(key); found != made_.end()) return *found->second;
 
     const auto vertex = load(state.vertex), fragment = load(state.fragment);
@@ -107,8 +111,8 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
     const std::array dynamics{vk::DynamicState::eViewport, vk::DynamicState::eScissor};
     const vk::PipelineDynamicStateCreateInfo dynamic({}, dynamics);
     const vk::PipelineRenderingCreateInfo rendering(0, state.color, state.depth);
-    vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples, &depth,
-                                        &blend, &dynamic, *layout_);
+    vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples,
+                                        &depth, &blend, &dynamic, *layout_);
     info.pNext = &rendering;
     return *made_.emplace(key, vk::raii::Pipeline(device_->handle(), nullptr, info)).first->second;
 }

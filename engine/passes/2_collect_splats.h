@@ -10,6 +10,7 @@ struct CollectSplats {
     glm::ivec3 dims;
     bool edges = true;   ///< the edge field exists
     bool buried = true;  ///< the buried mask exists: `mark_buried` has run
+    bool smooth = true;  ///< edge distances are smoothed along the surface (`march`, `cubic`)
 };
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.

@@ -5,14 +5,16 @@ namespace edgesplat::passes {
 std::vector<std::uint32_t> quad_indices() {
     std::vector<std::uint32_t> indices;
     for (std::uint32_t quad = 0; quad < shader::QUADS_PER_INSTANCE; ++quad) {
-        for (const std::uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U}) indices.push_back(4 * quad + corner);
+        for (const std::uint32_t corner : {0U, 1U, 2U, 2U, 1U, 3U})
+            indices.push_back(4 * quad + corner);
     }
     return indices;
 }
 
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group) {
     const auto& target = in.sheets.shape();
-    const vk::Rect2D area({0, 0}, {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
+    const vk::Rect2D area({0, 0},
+                          {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
     const vk::RenderingAttachmentInfo color(in.sheets.view(), vk::ImageLayout::eGeneral, {}, {}, {},
                                             vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore);
     const vk::RenderingAttachmentInfo depth(in.depth.view(), vk::ImageLayout::eGeneral, {}, {}, {},
@@ -24,16 +26,24 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
     raw.beginRendering(vk::RenderingInfo({}, area, layers, 0, color, &depth));
     raw.setViewport(0, vk::Viewport(0, 0, static_cast<float>(target.size.x), static_cast<float>(target.size.y), 0, 1));
     raw.setScissor(0, area);
-    commands.bind_draw({.vertex = "group_rect.vert", .fragment = "5a_clear_sheets.frag", .constants = {},
-                        .color = target.format, .depth = in.depth.shape().format}, push);
+    commands.bind_draw({.vertex = "group_rect.vert",
+                        .fragment = "5a_clear_sheets.frag",
+                        .constants = {},
+                        .color = target.format,
+                        .depth = in.depth.shape().format},
+                       push);
     raw.draw(4, layers, 0, 0);
-    commands.bind_draw({.vertex = "5b_draw_splats.vert", .fragment = "5b_draw_splats.frag",
+    commands.bind_draw({.vertex = "5b_draw_splats.vert",
+                        .fragment = "5b_draw_splats.frag",
                         .constants = {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(in.variant.footprints)},
                                       {shader::SPEC_WARP, static_cast<std::uint32_t>(in.variant.warp)},
                                       {shader::SPEC_LIGHT, static_cast<std::uint32_t>(in.variant.light)},
                                       {shader::SPEC_PAYLOAD, in.variant.payload}},
-                        .color = target.format, .depth = in.depth.shape().format,
-                        .blend = gpu::DrawState::Blend::Add, .depth_use = gpu::DrawState::Depth::TestLess}, push);
+                        .color = target.format,
+                        .depth = in.depth.shape().format,
+                        .blend = gpu::DrawState::Blend::Add,
+                        .depth_use = gpu::DrawState::Depth::TestLess},
+                       push);
     raw.bindIndexBuffer(in.indices.handle(), 0, vk::IndexType::eUint32);
     raw.drawIndexedIndirect(in.draws.handle(), group * sizeof(shader::DrawCommand), 1, sizeof(shader::DrawCommand));
     raw.endRendering();

@@ -11,7 +11,8 @@ void clear_accumulated(gpu::Commands& commands, const gpu::GpuImage& accumulated
 void composite_sheet(gpu::Commands& commands, shader::Address frame, const gpu::GpuImage& accumulated,
                      std::uint32_t payload, std::uint32_t group) {
     const auto& target = accumulated.shape();
-    const vk::Rect2D area({0, 0}, {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
+    const vk::Rect2D area({0, 0},
+                          {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
     const vk::RenderingAttachmentInfo color(accumulated.view(), vk::ImageLayout::eGeneral, {}, {}, {},
                                             vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore);
     const auto& raw = commands.raw();
@@ -19,8 +20,11 @@ void composite_sheet(gpu::Commands& commands, shader::Address frame, const gpu::
     raw.setViewport(0, vk::Viewport(0, 0, static_cast<float>(target.size.x), static_cast<float>(target.size.y), 0, 1));
     raw.setScissor(0, area);
     const auto blend = payload == shader::PAYLOAD_TAU ? gpu::DrawState::Blend::Add : gpu::DrawState::Blend::Under;
-    commands.bind_draw({.vertex = "group_rect.vert", .fragment = "6_composite_sheet.frag",
-                        .constants = {{shader::SPEC_PAYLOAD, payload}}, .color = target.format, .blend = blend},
+    commands.bind_draw({.vertex = "group_rect.vert",
+                        .fragment = "6_composite_sheet.frag",
+                        .constants = {{shader::SPEC_PAYLOAD, payload}},
+                        .color = target.format,
+                        .blend = blend},
                        {frame, group, 0});
     raw.draw(4, 1, 0, 0);
     raw.endRendering();

@@ -14,6 +14,10 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
+/// Neighbours whose planes belong to the same piece of surface: normals within 37 degrees, foot points within reach.
+constexpr double kSmoothAgreement = 0.8;
+constexpr double kSmoothReach = 1.5;  // voxels
+
 double reach_that_matters(const Settings& settings) {
     return kKernelRadius + settings.edge_half_width;
 }
@@ -169,6 +173,35 @@ VoxelEdge adopted(const Field& field, const ScaledScene& scene, const Settings& 
     return found && best.D >= -0.5 ? best : fallback;
 }
 
+/// Mean difference between a voxel's plane and its neighbours' planes on the same piece of surface. The chord between
+/// two foot points of a sphere is at right angles to the mean of their normals, so curvature does not bias it.
+double distance_correction(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& edges,
+                           const glm::ivec3& i) {
+    const VoxelEdge& edge = edges[field.offset(i)];
+    const int m = scene.material(field.at(i));
+    double sum = 0;
+    double weights = 1;
+    for (int z = -1; z <= 1; ++z) {
+        for (int y = -1; y <= 1; ++y) {
+            for (int x = -1; x <= 1; ++x) {
+                const glm::ivec3 offset(x, y, z);
+                const glm::ivec3 at = i + offset;
+                if (offset == glm::ivec3(0) || at != field.clamped(at)) continue;
+                const VoxelEdge& other = edges[field.offset(at)];
+                if (!other.has_edge || other.adopted || other.upper != edge.upper || scene.material(field.at(at)) != m)
+                    continue;
+                if (!(glm::dot(other.n, edge.n) >= kSmoothAgreement)) continue;
+                const glm::dvec3 between = glm::dvec3(offset) + other.D * other.n - edge.D * edge.n;
+                const double apart2 = glm::dot(between, between);
+                if (!(apart2 < kSmoothReach * kSmoothReach)) continue;
+                sum += 0.5 * glm::dot(edge.n + other.n, between);
+                weights += 1;
+            }
+        }
+    }
+    return sum / weights;
+}
+
 double snorm16(double v) {
     return std::round(std::clamp(v, -1.0, 1.0) * 32767) / 32767;
 }
@@ -236,7 +269,22 @@ std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene,
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = own[field.offset(i)];
         if (!edge.has_edge && adopts) edge = adopted(field, scene, settings, own, i, edge);
-        if (edge.has_edge && !(edge.D <= reach_that_matters(settings))) {
+        return edge;
+    });
+}
+
+std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
+                                    const std::vector<VoxelEdge>& edges) {
+    const bool marches = settings.edges == EdgeEstimator::March || settings.edges == EdgeEstimator::Cubic;
+    return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
+        VoxelEdge edge = edges[field.offset(i)];
+        if (!edge.has_edge) return edge;
+        if (marches) {
+            const double correction = distance_correction(field, scene, edges, i);
+            edge.D += correction;
+            edge.D2 -= correction;
+        }
+        if (!(std::abs(edge.D) <= reach_that_matters(settings))) {
             edge.has_edge = edge.adopted = edge.upper = false;
             edge.D = 0;
             edge.D2 = kInfinity;
@@ -258,8 +306,7 @@ VoxelEdge quantise(const VoxelEdge& edge) {
     VoxelEdge stored = edge;
     if (edge.has_normal) stored.n = through_octahedron(edge.n);
     stored.D = 4 * snorm16(edge.D / 4);
-    const double code = std::isinf(edge.D2) ? 1023 : std::clamp(std::round(edge.D2 / 8 * 1023), 0.0, 1022.0);
-    stored.D2 = code < 1023 ? code / 1023 * 8 : kInfinity;
+    stored.D2 = edge.D2 >= 4 ? kInfinity : std::round(std::max(edge.D2, 0.0) / 4 * 1022) / 1022 * 4;
     return stored;
 }
 

@@ -26,9 +26,14 @@ struct VoxelEdge {
 /// First dispatch: each voxel on its own. An edge farther than R + a is still there, for neighbours to adopt.
 std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene& scene, const Settings& settings);
 
-/// Second dispatch: adoption (march and cubic only), then edges that cannot matter are dropped.
+/// Second dispatch: adoption (march and cubic only).
 std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                    const std::vector<VoxelEdge>& own);
+
+/// Step 5: distances smoothed along the surface (march and cubic only), then edges that cannot matter are dropped. On the
+/// device this happens on the way into the splat list.
+std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
+                                    const std::vector<VoxelEdge>& edges);
 
 /// Both dispatches. (dims.z, dims.y, dims.x) edges, in double; with `quantised`, what each dispatch stores goes
 /// through `quantise`, as on the GPU.

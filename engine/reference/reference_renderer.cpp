@@ -62,7 +62,8 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     if (settings.edges == EdgeEstimator::Cubic) {
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
-    edges_ = estimate_edges(field(), scaled_, settings_, quantised);
+    edges_ = smooth_edges(field(), scaled_, settings_, estimate_edges(field(), scaled_, settings_, quantised));
+    if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
 }
 
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {

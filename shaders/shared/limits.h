@@ -26,6 +26,7 @@ EDGESPLAT_CONSTANT uint SPEC_LIGHT = 4u;       // Light::Kind
 EDGESPLAT_CONSTANT uint SPEC_AXIS = 5u;        // 0 x, 1 y, 2 z
 EDGESPLAT_CONSTANT uint SPEC_EDGES = 6u;       // 1: the edge field exists
 EDGESPLAT_CONSTANT uint SPEC_BURIED = 7u;      // 1: the buried mask exists
+EDGESPLAT_CONSTANT uint SPEC_SMOOTH = 8u;      // 1: distances are smoothed along the surface
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

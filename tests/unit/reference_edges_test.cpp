@@ -29,7 +29,8 @@ struct Case {
     std::vector<VoxelEdge> edges(EdgeEstimator estimator, bool quantised = false) const {
         Settings settings;
         settings.edges = estimator;
-        return estimate_edges(field(), scale_scene(scene, volume), settings, quantised);
+        const ScaledScene scaled = scale_scene(scene, volume);
+        return smooth_edges(field(), scaled, settings, estimate_edges(field(), scaled, settings, quantised));
     }
 };
 

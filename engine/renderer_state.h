@@ -9,8 +9,8 @@
 
 namespace edgesplat {
 
-struct Renderer::Impl {
-    explicit Impl(const DeviceChoice& choice);
+struct RendererState {
+    explicit RendererState(const DeviceChoice& choice);
 
     /// Passes 1 and 2, if the plan differs from what the splat list was made with. Milliseconds spent.
     double collect(const Scene& scene, const Settings& settings, bool keep_buried);
@@ -19,7 +19,8 @@ struct Renderer::Impl {
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
     /// Passes 3 to 7 with one payload; the picture is left in targets.output.
-    void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size, std::uint32_t payload);
+    void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+              std::uint32_t payload);
 
     gpu::Device device;
     gpu::Pipelines pipelines{device};
@@ -37,5 +38,8 @@ struct Renderer::Impl {
     FramePlan plan;                           ///< of the last draw
     std::vector<PassTime> collection_times;
 };
+
+/// Scales state.volume and brings it to the device.
+void upload_volume(RendererState& state);
 
 }  // namespace edgesplat

@@ -1,0 +1,126 @@
+// Passes 3 and 4 against the reference and against what a sort promises.
+#include <algorithm>
+#include <numeric>
+
+#include "engine/reference/footprints.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr glm::ivec2 kSize{96, 80};
+
+struct Drawn {
+    std::vector<std::uint32_t> sheets, order;
+    std::vector<shader::SheetGroup> groups;
+};
+
+Drawn drawn(RendererState& state, const PassScene& s) {
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    const auto n = state.volume_resources.splat_count;
+    const std::size_t count = state.targets.drawn.mapped<std::uint32_t>(1)[0];
+    const auto groups = state.targets.groups.mapped<shader::SheetGroup>(state.plan.params.group_count);
+    return {download<std::uint32_t>(state, state.targets.sheet_of, n),
+            download<std::uint32_t>(state, state.targets.order, count),
+            {groups.begin(), groups.end()}};
+}
+
+TEST(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
+    for (const PassScene& s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        const auto records = device_records(state);
+        const auto got = drawn(state, s);
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+        const reference::Footprints footprints(s.settings);
+        const auto want = reference::select_footprints(records, field, view, s.settings, footprints);
+        const reference::SplatDrawer drawer(records, want, field, s.scene, view, s.settings, footprints);
+        const double thickness = s.settings.sheet_spacing * view.mm_per_voxel_along;
+        std::size_t kept = 0, moved = 0;
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            if (got.sheets[i] == shader::SHEET_NONE) {
+                // What the device drops must not show at any pixel of the reference's own box.
+                if (!want[i].kept) continue;
+                const auto& box = want[i].box;
+                double seen = 0;
+                for (int y = box.y0; y < box.y1; ++y) {
+                    for (int x = box.x0; x < box.x1; ++x)
+                        seen = std::max(seen, drawer.tau(static_cast<std::uint32_t>(i), x, y));
+                }
+                EXPECT_LE(seen, 1e-6) << "splat " << i;
+                continue;
+            }
+            ++kept;
+            const int sheet = static_cast<int>(got.sheets[i]) + state.plan.params.sheet_base;
+            const double exact = std::max(want[i].z / thickness, 0.0);
+            // Within rounding of a sheet boundary either side is right.
+            EXPECT_LE(static_cast<double>(sheet), exact + 1e-4);
+            EXPECT_GT(static_cast<double>(sheet) + 1, exact - 1e-4);
+            moved += sheet != static_cast<int>(std::floor(exact)) ? 1U : 0U;
+        }
+        EXPECT_GT(kept, 100U);
+        EXPECT_LE(moved, kept / 100);
+    }
+}
+
+TEST(SelectFootprints, GroupRectanglesHoldEveryPixelThatIsTouched) {
+    const PassScene s = pass_scenes()[0];
+    RendererState& state = prepared(s);
+    const auto got = drawn(state, s);
+    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    glm::ivec4 all(kSize, 0, 0);
+    for (const auto& group : got.groups) {
+        if (group.count == 0) continue;
+        EXPECT_LT(group.rect.x, group.rect.z);
+        EXPECT_GE(group.rect.x, 0);
+        EXPECT_LE(group.rect.z, kSize.x);
+        all = {glm::min(glm::ivec2(all), glm::ivec2(group.rect)),
+               glm::max(glm::ivec2(all.z, all.w), glm::ivec2(group.rect.z, group.rect.w))};
+    }
+    EXPECT_LT((all.z - all.x) * (all.w - all.y), kSize.x * kSize.y) << "the rectangle is not dirty, it is everything";
+    std::size_t touched = 0;
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            if (pixels[static_cast<std::size_t>(y * kSize.x + x)].a <= 0) continue;
+            ++touched;
+            ASSERT_TRUE(x >= all.x && x < all.z && y >= all.y && y < all.w) << x << "," << y;
+        }
+    }
+    EXPECT_GT(touched, 500U);
+}
+
+TEST(SortSheets, IsAStablePermutationOfWhatIsDrawn) {
+    for (const PassScene& s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        const auto got = drawn(state, s);
+        std::vector<std::uint32_t> want;
+        for (std::uint32_t i = 0; i < got.sheets.size(); ++i) {
+            if (got.sheets[i] != shader::SHEET_NONE) want.push_back(i);
+        }
+        std::stable_sort(want.begin(), want.end(), [&](auto a, auto b) { return got.sheets[a] < got.sheets[b]; });
+        EXPECT_EQ(got.order, want);
+
+        std::uint32_t first = 0;
+        for (const auto& group : got.groups) {
+            EXPECT_EQ(group.first, first);
+            first += group.count;
+        }
+        EXPECT_EQ(first, got.order.size());
+    }
+}
+
+TEST(SortSheets, ThinSheetsByTheThousand) {
+    PassScene s = pass_scenes()[0];
+    RendererState& state = prepared(s);
+    s.settings.sheet_spacing = 0.05;  // the smallest there is
+    const auto got = drawn(state, s);
+    EXPECT_GT(state.plan.params.sheet_count, 400U);
+    for (std::size_t i = 1; i < got.order.size(); ++i)
+        EXPECT_LE(got.sheets[got.order[i - 1]], got.sheets[got.order[i]]);
+}
+
+}  // namespace
+}  // namespace edgesplat::test

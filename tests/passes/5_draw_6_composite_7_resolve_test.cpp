@@ -1,0 +1,159 @@
+// Passes 5, 6 and 7 against the reference, each fed with what the device's pass before it left.
+#include <algorithm>
+
+#include "engine/reference/6_composite_sheet.h"
+#include "engine/reference/7_resolve.h"
+#include "engine/reference/footprints.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr glm::ivec2 kSize{72, 64};
+constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+
+/// Thick sheets, so that all of them are in one group and still on the device after the frame.
+PassScene in_one_group(PassScene s, FootprintMode mode, WarpFamily warp) {
+    s.settings.sheet_spacing = 6;
+    s.settings.footprints = mode;
+    s.settings.warp = warp;
+    s.settings.saturation = 1;
+    return s;
+}
+
+struct Variant {
+    FootprintMode mode;
+    WarpFamily warp;
+};
+
+class DrawSplats : public testing::TestWithParam<Variant> {};
+
+TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
+    for (PassScene s : pass_scenes()) {
+        s = in_one_group(s, GetParam().mode, GetParam().warp);
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        ASSERT_EQ(state.plan.params.group_count, 1U);
+        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
+        const auto records = device_records(state);
+        const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
+
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+        const reference::Footprints footprints(s.settings);
+        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
+        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
+        double peak = 0, worst = 0;
+        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+            std::vector<std::uint32_t> splats;
+            for (std::uint32_t i = 0; i < records.size(); ++i) {
+                if (sheet_of[i] == sheet) splats.push_back(i);
+            }
+            std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
+            drawer.draw(splats, reference::Payload::Color, {}, want);
+            const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
+            for (std::size_t i = 0; i < kPixels; ++i) {
+                const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+                // Outside the group's rectangle the sheets are neither cleared nor read.
+                const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
+                const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
+                peak = std::max(peak, want[i].a);
+                for (int c = 0; c < 4; ++c)
+                    worst = std::max(worst, std::abs(got[c] - want[i][c]));
+            }
+        }
+        // Single splats agree to the float32 mirror's 1e-4 of the footprint's peak; some tens of them add up in a
+        // sheet. The table is sampled by the device's filter, whose weights have 8 bits.
+        const bool table = GetParam().mode == FootprintMode::Table || GetParam().mode == FootprintMode::TableLerp;
+        EXPECT_GT(peak, 0.5);
+        EXPECT_LE(worst, (table ? 2e-3 : 5e-4) * peak) << "peak " << peak;
+        RecordProperty("worst_of_peak_" + std::string(s.name), std::to_string(worst / peak));
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, DrawSplats,
+                         testing::Values(Variant{FootprintMode::Isotropic, WarpFamily::Edge},
+                                         Variant{FootprintMode::Warp2d, WarpFamily::Edge},
+                                         Variant{FootprintMode::Table, WarpFamily::Edge},
+                                         Variant{FootprintMode::TableLerp, WarpFamily::Edge},
+                                         Variant{FootprintMode::Procedural, WarpFamily::Edge},
+                                         Variant{FootprintMode::Warp2d, WarpFamily::Paper},
+                                         Variant{FootprintMode::Procedural, WarpFamily::Paper}),
+                         [](const auto& test) {
+                             auto name =
+                                 std::string(name_of(test.param.mode)) + "_" + std::string(name_of(test.param.warp));
+                             std::replace(name.begin(), name.end(), '-', '_');
+                             return name;
+                         });
+
+TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
+    for (PassScene s : pass_scenes()) {
+        s = in_one_group(s, FootprintMode::TableLerp, WarpFamily::Edge);
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
+        const auto got = download<glm::vec4>(state, state.targets.accumulated);
+        const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
+        std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
+        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+            std::vector<glm::dvec4> layer(kPixels, glm::dvec4(0));
+            for (int y = rect.y; y < rect.w; ++y) {  // outside the rectangle the layers are never cleared
+                for (int x = rect.x; x < rect.z; ++x) {
+                    const auto at = static_cast<std::size_t>(y * kSize.x + x);
+                    layer[at] = sheets[sheet * kPixels + at];
+                }
+            }
+            reference::composite_sheet(want, layer);
+        }
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            for (int c = 0; c < 4; ++c)
+                ASSERT_NEAR(static_cast<double>(got[i][c]), want[i][c], 2e-6) << "pixel " << i;
+        }
+    }
+}
+
+TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
+    PassScene s = in_one_group(pass_scenes()[1], FootprintMode::TableLerp, WarpFamily::Edge);
+    s.scene.background = {0.1, 0.3, 0.7};
+    RendererState& state = prepared(s);
+    const auto output = [&] { return state.targets.output.mapped<glm::vec4>(kPixels); };
+    const auto accumulated = [&] {
+        std::vector<glm::dvec4> frame;
+        for (const auto& pixel : download<glm::vec4>(state, state.targets.accumulated))
+            frame.emplace_back(pixel);
+        return frame;
+    };
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    const Image color = reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background);
+    for (std::size_t i = 0; i < kPixels * 4; ++i)
+        ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], color.pixels[i], 1e-6F);
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_DEPTH_DISTANCE);
+    const Image depth = reference::resolve_mean(accumulated(), kSize.x, kSize.y);
+    for (std::size_t i = 0; i < kPixels; ++i)
+        ASSERT_NEAR(output()[i].x, depth.pixels[i], 1e-4F);
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_NORMAL);
+    const Image normal = reference::resolve_normal(accumulated(), kSize.x, kSize.y);
+    for (std::size_t i = 0; i < kPixels * 3; ++i)
+        ASSERT_NEAR(output()[i / 3][static_cast<int>(i % 3)], normal.pixels[i], 1e-5F);
+}
+
+TEST(Frame, RepeatsBitForBit) {
+    const PassScene s = pass_scenes()[1];
+    RendererState& state = prepared(s);
+    const auto render = [&] {
+        state.collected.reset();
+        state.collect(s.scene, s.settings, false);
+        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto pixels = state.targets.output.mapped<glm::vec4>(kPixels);
+        return std::vector<glm::vec4>(pixels.begin(), pixels.end());
+    };
+    const auto first = render();
+    EXPECT_EQ(render(), first);
+    EXPECT_EQ(render(), first);
+}
+
+}  // namespace
+}  // namespace edgesplat::test

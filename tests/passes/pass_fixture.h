@@ -1,0 +1,137 @@
+// A device with validation, small scenes, and what the passes left on the device in the reference's own terms.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "engine/reference/1_estimate_edges.h"
+#include "engine/reference/2_collect_splats.h"
+#include "engine/reference/5_draw_splats.h"
+#include "engine/renderer_state.h"
+#include "engine/volume/analytic_volumes.h"
+#include "engine/volume/filters.h"
+#include "tests/passes/device_under_test.h"
+
+namespace edgesplat::test {
+
+template <typename T>
+std::vector<T> download(RendererState& state, const gpu::Buffer& buffer, std::size_t count) {
+    const gpu::Buffer host(state.device, count * sizeof(T), gpu::Buffer::Place::Host, "readback");
+    state.commands.run([&] {
+        state.commands.raw().copyBuffer(buffer.handle(), host.handle(), vk::BufferCopy(0, 0, count * sizeof(T)));
+    });
+    const auto mapped = host.mapped<T>(count);
+    return {mapped.begin(), mapped.end()};
+}
+
+template <typename T>
+std::vector<T> download(RendererState& state, const gpu::GpuImage& image) {
+    const auto& shape = image.shape();
+    const glm::uvec3 size(shape.size);
+    const auto layers = static_cast<std::uint32_t>(shape.layers);
+    const std::size_t count = std::size_t{size.x} * size.y * size.z * layers;
+    const gpu::Buffer host(state.device, count * sizeof(T), gpu::Buffer::Place::Host, "readback");
+    const vk::BufferImageCopy copy(0, 0, 0, {image.aspect(), 0, 0, layers}, {}, {size.x, size.y, size.z});
+    state.commands.run([&] {
+        state.commands.raw().copyImageToBuffer(image.handle(), vk::ImageLayout::eGeneral, host.handle(), copy);
+    });
+    const auto mapped = host.mapped<T>(count);
+    return {mapped.begin(), mapped.end()};
+}
+
+/// A voxel's edge from its two stored words (shaders/shared/scene_params.h).
+inline reference::VoxelEdge decode_edge(std::uint32_t normal, std::uint32_t code) {
+    reference::VoxelEdge edge;
+    const std::uint32_t state = code >> 26U & 3U;
+    edge.has_normal = state != shader::EDGE_NONE;
+    edge.has_edge = state >= shader::EDGE_LOWER;
+    edge.upper = state == shader::EDGE_UPPER;
+    const auto snorm = [](std::uint32_t bits) {
+        return std::max(static_cast<std::int16_t>(bits & 0xffffU) / 32767.0, -1.0);
+    };
+    glm::dvec3 n(snorm(normal), snorm(normal >> 16U), 0);
+    n.z = 1 - std::abs(n.x) - std::abs(n.y);
+    const double fold = std::max(-n.z, 0.0);
+    n.x += n.x >= 0 ? -fold : fold;
+    n.y += n.y >= 0 ? -fold : fold;
+    if (edge.has_normal) edge.n = glm::normalize(n);
+    if (edge.has_edge) edge.D = snorm(code) * static_cast<double>(shader::EDGE_DISTANCE_UNIT);
+    const std::uint32_t d2 = code >> 16U & 1023U;
+    if (edge.has_edge && d2 != shader::FACE_NONE)
+        edge.D2 = d2 / 1022.0 * static_cast<double>(shader::FACE_DISTANCE_UNIT);
+    return edge;
+}
+
+/// One scene, rendered by the passes on the device.
+struct PassScene {
+    std::string name;
+    Volume volume;
+    Scene scene;
+    Camera camera;
+    Settings settings;
+
+    reference::ScaledScene scaled() const { return reference::scale_scene(scene, volume); }
+};
+
+inline void look_at(PassScene& s, const glm::dvec3& eye, const glm::dvec3& target, double fov) {
+    s.camera.eye = s.volume.geometry.to_world(eye);
+    s.camera.direction = s.volume.geometry.to_world(target) - s.camera.eye;
+    s.camera.up = {0.1, 0.05, 1};
+    s.camera.fov_y = fov;
+}
+
+/// Torus, opaque; orbital, two materials, one translucent, on an oblique left-handed anisotropic grid; a wall.
+inline std::vector<PassScene> pass_scenes() {
+    std::vector<PassScene> scenes(3);
+    auto& torus = scenes[0];
+    torus.name = "torus";
+    torus.volume = sample(torus_scene({28, 26, 20}, {13.3, 12.6, 9.4}, 7.2, 3.6));
+    torus.scene.iso_values = {0.5};
+    torus.scene.materials = {{{0, 0, 0}, 0}, {{1, 0.85, 0.75}, 4}};
+    look_at(torus, {13, -14, 24}, {13, 12, 9}, 40);
+
+    auto& orbital = scenes[1];
+    orbital.name = "oblique orbital";
+    orbital.volume = sample(resized(analytic_scene("orbital"), {22, 20, 24}));
+    auto& geometry = orbital.volume.geometry;
+    geometry.index_to_world_axes =
+        glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.7));
+    geometry.origin = {-40, 12, 7};
+    const double top = static_cast<double>(orbital.volume.max_value);
+    orbital.scene.iso_values = {0.08 * top, 0.4 * top};
+    orbital.scene.materials = {{{0, 0, 0}, 0}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
+    orbital.scene.light.kind = Light::Kind::Directional;
+    orbital.scene.light.direction = {0.3, -1, 0.5};
+    look_at(orbital, {40, -18, 12}, {10, 10, 12}, 35);
+
+    auto& wall = scenes[2];
+    wall.name = "wall from inside";
+    wall.volume = sample(slab_scene({24, 24, 24}, {0.3, 1, 0.2}, {11.5, 13, 11.5}, 1.6));
+    wall.scene.iso_values = {0.5};
+    wall.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, 2}};
+    look_at(wall, {11, 8, 11}, {13, 13, 12}, 70);
+    return scenes;
+}
+
+/// Device and volume ready, passes 1 and 2 run.
+inline RendererState& prepared(const PassScene& s) {
+    RendererState& state = device_under_test();
+    state.collected.reset();
+    state.volume_resources = {};
+    state.volume = std::make_shared<Volume>(s.volume);
+    upload_volume(state);
+    state.provide_footprints(s.settings);
+    state.collect(s.scene, s.settings, false);
+    return state;
+}
+
+/// The device's splat list as the reference writes it.
+inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
+    std::vector<reference::SplatRecord> records;
+    for (const auto& splat :
+         download<shader::Splat>(state, state.volume_resources.splats, state.volume_resources.splat_count)) {
+        records.push_back({splat.voxel, splat.edge >> 28U, decode_edge(splat.normal, splat.edge)});
+    }
+    return records;
+}
+
+}  // namespace edgesplat::test

@@ -1,0 +1,27 @@
+// Registers the listener that fails any test of this program during which validation spoke.
+#include "tests/passes/device_under_test.h"
+
+namespace edgesplat::test {
+
+static const bool kListening = [] {
+    testing::UnitTest::GetInstance()->listeners().Append(new ValidationIsSilent);
+    return true;
+}();
+
+TEST(Device, ListensToValidation) {
+    EXPECT_TRUE(kListening);
+    EXPECT_EQ(device_under_test().device.validation_messages(), 0U);
+    EXPECT_FALSE(device_under_test().device.info().name.empty());
+}
+
+TEST(Device, RejectsWhatDoesNotExistWithEveryReason) {
+    try {
+        RendererState state({.device = "no such device"});
+        FAIL() << "a device that does not exist was opened";
+    } catch (const std::exception& error) {
+        EXPECT_NE(std::string(error.what()).find("no such device"), std::string::npos) << error.what();
+        EXPECT_NE(std::string(error.what()).find("usable"), std::string::npos) << error.what();
+    }
+}
+
+}  // namespace edgesplat::test
