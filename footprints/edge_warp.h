@@ -13,8 +13,8 @@ namespace edgesplat {
 
 /// How far the warp reaches and how steep it is.
 struct EdgeBand {
-    double half_width = 1.3;  ///< a, voxels, (0, 3]
-    double strength = 12;     ///< k, slope at the edge, [1, 64]; 1 is no warp
+    double half_width = 1.6;  ///< a, voxels, (0, 3]
+    double strength = 16;     ///< k, slope at the edge, [1, 64]; 1 is no warp
 };
 
 /// The edge (or the two faces of a wall) that a voxel's kernel is warped around.

@@ -30,8 +30,8 @@ double exact_footprint(const Ray& ray, const PaperEdge& edge);
 
 /// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per
 /// half band (edge) or per piece of the profile (paper) within.
-double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 8);
-double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 8);
+double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 10);
+double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 10);
 
 /// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the
 /// point p, shortened by the projection of n: the edge stands at D/sin(theta), its strength fades to 1 as n turns along

@@ -47,7 +47,9 @@ void main() {
     if (!p.at_eye) offset += splat_support(e).x * e.n;
 
     vec4 material = params.frame.materials[splat.edge >> 28];
-    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * e.n);
+    // A surface faces its lower values, whichever side of it the splat is on.
+    vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
+    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
     vec3 payload = vec3(0.0);
     if (PAYLOAD == PAYLOAD_COLOR)
         payload = lit(material.rgb, e, world_normal, -normalize(params.frame.index_to_world * from_eye));

@@ -37,7 +37,8 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
                       const Settings& settings, Payload payload) {
     const VoxelEdge& edge = record.edge;
     const glm::dvec3 x(field.voxel(record.voxel));
-    const glm::dvec3 n = edge.has_normal ? edge.n : glm::dvec3(0);
+    // A surface faces its lower values, whichever side of it the splat is on.
+    const glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
     switch (payload) {
         case Payload::Color:
             return scene.materials[record.material].color *

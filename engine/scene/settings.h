@@ -15,8 +15,8 @@ struct Settings {
     EdgeEstimator edges = EdgeEstimator::March;
     FootprintMode footprints = FootprintMode::TableLerp;
     WarpFamily warp = WarpFamily::Edge;
-    double edge_half_width = 1.3;   ///< a, voxels, (0, 3]
-    double edge_strength = 14;      ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
+    double edge_half_width = 1.6;   ///< a, voxels, (0, 3]
+    double edge_strength = 16;      ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
     double sheet_spacing = 1.0;     ///< voxels along the view axis, [0.05, 16]
     SheetFormat sheet_format = SheetFormat::Float;
     double saturation = 0.999;      ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never

@@ -1,0 +1,67 @@
+// The figures the method stands for, from pictures of the device: sharp and well placed edges, no seams, closed walls.
+#include "tests/properties/edge_quality.h"
+
+#include <gtest/gtest.h>
+
+namespace edgesplat::test {
+namespace {
+
+Settings plain() {
+    Settings settings;
+    settings.edges = EdgeEstimator::Off;
+    return settings;
+}
+
+TEST(Planes, SharpAndInPlaceAtEveryOrientation) {
+    const EdgeProfiles p = plane_edges({});
+    EXPECT_EQ(p.missed, 0);
+    EXPECT_LE(mean(p.rise), 0.20);
+    EXPECT_LE(mean_magnitude(p.location), 0.03);
+    const EdgeProfiles off = plane_edges(plain());
+    EXPECT_GE(mean(off.rise), 4 * mean(p.rise)) << "plain splatting is the soft one";
+}
+
+TEST(Silhouettes, SphereIsWhereItsProjectionIs) {
+    const EdgeProfiles p = sphere_silhouettes({});
+    EXPECT_EQ(p.missed, 0);
+    EXPECT_LE(mean_magnitude(p.location), 0.2);
+}
+
+TEST(Silhouettes, TorusIsWhereItsProjectionIs) {
+    const EdgeProfiles p = torus_silhouettes({});
+    EXPECT_EQ(p.missed, 0);
+    EXPECT_LE(mean_magnitude(p.location), 0.2);
+}
+
+TEST(PartitionOfUnity, ExactAtKnownPlanes) {
+    EXPECT_LE(plane_unity({}, false).max, 0.01);
+}
+
+TEST(PartitionOfUnity, HoldsAtEstimatedPlanes) {
+    const Unity unity = plane_unity({}, true);
+    RecordProperty("max", std::to_string(unity.max));
+    EXPECT_LE(unity.rms, 0.01) << "largest " << unity.max;
+}
+
+TEST(PartitionOfUnity, PicturesOfUniformExtinctionAreFlat) {
+    const Unity unity = picture_unity({});
+    EXPECT_LE(unity.max, 0.01) << "rms " << unity.rms;
+}
+
+TEST(Walls, OneAndAHalfVoxelsAreClosedAndSharp) {
+    const Wall w = wall({}, 1.5);
+    EXPECT_GE(w.low, 0.85) << "a hole, or a dent";
+    EXPECT_EQ(w.missed, 0);
+    EXPECT_LE(w.rise, 0.35);
+}
+
+TEST(Walls, ThinnerThanAVoxelAreNotTorn) {
+    const Wall w = wall({}, 0.6), off = wall(plain(), 0.6);
+    for (std::size_t i = 0; i < w.faces.size(); ++i) {
+        EXPECT_GE(w.faces[i].low, off.faces[i].low - 0.01) << "orientation " << i;
+        EXPECT_LE(w.faces[i].variation, off.faces[i].variation + 0.01) << "orientation " << i;
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat::test

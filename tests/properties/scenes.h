@@ -1,0 +1,57 @@
+// Small scenes that the property and image tests look at.
+#pragma once
+
+#include "engine/image_compare.h"
+#include "engine/volume/analytic_volumes.h"
+#include "tests/properties/measuring.h"
+
+namespace edgesplat::test {
+
+/// Looks from `eye` at `target`, both in index space, `up` in world.
+inline Camera look(const Volume& volume, const glm::dvec3& eye, const glm::dvec3& target, double fov,
+                   const glm::dvec3& up = {0.1, 0.05, 1}) {
+    Camera camera;
+    camera.eye = volume.geometry.to_world(eye);
+    camera.direction = volume.geometry.to_world(target) - camera.eye;
+    camera.up = up;
+    camera.fov_y = fov;
+    return camera;
+}
+
+/// The volume on another grid.
+inline VolumePointer placed(const VolumePointer& volume, const glm::dmat3& axes, const glm::dvec3& origin = {}) {
+    const auto copy = std::make_shared<Volume>(*volume);
+    copy->geometry.index_to_world_axes = axes;
+    copy->geometry.origin = origin;
+    finish_volume(*copy);
+    return copy;
+}
+
+/// An opaque torus and a translucent second material, lit by a headlight, whole in the picture.
+inline Shot torus_shot() {
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(torus_scene({30, 28, 20}, {14.3, 13.6, 9.4}, 8.2, 4.1)));
+    shot.scene.iso_values = {0.2, 0.5};
+    shot.scene.materials = {{}, {{0.2, 0.5, 1}, 0.15}, {{1, 0.85, 0.7}, 2}};
+    shot.camera = look(*shot.volume, {15, -24, 26}, {14, 13, 9}, 40);
+    shot.width = shot.height = 96;
+    return shot;
+}
+
+/// Whether every channel of every pixel is finite and within [low, high].
+inline bool within(const Image& image, float low, float high) {
+    for (const float v : image.pixels)
+        if (!(v >= low && v <= high)) return false;
+    return true;
+}
+
+inline Image flipped(const Image& image) {
+    Image mirror = image;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < image.channels; ++c)
+                mirror.at(x, y, c) = image.at(image.width - 1 - x, y, c);
+    return mirror;
+}
+
+}  // namespace edgesplat::test

@@ -1,0 +1,29 @@
+// Registers the listener that fails any test of this program during which validation spoke.
+#include <gtest/gtest.h>
+
+#include "tests/properties/test_renderer.h"
+
+namespace edgesplat::test {
+namespace {
+
+class ValidationIsSilent : public testing::EmptyTestEventListener {
+    void OnTestEnd(const testing::TestInfo&) override {
+        const auto now = test_renderer().validation_messages();
+        EXPECT_EQ(now, seen_) << "validation messages";
+        seen_ = now;
+    }
+    std::uint64_t seen_ = 0;
+};
+
+const bool kListening = [] {
+    testing::UnitTest::GetInstance()->listeners().Append(new ValidationIsSilent);
+    return true;
+}();
+
+TEST(Renderer, ListensToValidation) {
+    EXPECT_TRUE(kListening);
+    EXPECT_EQ(test_renderer().validation_messages(), 0U);
+}
+
+}  // namespace
+}  // namespace edgesplat::test
