@@ -67,17 +67,19 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     const passes::CollectSplats collect{scene, plan.dims, plan.edge_field, plan.buried, plan.edge_field && marched};
 
     commands.run([&] {
+        if (plan.buried) {
+            commands.prepare({&resources.buried});
+            commands.begin_span("1a_mark_buried");
+            passes::mark_buried(commands, scene, plan.dims);
+            commands.end_span();
+        }
         if (plan.edge_field) {
             commands.prepare({&resources.edges});
             commands.begin_span("1_estimate_edges");
-            passes::estimate_edges(commands, scene, plan.dims, plan.estimator);
+            passes::estimate_edges(commands, scene, plan.dims, plan.estimator, plan.skip_buried);
             commands.end_span();
         }
         commands.begin_span("2_collect_splats");
-        if (plan.buried) {
-            commands.prepare({&resources.buried});
-            passes::mark_buried(commands, scene, plan.dims);
-        }
         passes::count_splats(commands, collect);
         commands.end_span();
     });

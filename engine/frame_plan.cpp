@@ -1,6 +1,7 @@
 #include "engine/frame_plan.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -71,6 +72,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
         farthest = std::max(farthest, bury_distance(material.extinction * shortest_step(volume.geometry)));
     }
     plan.buried = settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= kMaxBuryDistance;
+    plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);

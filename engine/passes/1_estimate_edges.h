@@ -6,8 +6,13 @@
 
 namespace edgesplat::passes {
 
+/// Marks voxels that opaque ones hide from every side (three line sweeps).
+void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims);
+
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
-/// per voxel. View-independent. With EdgeEstimator::Off only normals for light are written.
-void estimate_edges(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, EdgeEstimator estimator);
+/// per voxel. With `skip_buried`, voxels marked by
+/// mark_buried get none. View-independent. With EdgeEstimator::Off only normals for light are written.
+void estimate_edges(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, EdgeEstimator estimator,
+                    bool skip_buried);
 
 }  // namespace edgesplat::passes

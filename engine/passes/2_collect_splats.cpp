@@ -7,7 +7,7 @@ void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool wri
     const gpu::Specialization constants{{shader::SPEC_EDGES, in.edges ? 1 : 0},
                                         {shader::SPEC_BURIED, in.buried ? 1 : 0},
                                         {shader::SPEC_SMOOTH, in.smooth ? 1 : 0}};
-    commands.dispatch("2b_collect_splats.comp", constants, {in.scene, write ? 1U : 0U, 0},
+    commands.dispatch("2_collect_splats.comp", constants, {in.scene, write ? 1U : 0U, 0},
                       gpu::groups_for(collect_runs(in.dims), 64));
     commands.barrier();
 }
@@ -17,16 +17,6 @@ void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool wri
 std::uint64_t collect_runs(const glm::ivec3& dims) {
     const glm::u64vec3 n(dims);
     return (n.x * n.y * n.z + shader::COLLECT_RUN - 1) / shader::COLLECT_RUN;
-}
-
-void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims) {
-    const glm::uvec3 n(dims);
-    const std::uint32_t lines[3] = {n.y * n.z, n.x * n.z, n.x * n.y};
-    for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        commands.dispatch("2a_mark_buried.comp", {{shader::SPEC_AXIS, axis}}, {scene, 0, 0},
-                          gpu::groups_for(lines[axis], 64));
-        commands.barrier();
-    }
 }
 
 void count_splats(gpu::Commands& commands, const CollectSplats& in) {

@@ -16,9 +16,6 @@ struct CollectSplats {
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
 std::uint64_t collect_runs(const glm::ivec3& dims);
 
-/// Marks voxels that opaque ones hide from every side (three line sweeps).
-void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims);
-
 /// Writes how many splats each run holds to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 

@@ -137,7 +137,7 @@ VoxelEdge march(const Field& field, const ScaledScene& scene, const Settings& se
         edge.upper = hits[side]->upper;
     }
     if (!edges[0].has_edge && !edges[1].has_edge) return none;
-    const int best = !edges[0].has_edge || (edges[1].has_edge && edges[1].D < edges[0].D) ? 1 : 0;
+    const int best = !edges[0].has_edge || (edges[1].has_edge && hits[1]->t < hits[0]->t) ? 1 : 0;
     VoxelEdge edge = edges[best];
     if (hits[1 - best]) edge.D2 = hits[1 - best]->t * std::abs(glm::dot(*axis, edge.n));
     return edge;

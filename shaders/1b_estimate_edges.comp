@@ -7,11 +7,13 @@
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
+layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 const uint OFF = 0u, TAYLOR = 1u, QUADRATIC = 2u, MARCH = 3u, CUBIC = 4u;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_EDGES, rg32ui) uniform writeonly uimage3D edges;
+layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
 layout(push_constant) uniform Push { SceneRef params; };
 
 ivec3 dims;
@@ -93,20 +95,22 @@ Edge march(ivec3 p, float value, float low, float high) {
         hits[side] = Hit(1e9, false);
         if (has_axis) hits[side] = walk(x, side == 0 ? -axis : axis, value, low, high);
     }
-    for (int side = 0; side < 2; ++side) {
+    // The nearer hit first; the other only if this one cannot be trusted.
+    int first = hits[1].t < hits[0].t ? 1 : 0;
+    for (int i = 0; i < 2; ++i) {
+        int side = i == 0 ? first : 1 - first;
         Hit hit = hits[side];
         vec3 q = side == 0 ? -axis : axis;
-        if (hit.t <= EDGE_REACH) {
+        for (int run = hit.t <= EDGE_REACH && e.state == EDGE_NONE ? 1 : 0; run > 0; --run) {
             vec3 g = field_gradient(x + hit.t * q);
             float steepness = length(g);
             vec3 n = g / max(steepness, 1e-30);
             float alignment = dot(n, q);
             n = alignment < 0.0 ? -n : n;
             alignment = abs(alignment);
-            float d = hit.t * alignment;
-            if (steepness >= GRADIENT_MIN && alignment >= 0.5 && d < e.d) {
+            if (steepness >= GRADIENT_MIN && alignment >= 0.5) {
                 float other = hits[1 - side].t;
-                e = Edge(n, d, other <= EDGE_REACH ? other * abs(dot(axis, n)) : 1e9,
+                e = Edge(n, hit.t * alignment, other <= EDGE_REACH ? other * abs(dot(axis, n)) : 1e9,
                          hit.upper ? EDGE_UPPER : EDGE_LOWER);
             }
         }
@@ -159,7 +163,10 @@ void main() {
     float high = params.scene.iso[material];
 
     uvec2 code = uvec2(0u);
-    if ((params.scene.visible_mask >> material & 1u) == 1u) {
+    bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
+    if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
+    // A loop that runs once or not at all: lavapipe runs both sides of an if, but no loop that is empty in every lane.
+    for (int run = visible ? 1 : 0; run > 0; --run) {
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR || ESTIMATOR == QUADRATIC) e = extrapolate(p, value, low, high, params.scene.band);
         if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) e = march(p, value, low, high);

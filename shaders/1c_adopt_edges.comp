@@ -7,8 +7,10 @@
 #include "shaders/lib/edge_record.glsl"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform coherent uimage3D edges;
+layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
 layout(push_constant) uniform Push { SceneRef params; };
 
 uint material_of(ivec3 p) {
@@ -24,6 +26,7 @@ void main() {
     uint material = material_of(p);
     uint state = imageLoad(edges, p).y >> 26 & 3u;
     bool wanting = state < EDGE_LOWER && (params.scene.visible_mask >> material & 1u) == 1u;
+    if (BURIED == 1u) wanting = wanting && imageLoad(buried, p).r == 0u;
 
     Edge best = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
     float nearest = params.scene.band * params.scene.band;

@@ -1,0 +1,51 @@
+// Pictures of lavapipe against those kept in tests/image/golden: `accept` shows what changed and replaces on demand.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+
+#include "engine/image_file.h"
+#include "tests/image/image_cases.h"
+
+namespace edgesplat::test {
+namespace {
+
+// A channel, as displayed (sRGB), is the same up to this; so many pixels may be further off.
+constexpr double kSameChannel = 8.0 / 255;
+constexpr double kOtherPixels = 0.005;
+
+/// sRGB values of a picture in linear light.
+Image displayed(Image image) {
+    for (float& v : image.pixels)
+        v = v <= 0.0031308F ? 12.92F * v : 1.055F * std::pow(v, 1 / 2.4F) - 0.055F;
+    return image;
+}
+
+class Golden : public testing::TestWithParam<ImageCase> {};
+
+TEST_P(Golden, IsTheSame) {
+    const DeviceInfo& device = test_renderer().device();
+    if (device.driver.find("llvmpipe") == std::string::npos)
+        GTEST_SKIP() << "goldens come from llvmpipe, this is " << device.driver;
+    const std::filesystem::path folder(EDGESPLAT_PICTURES);
+    const auto golden = std::filesystem::path(EDGESPLAT_SOURCE_DIR) / "tests/image/golden" / (GetParam().name + ".png");
+    const auto actual = folder / (GetParam().name + ".png"), diff = folder / (GetParam().name + ".diff.png");
+    std::filesystem::create_directories(folder);
+    write_image(actual, render_on_device(GetParam()));
+    ASSERT_TRUE(std::filesystem::exists(golden)) << "no golden yet; look at " << actual << ", then tests/image/accept";
+    const Image a = displayed(read_image(actual).image), b = displayed(read_image(golden).image);
+    const ImageDifference difference = compare_images(a, b, kSameChannel);
+    if (difference.share > kOtherPixels) write_image(diff, difference_image(a, b, 10));
+    EXPECT_LE(difference.share, kOtherPixels)
+        << "largest difference " << difference.max << " at " << difference.x << ", " << difference.y << "\n"
+        << "picture:    " << actual << "\ngolden:     " << golden << "\ndifference: " << diff
+        << " (x10)\nmade by:    " << fmt::format("image_tests --gtest_filter='*/{}'", GetParam().name)
+        << "\nto accept:  tests/image/accept " << EDGESPLAT_PICTURES << " --replace " << GetParam().name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Pictures, Golden, testing::ValuesIn(golden_cases()),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace edgesplat::test

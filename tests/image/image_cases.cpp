@@ -1,0 +1,147 @@
+#include "tests/image/image_cases.h"
+
+#include "engine/scene/views.h"
+
+namespace edgesplat::test {
+namespace {
+
+using reference::Output;
+
+constexpr int kSide = 96;
+
+/// A builtin scene on a grid, opaque above its (last) iso-value.
+Shot builtin(const char* name, const glm::ivec3& dims, double extinction = 3) {
+    const AnalyticScene scene = resized(analytic_scene(name), dims);
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(scene));
+    shot.scene.iso_values = scene.iso_values;
+    shot.scene.materials.resize(scene.iso_values.size() + 1);
+    if (scene.iso_values.size() > 1) shot.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
+    shot.scene.materials.back() = {{1, 0.8, 0.55}, extinction};
+    shot.width = shot.height = kSide;
+    return shot;
+}
+
+void from(Shot& shot, const char* view, double fov = 45) {
+    shot.camera = named_view(view, {shot.volume.get(), &shot.scene, fov, shot.width, shot.height});
+}
+
+Shot oblique_orbital() {
+    Shot shot = builtin("orbital", {26, 22, 28});
+    const double top = static_cast<double>(shot.volume->max_value);
+    shot.scene.iso_values = {0.08 * top, 0.4 * top};
+    shot.scene.materials = {{}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
+    shot.scene.light.kind = Light::Kind::Directional;
+    shot.scene.light.direction = {0.3, -1, 0.5};
+    shot.volume = placed(shot.volume,
+                         glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.7)),
+                         {-40, 12, 7});
+    shot.camera = look(*shot.volume, {44, -22, 12}, {12, 11, 14}, 38);
+    return shot;
+}
+
+/// A wall of 1.6 voxels seen from near by.
+Shot near_wall() {
+    Shot shot;
+    shot.volume =
+        std::make_shared<const Volume>(sample(slab_scene({24, 24, 24}, {0.3, 1, 0.2}, {11.5, 13, 11.5}, 1.6)));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 1, 1}, 2}};
+    shot.camera = look(*shot.volume, {11, 8, 11}, {13, 13, 12}, 70);
+    shot.width = shot.height = kSide;
+    return shot;
+}
+
+Shot inside_torus() {
+    Shot shot = torus_shot();
+    shot.scene.materials[1] = {{0.4, 1, 0.5}, 0.4};
+    shot.camera = look(*shot.volume, {14.3, 13.6, 9.4}, {20, 8, 8}, 100);
+    return shot;
+}
+
+Shot with(Shot shot, FootprintMode footprints, EdgeEstimator edges = EdgeEstimator::March,
+          WarpFamily warp = WarpFamily::Edge) {
+    shot.settings.footprints = footprints;
+    shot.settings.edges = edges;
+    shot.settings.warp = warp;
+    return shot;
+}
+
+}  // namespace
+
+std::vector<ImageCase> reference_cases() {
+    using E = EdgeEstimator;
+    using F = FootprintMode;
+    std::vector<ImageCase> cases;
+    cases.push_back({"torus far, table-lerp", torus_shot()});
+    Shot sphere = builtin("sphere", glm::ivec3(32));
+    from(sphere, "close", 30);
+    cases.push_back({"sphere close, table", with(sphere, F::Table)});
+    Shot hole = builtin("cube-hole", glm::ivec3(28));
+    from(hole, "oblique");
+    hole.settings.sheet_spacing = 0.5;
+    cases.push_back({"cube with a hole, warp2d, thin sheets", with(hole, F::Warp2d)});
+    cases.push_back({"near wall, procedural", with(near_wall(), F::Procedural)});
+    cases.push_back({"oblique orbital, directional light", oblique_orbital()});
+    Shot lobb = builtin("marschner-lobb", glm::ivec3(30));
+    from(lobb, "top");
+    cases.push_back({"marschner-lobb, plain", with(lobb, F::Isotropic, E::Off)});
+    Shot plane = builtin("plane", glm::ivec3(24));
+    from(plane, "oblique");
+    cases.push_back({"plane, paper family", with(plane, F::Procedural, E::March, WarpFamily::Paper)});
+    cases.push_back({"torus, the paper's own", with(torus_shot(), F::Warp2d, E::Taylor, WarpFamily::Paper)});
+    Shot inside = inside_torus();
+    inside.settings.sheet_format = SheetFormat::Float;
+    inside.settings.saturation = 1;
+    cases.push_back({"inside the torus, cubic", with(inside, F::TableLerp, E::Cubic)});
+    Shot phantom = builtin("phantom", {36, 42, 36}, 0.5);
+    phantom.settings.sheet_spacing = 2;
+    from(phantom, "left");
+    cases.push_back({"phantom, quadratic, thick sheets", with(phantom, F::TableLerp, E::Quadratic)});
+    cases.push_back({"oblique orbital, optical depth", oblique_orbital(), Output::Tau});
+    cases.push_back({"torus, depth", torus_shot(), Output::Depth});
+    cases.push_back({"oblique orbital, normals", oblique_orbital(), Output::Normal});
+    cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
+    return cases;
+}
+
+std::vector<ImageCase> golden_cases() {
+    std::vector<ImageCase> cases;
+    cases.push_back({"torus", torus_shot()});
+    Shot hole = builtin("cube-hole", glm::ivec3(28));
+    from(hole, "oblique", 35);
+    cases.push_back({"cube_hole", hole});
+    cases.push_back({"orbital", oblique_orbital()});
+    Shot plates = builtin("plates", glm::ivec3(48));
+    from(plates, "oblique", 35);
+    cases.push_back({"plates", plates});
+    Shot phantom = builtin("phantom", {48, 56, 48}, 0.6);
+    from(phantom, "front", 40);
+    cases.push_back({"phantom", phantom});
+    cases.push_back({"inside_torus", inside_torus()});
+    for (ImageCase& c : cases)
+        c.shot.width = c.shot.height = 128;
+    return cases;
+}
+
+Image render_on_device(const ImageCase& c) {
+    const RenderResult r = render(c.shot, {.tau = c.output == Output::Tau,
+                                           .depth = c.output == Output::Depth,
+                                           .normal = c.output == Output::Normal,
+                                           .distance = c.output == Output::Distance});
+    switch (c.output) {
+        case Output::Tau:
+            return *r.tau;
+        case Output::Depth:
+            return *r.depth;
+        case Output::Normal:
+            return *r.normal;
+        case Output::Distance:
+            return *r.distance;
+        case Output::Color:
+            break;
+    }
+    return r.color;
+}
+
+}  // namespace edgesplat::test

@@ -1,0 +1,28 @@
+// The pictures of the image tests: small scenes that between them use every mode, estimator, output and view.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/image_compare.h"
+#include "engine/reference/reference_renderer.h"
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+
+struct ImageCase {
+    std::string name;
+    Shot shot;
+    reference::Output output = reference::Output::Color;
+};
+
+/// Held against the double-precision reference.
+std::vector<ImageCase> reference_cases();
+
+/// Held against the pictures in tests/image/golden.
+std::vector<ImageCase> golden_cases();
+
+/// The output of a case as the device renders it.
+Image render_on_device(const ImageCase& image_case);
+
+}  // namespace edgesplat::test
