@@ -16,9 +16,9 @@ namespace {
 // An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
 constexpr double kOpaquePerVoxel = 0.75;
 constexpr int kMaxBuryDistance = 10;
-// Memory of the sheet group: more layers mean fewer passes, but measured no gain beyond 16 on lavapipe.
+// Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4 to 8.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
-constexpr std::uint32_t kMaxSheetsPerGroup = 16;
+constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = 65536;
 
 /// Millimetres per voxel along the axis of shortest step.
