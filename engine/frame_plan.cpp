@@ -16,7 +16,8 @@ namespace {
 // An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
 constexpr double kOpaquePerVoxel = 0.75;
 constexpr int kMaxBuryDistance = 10;
-// Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4 to 8.
+// Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4
+// to 8.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
 constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = 65536;

@@ -11,8 +11,8 @@ namespace edgesplat {
 struct CollectionPlan {
     glm::ivec3 dims{0};
     EdgeEstimator estimator = EdgeEstimator::March;
-    bool edge_field = true;        ///< edges are preserved, or a light wants normals
-    bool buried = true;            ///< some material is opaque enough to hide what lies behind it
+    bool edge_field = true;  ///< edges are preserved, or a light wants normals
+    bool buried = true;      ///< some material is opaque enough to hide what lies behind it
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
     /// voxel may adopt an edge that two of them share.
     bool skip_buried = true;

@@ -30,8 +30,8 @@ std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene&
 std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                    const std::vector<VoxelEdge>& own);
 
-/// Step 5: distances smoothed along the surface (march and cubic only), then edges that cannot matter are dropped. On the
-/// device this happens on the way into the splat list.
+/// Step 5: distances smoothed along the surface (march and cubic only), then edges that cannot matter are dropped. On
+/// the device this happens on the way into the splat list.
 std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                     const std::vector<VoxelEdge>& edges);
 

@@ -7,10 +7,10 @@ namespace edgesplat {
 
 /// Right-handed: `right` is screen +x, `up` screen +y (towards the top row), `direction` points into the picture.
 struct Camera {
-    glm::dvec3 eye{0};               ///< mm
-    glm::dvec3 direction{0, 1, 0};   ///< any length > 0; need not be normalised
-    glm::dvec3 up{0, 0, 1};          ///< any length > 0; made perpendicular to direction
-    double fov_y = 45;               ///< full vertical angle in degrees, (0, 180)
+    glm::dvec3 eye{0};              ///< mm
+    glm::dvec3 direction{0, 1, 0};  ///< any length > 0; need not be normalised
+    glm::dvec3 up{0, 0, 1};         ///< any length > 0; made perpendicular to direction
+    double fov_y = 45;              ///< full vertical angle in degrees, (0, 180)
 };
 
 /// Orthonormal frame of a camera. Throws Error for a zero direction, or a field of view outside (0, 180); an `up`

@@ -24,10 +24,10 @@ struct Light {
 
 /// Materials between sorted iso-values: material m holds values v with m = number of iso-values <= v.
 struct Scene {
-    std::vector<double> iso_values;    ///< ascending, in the volume's unit; 1..15 of them
-    std::vector<Material> materials;   ///< iso_values.size() + 1, lowest interval first
+    std::vector<double> iso_values;   ///< ascending, in the volume's unit; 1..15 of them
+    std::vector<Material> materials;  ///< iso_values.size() + 1, lowest interval first
     Light light;
-    glm::dvec3 background{0, 0, 0};    ///< linear light
+    glm::dvec3 background{0, 0, 0};  ///< linear light
 };
 
 /// Checks counts, order, finiteness and ranges. Throws Error naming the field, the value and what was expected.

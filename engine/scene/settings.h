@@ -15,12 +15,12 @@ struct Settings {
     EdgeEstimator edges = EdgeEstimator::March;
     FootprintMode footprints = FootprintMode::TableLerp;
     WarpFamily warp = WarpFamily::Edge;
-    double edge_half_width = 1.6;   ///< a, voxels, (0, 3]
-    double edge_strength = 16;      ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
-    double sheet_spacing = 0.25;    ///< voxels along the view axis, [0.05, 16]
+    double edge_half_width = 1.6;  ///< a, voxels, (0, 3]
+    double edge_strength = 16;     ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
+    double sheet_spacing = 0.25;   ///< voxels along the view axis, [0.05, 16]
     SheetFormat sheet_format = SheetFormat::Float;
-    double saturation = 0.999;      ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
-    bool cull_buried = true;        ///< drop voxels that opaque ones hide from every side
+    double saturation = 0.999;  ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
+    bool cull_buried = true;    ///< drop voxels that opaque ones hide from every side
 };
 
 /// The estimator, mode, ... of a name as the command line spells it ("table-lerp"); throws Error listing the names.

@@ -22,50 +22,50 @@ struct DrawCommand {
 
 struct FrameParams {
     // Positions are relative to `anchor`, the centre of the splats' box, so that a far eye costs no digits.
-    vec3 anchor;             // index space, voxels
-    float support;           // kernel radius R, voxels
-    vec3 view_x;             // right . S : mm per index step
-    float anchor_x;          // view coordinates of the anchor, mm
-    vec3 view_y;             // down . S
+    vec3 anchor;     // index space, voxels
+    float support;   // kernel radius R, voxels
+    vec3 view_x;     // right . S : mm per index step
+    float anchor_x;  // view coordinates of the anchor, mm
+    vec3 view_y;     // down . S
     float anchor_y;
-    vec3 view_z;             // forward . S
+    vec3 view_z;  // forward . S
     float anchor_z;
-    vec3 eye;                // index space relative to anchor
+    vec3 eye;  // index space relative to anchor
     float tan_half_x;
-    vec3 ray_x;              // S^-1 right: index units per mm
+    vec3 ray_x;  // S^-1 right: index units per mm
     float tan_half_y;
-    vec3 ray_y;              // S^-1 down
-    float sheet_thickness;   // mm
-    vec3 ray_z;              // S^-1 forward
-    int sheet_base;          // first sheet that can hold a splat
-    mat3 index_to_world;     // S
-    mat3 normal_to_world;    // S^-T
-    vec3 light;              // world unit vector towards the light (Directional)
+    vec3 ray_y;             // S^-1 down
+    float sheet_thickness;  // mm
+    vec3 ray_z;             // S^-1 forward
+    int sheet_base;         // first sheet that can hold a splat
+    mat3 index_to_world;    // S
+    mat3 normal_to_world;   // S^-T
+    vec3 light;             // world unit vector towards the light (Directional)
     float ambient;
-    vec3 background;         // linear light
+    vec3 background;  // linear light
     float diffuse;
     vec4 materials[16];      // rgb, extinction per mm
     vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
     ivec3 dims;
     uint splat_count;
-    ivec2 size;              // pixels
+    ivec2 size;  // pixels
     uint sheet_count;
     uint sheets_per_group;
     uint group_count;
-    float band;              // R + a
-    float saturation;        // alpha at which a pixel takes no more
-    float near_depth;        // mm: depth of the plane that rays of full-screen splats are described in
-    uint edge_warped;        // 1 when a warp is drawn at all (footprints are not `isotropic`)
-    float wall_support;      // support radius of a splat with two faces, voxels
+    float band;          // R + a
+    float saturation;    // alpha at which a pixel takes no more
+    float near_depth;    // mm: depth of the plane that rays of full-screen splats are described in
+    uint edge_warped;    // 1 when a warp is drawn at all (footprints are not `isotropic`)
+    float wall_support;  // support radius of a splat with two faces, voxels
     FootprintParams footprint;
-    Address splats;          // (splat_count) Splat
-    Address sheets;          // (splat_count) uint: sheet of each splat or SHEET_NONE
-    Address counters;        // (sheet_count, SORT_BLOCKS) uint: counts, then offsets
-    Address order;           // (drawn) uint: splat numbers sorted by sheet
-    Address groups;          // (group_count) SheetGroup
-    Address draws;           // (group_count) DrawCommand
-    Address partial_sums;    // (1024) uint, scratch of the scan
-    Address output_pixels;   // (size.y, size.x) vec4
+    Address splats;         // (splat_count) Splat
+    Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
+    Address counters;       // (sheet_count, SORT_BLOCKS) uint: counts, then offsets
+    Address order;          // (drawn) uint: splat numbers sorted by sheet
+    Address groups;         // (group_count) SheetGroup
+    Address draws;          // (group_count) DrawCommand
+    Address partial_sums;   // (1024) uint, scratch of the scan
+    Address output_pixels;  // (size.y, size.x) vec4
 };
 
 /// Push constants of every pass of the frame.
@@ -86,9 +86,17 @@ static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 232);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1000);
 static_assert(sizeof(edgesplat::shader::FrameParams) == 1168);
 #else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef { FrameParams frame; };
-layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef { SheetGroup at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawsRef { DrawCommand at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PixelsRef { vec4 at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef {
+    FrameParams frame;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
+    SheetGroup at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawsRef {
+    DrawCommand at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer PixelsRef {
+    vec4 at[];
+};
 #endif
 #endif

@@ -4,18 +4,18 @@
 #include "shaders/shared/glue.h"
 EDGESPLAT_SHARED_BEGIN
 
-EDGESPLAT_CONSTANT float KERNEL_RADIUS = 1.6f;       // R of kernel K7, voxels
-EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;          // how far an edge is searched, voxels; >= R + a of the default warp
-EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;       // value range per voxel; flatter data has no trustworthy direction
+EDGESPLAT_CONSTANT float KERNEL_RADIUS = 1.6f;  // R of kernel K7, voxels
+EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;     // how far an edge is searched, voxels; >= R + a of the default warp
+EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;  // value range per voxel; flatter data has no trustworthy direction
 EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 of D / 4: steps of 1.2e-4 voxel
 EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
 EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge in reach
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
-EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;           // voxels per invocation of 2_collect_splats (measured best on lavapipe)
-EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;          // columns of the sort's histogram: serial inside, stable across
-EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;         // cells of |D| in [0, R + a], each with a sphere that covers its supports
-EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;    // most even vertex cost on lavapipe in near and far views
-EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;    // sheet of a splat that is not drawn
+EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
+EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
+EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
+EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
+EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 
 // Specialization constants: ids are the same in every shader.
 EDGESPLAT_CONSTANT uint SPEC_ESTIMATOR = 0u;   // EdgeEstimator

@@ -5,13 +5,13 @@
 EDGESPLAT_SHARED_BEGIN
 
 struct SceneParams {
-    ivec3 dims;          // voxels, x fastest
-    uint iso_count;      // 1..15
-    float iso[16];       // J_j, scaled, ascending; beyond iso_count: +3e38
-    uint visible_mask;   // bit m: material m has extinction > 0
-    uint opaque_mask;    // bit m: material m hides what lies bury_distance voxels behind its surface
-    int bury_distance;   // voxels
-    float band;          // R + a: an edge further away does not matter, voxels
+    ivec3 dims;           // voxels, x fastest
+    uint iso_count;       // 1..15
+    float iso[16];        // J_j, scaled, ascending; beyond iso_count: +3e38
+    uint visible_mask;    // bit m: material m has extinction > 0
+    uint opaque_mask;     // bit m: material m hides what lies bury_distance voxels behind its surface
+    int bury_distance;    // voxels
+    float band;           // R + a: an edge further away does not matter, voxels
     Address run_offsets;  // (runs) uint: first 2_collect_splats' counts, then where each run writes
     Address splats;       // (splat_count) Splat
 };
@@ -24,10 +24,10 @@ struct Splat {
 };
 
 // EdgeState
-EDGESPLAT_CONSTANT uint EDGE_NONE = 0u;     // neither edge nor normal
-EDGESPLAT_CONSTANT uint EDGE_NORMAL = 1u;   // a normal for light, no edge
-EDGESPLAT_CONSTANT uint EDGE_LOWER = 2u;    // edge at the lower end of the voxel's interval: the voxel is inside
-EDGESPLAT_CONSTANT uint EDGE_UPPER = 3u;    // edge at the upper end: the voxel is outside
+EDGESPLAT_CONSTANT uint EDGE_NONE = 0u;           // neither edge nor normal
+EDGESPLAT_CONSTANT uint EDGE_NORMAL = 1u;         // a normal for light, no edge
+EDGESPLAT_CONSTANT uint EDGE_LOWER = 2u;          // edge at the lower end of the voxel's interval: the voxel is inside
+EDGESPLAT_CONSTANT uint EDGE_UPPER = 3u;          // edge at the upper end: the voxel is outside
 EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: plane taken from a neighbour
 
 EDGESPLAT_SHARED_END
@@ -38,8 +38,14 @@ static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);
 #else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer SceneRef { SceneParams scene; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer UintsRef { uint at[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SplatsRef { Splat at[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer SceneRef {
+    SceneParams scene;
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer UintsRef {
+    uint at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SplatsRef {
+    Splat at[];
+};
 #endif
 #endif
