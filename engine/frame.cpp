@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 #include "engine/error.h"
 #include "engine/passes/1_estimate_edges.h"
@@ -99,6 +100,8 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
         passes::write_splats(commands, collect);
         commands.end_span();
     });
+    const auto edges = resources.run_offsets.mapped<std::uint32_t>(runs);
+    resources.edge_splat_count = std::accumulate(edges.begin(), edges.end(), std::uint64_t{0});
     for (const auto& writing : commands.span_times())
         times.back().milliseconds += writing.milliseconds;
     return times;

@@ -281,6 +281,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     result.stats.device = self.device.info();
     result.stats.voxels = self.volume->geometry.voxel_count();
     result.stats.splats_collected = self.volume_resources.splat_count;
+    result.stats.edge_splats = self.volume_resources.edge_splat_count;
     result.stats.device_bytes = self.device.allocated_bytes();
     result.stats.validation_messages = self.device.validation_messages();
     return result;

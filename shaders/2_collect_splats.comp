@@ -1,5 +1,6 @@
 // Compacts the voxels that can be seen into splat records, in the order of the voxels. Each invocation owns a run of
 // consecutive voxels; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
+// Afterwards run_offsets holds how many of each run's splats have an edge.
 // On the way edge distances are smoothed along the surface (pass 1, step 5): here only voxels that are seen pay for it.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -38,6 +39,7 @@ void main() {
 
     ivec3 p = ivec3(first % uint(dims.x), first / uint(dims.x) % uint(dims.y), first / uint(dims.x) / uint(dims.y));
     uint out_at = write == 1u ? offsets.at[run] : 0u;
+    uint with_edge = 0u;
     for (uint v = first; v < last; ++v) {
         uint material = material_at(p);
         bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
@@ -52,6 +54,7 @@ void main() {
                     e.d2 -= correction;
                 }
                 if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
+                with_edge += e.state >= EDGE_LOWER ? 1u : 0u;
                 splats.at[out_at] = Splat(v, code.x, pack_edge(e) | (material << 28));
             }
             ++out_at;
@@ -64,5 +67,5 @@ void main() {
             }
         }
     }
-    if (write == 0u) offsets.at[run] = out_at;
+    offsets.at[run] = write == 1u ? with_edge : out_at;
 }

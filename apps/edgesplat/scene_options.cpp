@@ -104,7 +104,8 @@ void add_settings_options(CLI::App& command, edgesplat::Settings& s) {
                "How edges are found; off: conventional splatting")
         ->group(kGroup);
     add_choice(command, "--footprints", s.footprints, footprint_mode_named, footprint_mode_names(),
-               name_of(s.footprints), "How a warped kernel's footprint is evaluated")
+               name_of(s.footprints),
+               "How a warped kernel's footprint is evaluated (the paper family is integrated in the table modes)")
         ->group(kGroup);
     add_choice(command, "--warp", s.warp, warp_family_named, warp_family_names(), name_of(s.warp), "Shape of the warp")
         ->group(kGroup);

@@ -19,7 +19,8 @@ std::uint64_t collect_runs(const glm::ivec3& dims);
 /// Writes how many splats each run holds to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
-/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels.
+/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels,
+/// and leaves the number of splats with an edge in run_offsets.
 void write_splats(gpu::Commands& commands, const CollectSplats& in);
 
 }  // namespace edgesplat::passes

@@ -12,7 +12,7 @@ struct SceneParams {
     uint opaque_mask;     // bit m: material m hides what lies bury_distance voxels behind its surface
     int bury_distance;    // voxels
     float band;           // R + a: an edge further away does not matter, voxels
-    Address run_offsets;  // (runs) uint: first 2_collect_splats' counts, then where each run writes
+    Address run_offsets;  // (runs) uint: splats of each run, then where it writes, then how many have an edge
     Address splats;       // (splat_count) Splat
 };
 
