@@ -54,7 +54,8 @@ void unity() {
         const bool pointwise = method.name.starts_with("default") || method.name.starts_with("paper f");
         if (pointwise) line("points, exact edges", plane_unity(method.settings, false));
         if (pointwise) line("points, estimated", plane_unity(method.settings, true));
-        line("pictures", picture_unity(method.settings));
+        const bool in_pictures = pointwise || method.name == "cubic" || method.name.starts_with("paper");
+        if (in_pictures) line("pictures", picture_unity(method.settings));
     }
     fmt::print("\nSpheres, estimated edges: sum of weights - 1, and two-tone data against the truth (rms)\n\n");
     fmt::print("| {:>6} | {:<28} | {:>7} | {:>11} | {:>7} | {:>12} | {:>10} |\n", "radius", "method", "rms",
