@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "engine/error.h"
@@ -44,8 +43,12 @@ glm::vec3 to_float(const glm::dvec3& v) {
 }  // namespace
 
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
+    const auto& a = params;
+    const auto& b = other.params;
     return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
-           buried == other.buried && std::memcmp(&params, &other.params, sizeof params) == 0;
+           buried == other.buried && skip_buried == other.skip_buried && a.iso_count == b.iso_count &&
+           std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask &&
+           a.bury_distance == b.bury_distance && a.band == b.band;
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -86,7 +89,7 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
     if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
         return false;
     const glm::ivec3 voxel(index);
-    const double value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
+    const auto value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
     const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
     return is_opaque(scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())], volume.geometry);
 }
