@@ -170,9 +170,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.dims = geometry.dims;
     p.splat_count = static_cast<std::uint32_t>(splat_count);
     p.size = size;
-    // Optical depth is wanted whole.
+    // Optical depth is wanted whole, and what accumulates then is no opacity.
     p.saturation =
-        payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 2.0F : static_cast<float>(settings.saturation);
+        payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
     return plan;
 }
 

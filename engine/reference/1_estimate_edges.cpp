@@ -178,6 +178,8 @@ VoxelEdge adopted(const Field& field, const ScaledScene& scene, const Settings& 
 double distance_correction(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& edges,
                            const glm::ivec3& i) {
     const VoxelEdge& edge = edges[field.offset(i)];
+    // The edge belongs to an iso-value; both of its sides look for it, and err in opposite directions.
+    const auto iso_of = [](const VoxelEdge& e, int material) { return e.upper ? material : material - 1; };
     const int m = scene.material(field.at(i));
     double sum = 0;
     double weights = 1;
@@ -188,13 +190,14 @@ double distance_correction(const Field& field, const ScaledScene& scene, const s
                 const glm::ivec3 at = i + offset;
                 if (offset == glm::ivec3(0) || at != field.clamped(at)) continue;
                 const VoxelEdge& other = edges[field.offset(at)];
-                if (!other.has_edge || other.adopted || other.upper != edge.upper || scene.material(field.at(at)) != m)
-                    continue;
-                if (!(glm::dot(other.n, edge.n) >= kSmoothAgreement)) continue;
+                if (!other.has_edge || other.adopted) continue;
+                if (iso_of(other, scene.material(field.at(at))) != iso_of(edge, m)) continue;
+                const glm::dvec3 n = other.upper == edge.upper ? other.n : -other.n;
+                if (!(glm::dot(n, edge.n) >= kSmoothAgreement)) continue;
                 const glm::dvec3 between = glm::dvec3(offset) + other.D * other.n - edge.D * edge.n;
                 const double apart2 = glm::dot(between, between);
                 if (!(apart2 < kSmoothReach * kSmoothReach)) continue;
-                sum += 0.5 * glm::dot(edge.n + other.n, between);
+                sum += 0.5 * glm::dot(edge.n + n, between);
                 weights += 1;
             }
         }

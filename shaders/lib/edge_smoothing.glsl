@@ -9,6 +9,8 @@ const float SMOOTH_REACH = 1.5;      // voxels between foot points
 // it is the difference of the two distances' errors: curvature does not bias the mean.
 float distance_correction(ivec3 p, ivec3 dims, Edge e, uint material) {
     float sum = 0.0, count = 1.0;
+    // The edge belongs to an iso-value; both of its sides look for it, and err in opposite directions.
+    uint iso = material + (e.state & 1u);  // EDGE_UPPER is odd: the interval's upper end
     int reach = e.state >= EDGE_LOWER ? 1 : -1;
     for (int z = -reach; z <= reach; ++z)
         for (int y = -reach; y <= reach; ++y)
@@ -16,11 +18,13 @@ float distance_correction(ivec3 p, ivec3 dims, Edge e, uint material) {
                 ivec3 q = p + ivec3(x, y, z);
                 if (any(lessThan(q, ivec3(0))) || any(greaterThanEqual(q, dims)) || q == p) continue;
                 uvec2 code = imageLoad(edges, q).xy;
-                if ((code.y & EDGE_ADOPTED) != 0u || (code.y >> 26 & 3u) != e.state || material_at(q) != material) continue;
                 Edge other = unpack_edge(code.x, code.y);
+                if ((code.y & EDGE_ADOPTED) != 0u || other.state < EDGE_LOWER) continue;
+                if (material_at(q) + (other.state & 1u) != iso) continue;
+                vec3 n = other.state == e.state ? other.n : -other.n;
                 vec3 between = vec3(x, y, z) + other.d * other.n - e.d * e.n;
-                if (dot(other.n, e.n) >= SMOOTH_AGREEMENT && dot(between, between) < SMOOTH_REACH * SMOOTH_REACH) {
-                    sum += 0.5 * dot(e.n + other.n, between);
+                if (dot(n, e.n) >= SMOOTH_AGREEMENT && dot(between, between) < SMOOTH_REACH * SMOOTH_REACH) {
+                    sum += 0.5 * dot(e.n + n, between);
                     count += 1.0;
                 }
             }

@@ -4,16 +4,18 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <string_view>
 
 #include "engine/renderer_state.h"
 
 namespace edgesplat::test {
 
-/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one.
+/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one ("gpu").
 inline RendererState& device_under_test() {
     static RendererState state([] {
         const char* device = std::getenv("EDGESPLAT_TEST_DEVICE");
-        return DeviceChoice{.device = device == nullptr ? "" : device, .validation = true};
+        const bool first = device == nullptr || std::string_view(device) == "gpu";
+        return DeviceChoice{.device = first ? "" : device, .validation = true};
     }());
     return state;
 }
