@@ -12,12 +12,11 @@ layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_BURIED, r8ui) uniform uimage3D buried;
 layout(push_constant) uniform Push { SceneRef params; };
 
+#include "shaders/lib/material.glsl"
+
 bool opaque(ivec3 p) {
     if (AXIS != 0u) return imageLoad(buried, p).r != 0u;
-    float value = imageLoad(volume, p).r;
-    uint material = 0u;
-    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
-    return (params.scene.opaque_mask >> material & 1u) == 1u;
+    return in_mask(params.scene.opaque_mask, material_of(imageLoad(volume, p).r));
 }
 
 void main() {

@@ -17,6 +17,7 @@ layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
 layout(push_constant) uniform Push { SceneRef params; };
 
 ivec3 dims;
+#include "shaders/lib/material.glsl"
 #include "shaders/lib/volume_sampling.glsl"
 
 float field(vec3 p) { return ESTIMATOR == CUBIC ? bspline(p) : trilinear(p); }
@@ -153,17 +154,12 @@ void main() {
     if (any(greaterThanEqual(p, dims))) return;
 
     float value = voxel(p);
-    uint material = 0u;
-    float low = -3e38;
-    for (uint j = 0u; j < params.scene.iso_count; ++j)
-        if (params.scene.iso[j] <= value) {
-            material = j + 1u;
-            low = params.scene.iso[j];
-        }
+    uint material = material_of(value);
+    float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
     float high = params.scene.iso[material];
 
     uvec2 code = uvec2(0u);
-    bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
+    bool visible = in_mask(params.scene.visible_mask, material);
     if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
     // A loop that runs once or not at all: lavapipe runs both sides of an if, but no loop that is empty in every lane.
     for (int run = visible ? 1 : 0; run > 0; --run) {

@@ -13,19 +13,16 @@ layout(binding = BIND_EDGES, rg32ui) uniform coherent uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
 layout(push_constant) uniform Push { SceneRef params; };
 
-uint material_of(ivec3 p) {
-    float value = imageLoad(volume, p).r;
-    uint material = 0u;
-    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
-    return material;
-}
+#include "shaders/lib/material.glsl"
+
+uint material_at(ivec3 p) { return material_of(imageLoad(volume, p).r); }
 
 void main() {
     ivec3 p = ivec3(gl_GlobalInvocationID), dims = params.scene.dims;
     if (any(greaterThanEqual(p, dims))) return;
-    uint material = material_of(p);
+    uint material = material_at(p);
     uint state = imageLoad(edges, p).y >> 26 & 3u;
-    bool wanting = state < EDGE_LOWER && (params.scene.visible_mask >> material & 1u) == 1u;
+    bool wanting = state < EDGE_LOWER && in_mask(params.scene.visible_mask, material);
     if (BURIED == 1u) wanting = wanting && imageLoad(buried, p).r == 0u;
 
     Edge best = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
@@ -42,7 +39,7 @@ void main() {
                 Edge e = unpack_edge(code.x, code.y);
                 vec3 foot = vec3(x, y, z) + e.d * e.n;
                 float distance2 = dot(foot, foot);
-                if (distance2 < nearest && material_of(q) == material) {
+                if (distance2 < nearest && material_at(q) == material) {
                     nearest = distance2;
                     float d = dot(e.n, foot);
                     best = Edge(e.n, d, e.d2 < FACE_DISTANCE_UNIT ? max(e.d + e.d2 - d, 0.0) : 1e9, e.state);

@@ -19,12 +19,9 @@ layout(push_constant) uniform Push {
     uint write;
 };
 
-uint material_at(ivec3 p) {
-    float value = imageLoad(volume, p).r;
-    uint material = 0u;
-    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
-    return material;
-}
+#include "shaders/lib/material.glsl"
+
+uint material_at(ivec3 p) { return material_of(imageLoad(volume, p).r); }
 #include "shaders/lib/edge_smoothing.glsl"
 
 void main() {
@@ -42,7 +39,7 @@ void main() {
     uint with_edge = 0u;
     for (uint v = first; v < last; ++v) {
         uint material = material_at(p);
-        bool visible = (params.scene.visible_mask >> material & 1u) == 1u;
+        bool visible = in_mask(params.scene.visible_mask, material);
         if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
         if (visible) {
             if (write == 1u) {
