@@ -119,6 +119,7 @@ std::vector<Support> warped_support_table(const EdgeBand& band, int entries) {
     if (entries < 2) throw std::invalid_argument("warped_support_table: entries must be at least 2");
     const double reach = kKernelRadius + band.half_width;
     std::vector<Support> table;
+    table.reserve(static_cast<std::size_t>(entries));
     for (int i = 0; i < entries; ++i)
         table.push_back(warped_support({reach * (2.0 * i / (entries - 1) - 1), band}));
     return table;

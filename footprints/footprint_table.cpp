@@ -7,6 +7,7 @@
 #include <atomic>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <thread>
 
@@ -156,12 +157,33 @@ double FootprintTable::lerp(const Ray& ray, double distance) const {
 }
 
 std::uint16_t half_from_float(float value) {
-    const _Float16 half = static_cast<_Float16>(value);
-    return std::bit_cast<std::uint16_t>(half);
+    const auto bits = std::bit_cast<std::uint32_t>(value);
+    const std::uint32_t sign = bits >> 16U & 0x8000U, magnitude = bits & 0x7fffffffU;
+    std::uint32_t half = 0;
+    if (magnitude > 0x7f800000U) {
+        half = 0x7e00U;  // NaN
+    } else if (magnitude >= 0x477ff000U) {
+        half = 0x7c00U;  // 65520 and more round to infinity
+    } else if (magnitude >= 0x38800000U) {
+        half = (magnitude - 0x38000000U + 0xfffU + (magnitude >> 13U & 1U)) >> 13U;  // ties to the even one
+    } else {
+        // Below 2^-14 halves are 2^-24 apart, as floats are next to 0.5: the addition rounds.
+        half = std::bit_cast<std::uint32_t>(std::abs(value) + 0.5F) - std::bit_cast<std::uint32_t>(0.5F);
+    }
+    return static_cast<std::uint16_t>(sign | half);
 }
 
 float float_from_half(std::uint16_t half) {
-    return static_cast<float>(std::bit_cast<_Float16>(half));
+    const int exponent = half >> 10 & 31, mantissa = half & 1023;
+    float magnitude = 0;
+    if (exponent == 31) {
+        magnitude = mantissa == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
+    } else if (exponent == 0) {
+        magnitude = std::ldexp(static_cast<float>(mantissa), -24);
+    } else {
+        magnitude = std::ldexp(static_cast<float>(1024 + mantissa), exponent - 25);
+    }
+    return (half & 0x8000) != 0 ? -magnitude : magnitude;
 }
 
 }  // namespace edgesplat
