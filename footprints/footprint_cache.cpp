@@ -118,9 +118,9 @@ fs::path footprint_cache_folder() {
         const char* value = std::getenv(name);
         return value ? value : "";
     };
-    if (const fs::path own = variable("EDGESPLAT_CACHE"); !own.empty()) return own;
-    if (const fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "edgesplat";
-    if (const fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "edgesplat";
+    if (fs::path own = variable("EDGESPLAT_CACHE"); !own.empty()) return own;
+    if (fs::path xdg = variable("XDG_CACHE_HOME"); xdg.is_absolute()) return xdg / "edgesplat";
+    if (fs::path home = variable("HOME"); !home.empty()) return home / ".cache" / "edgesplat";
     return {};
 }
 
