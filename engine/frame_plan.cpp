@@ -42,6 +42,10 @@ glm::vec3 to_float(const glm::dvec3& v) {
 
 }  // namespace
 
+bool draws_warped(const Settings& settings) {
+    return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
+}
+
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& a = params;
     const auto& b = other.params;
@@ -54,7 +58,7 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
     CollectionPlan plan;
     plan.dims = volume.geometry.dims;
-    plan.estimator = settings.footprints == FootprintMode::Isotropic ? EdgeEstimator::Off : settings.edges;
+    plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
     plan.edge_field = plan.estimator != EdgeEstimator::Off || scene.light.kind != Light::Kind::None;
 
     auto& params = plan.params;
@@ -111,7 +115,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None, payload};
     const bool half = settings.sheet_format == SheetFormat::Half && payload == shader::PAYLOAD_COLOR;
     plan.sheet_format = half ? vk::Format::eR16G16B16A16Sfloat : vk::Format::eR32G32B32A32Sfloat;
-    if (settings.edges == EdgeEstimator::Off) plan.variant.footprints = FootprintMode::Isotropic;
+    if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;
     p.anchor = to_float(anchor);
@@ -142,7 +146,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
-    p.edge_warped = plan.variant.footprints == FootprintMode::Isotropic ? 0 : 1;
+    p.edge_warped = draws_warped(settings) ? 1 : 0;
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {

@@ -7,6 +7,9 @@
 
 namespace edgesplat {
 
+/// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
+bool draws_warped(const Settings& settings);
+
 /// Passes 1 and 2 for one volume, scene and set of edge settings.
 struct CollectionPlan {
     glm::ivec3 dims{0};

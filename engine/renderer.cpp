@@ -19,12 +19,11 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Makes `buffer` at least `bytes` long. True if it was made anew.
-bool grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
-    if (buffer && buffer.bytes() >= bytes) return false;
+/// Makes `buffer` at least `bytes` long; what it held is lost if it grows.
+void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
+    if (buffer && buffer.bytes() >= bytes) return;
     buffer = {};
     buffer = gpu::Buffer(device, bytes, place, name);
-    return true;
 }
 
 bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
@@ -90,9 +89,9 @@ double RendererState::collect(const Scene& scene, const Settings& settings, bool
 
 void RendererState::provide_footprints(const Settings& settings) {
     const EdgeBand band{settings.edge_half_width, settings.edge_strength};
-    const bool table = settings.warp == WarpFamily::Edge && settings.edges != EdgeEstimator::Off &&
+    const bool table = settings.warp == WarpFamily::Edge && draws_warped(settings) &&
                        (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp);
-    if (table && !(table_band && table_band->half_width == band.half_width && table_band->strength == band.strength)) {
+    if (table && table_band != band) {
         table_band.reset();
         const auto loaded = load_footprint_table(band);
         if (!loaded.warning.empty()) fmt::print(stderr, "edgesplat: {}\n", loaded.warning);
@@ -113,7 +112,7 @@ void RendererState::provide_footprints(const Settings& settings) {
         out.params.table_directions = static_cast<float>(size.directions);
         table_band = band;
     }
-    if (!(band_in_use && band_in_use->half_width == band.half_width && band_in_use->strength == band.strength)) {
+    if (draws_warped(settings) && band_in_use != band) {
         const auto supports = covering_supports(band, shader::SUPPORT_STEPS);
         std::ranges::transform(supports, footprint_resources.supports.begin(),
                                [](const Support& s) { return glm::vec2(s.shift, s.radius); });
@@ -180,7 +179,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     p.counters = targets.counters.address();
     p.groups = targets.groups.address();
     p.draws = targets.draws.address();
-    p.partial_sums = targets.drawn.address();
+    p.drawn = targets.drawn.address();
     p.output_pixels = targets.output.address();
     p.footprint = footprint_resources.params;
     std::ranges::copy(footprint_resources.supports, p.support_table);

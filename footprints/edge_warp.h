@@ -15,6 +15,7 @@ namespace edgesplat {
 struct EdgeBand {
     double half_width = 1.6;  ///< a, voxels, (0, 3]
     double strength = 16;     ///< k, slope at the edge, [1, 64]; 1 is no warp
+    bool operator==(const EdgeBand&) const = default;
 };
 
 /// The edge (or the two faces of a wall) that a voxel's kernel is warped around.

@@ -46,5 +46,5 @@ void main() {
         draws.at[g] = DrawCommand(QUADS_PER_INSTANCE * 6u, (end - begin + QUADS_PER_INSTANCE - 1u) / QUADS_PER_INSTANCE,
                                   0u, 0, 0u);
     }
-    if (me == 0u) UintsRef(params.frame.partial_sums).at[0] = total;
+    if (me == 0u) UintsRef(params.frame.drawn).at[0] = total;
 }

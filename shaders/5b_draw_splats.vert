@@ -44,7 +44,7 @@ void main() {
     offset = p.at_eye
         ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
         : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    if (!p.at_eye) offset += splat_support(e).x * e.n;
+    if (!p.at_eye) offset += p.support.x * e.n;
 
     vec4 material = params.frame.materials[splat.edge >> 28];
     // A surface faces its lower values, whichever side of it the splat is on.

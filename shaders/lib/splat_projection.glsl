@@ -6,6 +6,7 @@
 struct Projection {
     vec3 position;    // voxel centre relative to the anchor, index space
     vec3 view;        // voxel centre, mm: right, down, forward of the eye
+    vec2 support;     // shift of the support's centre along n, its radius, voxels
     float depth;      // of the support's centre, mm
     vec2 slope;       // view.xy / view.z of the support's centre
     vec2 low, high;   // box of the support in slopes, relative to `slope`
@@ -65,21 +66,21 @@ Projection project_splat(uint voxel, Edge e) {
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
     p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
     p.view = view_position(p.position);
-    vec2 support = splat_support(e);
-    vec3 centre = view_position(p.position + support.x * e.n);
+    p.support = splat_support(e);
+    vec3 centre = view_position(p.position + p.support.x * e.n);
     p.depth = centre.z;
-    float reach = support.y * length(params.frame.view_z);
+    float reach = p.support.y * length(params.frame.view_z);
     p.visible = centre.z + reach > 0.0;
     p.at_eye = centre.z < 1.05 * reach;
     p.slope = p.at_eye ? vec2(0.0) : centre.xy / centre.z;
     vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     vec2 x, y;
     if (p.at_eye) {
-        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, support.y, edge.x);
-        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, support.y, edge.y);
+        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.support.y, edge.x);
+        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.support.y, edge.y);
     } else {
-        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, support.y);
-        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, support.y);
+        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, p.support.y);
+        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, p.support.y);
     }
     // Clipped to a little more than the picture, so that rounding loses no pixel.
     p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);

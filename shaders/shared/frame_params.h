@@ -64,7 +64,7 @@ struct FrameParams {
     Address order;          // (drawn) uint: splat numbers sorted by sheet
     Address groups;         // (group_count) SheetGroup
     Address draws;          // (group_count) DrawCommand
-    Address partial_sums;   // (1024) uint, scratch of the scan
+    Address drawn;          // (1) uint: splats drawn
     Address output_pixels;  // (size.y, size.x) vec4
 };
 

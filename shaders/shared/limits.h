@@ -5,7 +5,7 @@
 EDGESPLAT_SHARED_BEGIN
 
 EDGESPLAT_CONSTANT float KERNEL_RADIUS = 1.6f;  // R of kernel K7, voxels
-EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;     // how far an edge is searched, voxels; >= R + a of the default warp
+EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;     // how far an edge is searched, voxels; beyond, planes are adopted
 EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;  // value range per voxel; flatter data has no trustworthy direction
 EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 of D / 4: steps of 1.2e-4 voxel
 EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
