@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "engine/scene/ladder.h"
+
 namespace {
 
 using nlohmann::ordered_json;
@@ -16,16 +18,17 @@ ordered_json to_json(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
+/// Every knob of the ladder under its name, with underscores.
 ordered_json to_json(const edgesplat::Settings& s) {
-    return {{"edges", edgesplat::name_of(s.edges)},
-            {"footprints", edgesplat::name_of(s.footprints)},
-            {"warp", edgesplat::name_of(s.warp)},
-            {"edge_half_width", s.edge_half_width},
-            {"edge_strength", s.edge_strength},
-            {"sheet_spacing", s.sheet_spacing},
-            {"sheet_format", edgesplat::name_of(s.sheet_format)},
-            {"saturation", s.saturation},
-            {"cull_buried", s.cull_buried}};
+    ordered_json json;
+    for (const edgesplat::Knob& knob : edgesplat::ladder()) {
+        std::string key(knob.name);
+        std::replace(key.begin(), key.end(), '-', '_');
+        const std::string value = knob.get(s);
+        json[key] = knob.number ? ordered_json(std::stod(value)) : ordered_json(value);
+    }
+    json["cull_buried"] = s.cull_buried;
+    return json;
 }
 
 ordered_json to_json(const edgesplat::DeviceInfo& d) {

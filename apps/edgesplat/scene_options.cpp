@@ -8,6 +8,7 @@
 
 #include "apps/edgesplat/option_values.h"
 #include "engine/error.h"
+#include "engine/scene/ladder.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
 
@@ -98,27 +99,43 @@ void add_scene_options(CLI::App& command, SceneOptions& options) {
 }
 
 void add_settings_options(CLI::App& command, edgesplat::Settings& s) {
-    using namespace edgesplat;  // NOLINT: the names below are all from there
     constexpr const char* kGroup = "Accuracy and cost (steps from cheap to accurate)";
-    add_choice(command, "--edges", s.edges, edge_estimator_named, edge_estimator_names(), name_of(s.edges),
-               "How edges are found; off: conventional splatting")
+    const auto assign = [](const std::string& option, const auto& work) {
+        try {
+            work();
+        } catch (const edgesplat::Error& error) {
+            throw CLI::ValidationError(option, error.what());
+        }
+    };
+    std::string rows;
+    for (const edgesplat::Preset& preset : edgesplat::presets())
+        rows += (rows.empty() ? "" : "|") + std::string(preset.name);
+    // The first of them, so that whatever the order on the command line a knob has the last word.
+    command
+        .add_option_function<std::string>(
+            "--preset",
+            [&s, assign](const std::string& name) {
+                assign("--preset", [&] { s = edgesplat::preset_named(name).settings; });
+            },
+            "A row of the ladder; the options below change single steps of it")
+        ->type_name(rows)
+        ->default_str("balanced")
         ->group(kGroup);
-    add_choice(command, "--footprints", s.footprints, footprint_mode_named, footprint_mode_names(),
-               name_of(s.footprints),
-               "How a warped kernel's footprint is evaluated (the paper family is integrated in the table modes)")
-        ->group(kGroup);
-    add_choice(command, "--warp", s.warp, warp_family_named, warp_family_names(), name_of(s.warp), "Shape of the warp")
-        ->group(kGroup);
-    add_number(command, "--edge-half-width", s.edge_half_width, {0, 3, true}, "Half width of the warped band, voxels")
-        ->group(kGroup);
-    add_number(command, "--edge-strength", s.edge_strength, {1, 64}, "Slope of the warp at the edge; 1 is no warp")
-        ->group(kGroup);
-    add_number(command, "--sheet-spacing", s.sheet_spacing, {0.05, 16}, "Voxels between sheets")->group(kGroup);
-    add_choice(command, "--sheet-format", s.sheet_format, sheet_format_named, sheet_format_names(),
-               name_of(s.sheet_format), "Precision of a sheet")
-        ->group(kGroup);
-    add_number(command, "--saturation", s.saturation, {0, 1, true}, "Opacity at which a pixel is finished; 1: never")
-        ->group(kGroup);
+    for (const edgesplat::Knob& knob : edgesplat::ladder()) {
+        const std::string option = "--" + std::string(knob.name);
+        std::string choices = knob.number ? "NUMBER" : "";
+        for (const auto* names : {&knob.steps, &knob.others})
+            for (const std::string_view name : *names)
+                if (!knob.number) choices += (choices.empty() ? "" : "|") + std::string(name);
+        command
+            .add_option_function<std::string>(
+                option,
+                [&s, &knob, option, assign](const std::string& text) { assign(option, [&] { knob.set(s, text); }); },
+                std::string(knob.help))
+            ->type_name(choices)
+            ->default_str(knob.get(edgesplat::Settings{}))
+            ->group(kGroup);
+    }
     command
         .add_flag_callback(
             "--keep-buried", [&s] { s.cull_buried = false; }, "Draw also voxels that opaque ones hide from every side")

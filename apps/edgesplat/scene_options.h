@@ -25,7 +25,7 @@ struct SceneOptions {
 /// Adds --iso, --color, --extinction, --background, --light, --threshold and --box-filter.
 void add_scene_options(CLI::App& command, SceneOptions& options);
 
-/// Adds every step of the accuracy ladders: --edges, --footprints, --warp, ...
+/// Adds --preset and every knob of the ladder (engine/scene/ladder.h).
 void add_settings_options(CLI::App& command, edgesplat::Settings& settings);
 
 /// Applies --threshold, then --box-filter, as the paper does with binary data.

@@ -13,6 +13,10 @@ namespace {
 constexpr std::array<std::string_view, 5> kEdgeEstimators{"off", "taylor", "quadratic", "march", "cubic"};
 constexpr std::array<std::string_view, 5> kFootprintModes{"isotropic", "warp2d", "table", "table-lerp", "procedural"};
 constexpr std::array<std::string_view, 2> kWarpFamilies{"edge", "paper"};
+constexpr std::array<std::string_view, 2> kEdgeShapes{"plane", "curved"};
+constexpr std::array<std::string_view, 2> kNormalisations{"off", "voxel"};
+constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
+constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
 constexpr std::array<std::string_view, 2> kSheetFormats{"half", "float"};
 
 template <typename Enum>
@@ -45,6 +49,18 @@ FootprintMode footprint_mode_named(std::string_view name) {
 WarpFamily warp_family_named(std::string_view name) {
     return named<WarpFamily>(name, "warp family", kWarpFamilies);
 }
+EdgeShape edge_shape_named(std::string_view name) {
+    return named<EdgeShape>(name, "edge shape", kEdgeShapes);
+}
+Normalisation normalisation_named(std::string_view name) {
+    return named<Normalisation>(name, "normalisation", kNormalisations);
+}
+TableSize table_size_named(std::string_view name) {
+    return named<TableSize>(name, "table size", kTableSizes);
+}
+SheetCut sheet_cut_named(std::string_view name) {
+    return named<SheetCut>(name, "kind of sheets", kSheetCuts);
+}
 SheetFormat sheet_format_named(std::string_view name) {
     return named<SheetFormat>(name, "sheet format", kSheetFormats);
 }
@@ -58,6 +74,18 @@ std::string_view name_of(FootprintMode value) {
 std::string_view name_of(WarpFamily value) {
     return spelled(value, kWarpFamilies);
 }
+std::string_view name_of(EdgeShape value) {
+    return spelled(value, kEdgeShapes);
+}
+std::string_view name_of(Normalisation value) {
+    return spelled(value, kNormalisations);
+}
+std::string_view name_of(TableSize value) {
+    return spelled(value, kTableSizes);
+}
+std::string_view name_of(SheetCut value) {
+    return spelled(value, kSheetCuts);
+}
 std::string_view name_of(SheetFormat value) {
     return spelled(value, kSheetFormats);
 }
@@ -70,6 +98,18 @@ std::span<const std::string_view> footprint_mode_names() {
 }
 std::span<const std::string_view> warp_family_names() {
     return kWarpFamilies;
+}
+std::span<const std::string_view> edge_shape_names() {
+    return kEdgeShapes;
+}
+std::span<const std::string_view> normalisation_names() {
+    return kNormalisations;
+}
+std::span<const std::string_view> table_size_names() {
+    return kTableSizes;
+}
+std::span<const std::string_view> sheet_cut_names() {
+    return kSheetCuts;
 }
 std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;

@@ -9,6 +9,10 @@ namespace edgesplat {
 enum class EdgeEstimator { Off, Taylor, Quadratic, March, Cubic };
 enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
 enum class WarpFamily { Edge, Paper };
+enum class EdgeShape { Plane, Curved };   ///< what an edge is within a kernel's reach: its tangent plane or a sphere
+enum class Normalisation { Off, Voxel };  ///< whether kernels' weights are made to sum to one at each voxel
+enum class TableSize { Coarse, Medium, Fine };
+enum class SheetCut { Whole, Sliced };  ///< a kernel lies in one sheet whole, or is cut at the sheets' planes
 enum class SheetFormat { Half, Float };
 
 struct Settings {
@@ -17,24 +21,42 @@ struct Settings {
     WarpFamily warp = WarpFamily::Edge;
     double edge_half_width = 1.6;  ///< a, voxels, (0, 3]
     double edge_strength = 16;     ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp
-    double sheet_spacing = 0.25;   ///< voxels along the view axis, [0.05, 16]
+    EdgeShape edge_shape = EdgeShape::Plane;
+    Normalisation normalisation = Normalisation::Off;
+    TableSize table_size = TableSize::Medium;  ///< footprints `table` and `table-lerp`
+    SheetCut sheets = SheetCut::Whole;
+    double sheet_spacing = 0.25;  ///< voxels along the view axis, [0.05, 16]
     SheetFormat sheet_format = SheetFormat::Float;
+    SheetFormat accumulation = SheetFormat::Float;  ///< of the picture that the sheets are composited into
     double saturation = 0.999;  ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
     bool cull_buried = true;    ///< drop voxels that opaque ones hide from every side
+    bool operator==(const Settings&) const = default;
 };
 
 /// The estimator, mode, ... of a name as the command line spells it ("table-lerp"); throws Error listing the names.
 EdgeEstimator edge_estimator_named(std::string_view name);
 FootprintMode footprint_mode_named(std::string_view name);
 WarpFamily warp_family_named(std::string_view name);
+EdgeShape edge_shape_named(std::string_view name);
+Normalisation normalisation_named(std::string_view name);
+TableSize table_size_named(std::string_view name);
+SheetCut sheet_cut_named(std::string_view name);
 SheetFormat sheet_format_named(std::string_view name);
 std::string_view name_of(EdgeEstimator value);
 std::string_view name_of(FootprintMode value);
 std::string_view name_of(WarpFamily value);
+std::string_view name_of(EdgeShape value);
+std::string_view name_of(Normalisation value);
+std::string_view name_of(TableSize value);
+std::string_view name_of(SheetCut value);
 std::string_view name_of(SheetFormat value);
 std::span<const std::string_view> edge_estimator_names();
 std::span<const std::string_view> footprint_mode_names();
 std::span<const std::string_view> warp_family_names();
+std::span<const std::string_view> edge_shape_names();
+std::span<const std::string_view> normalisation_names();
+std::span<const std::string_view> table_size_names();
+std::span<const std::string_view> sheet_cut_names();
 std::span<const std::string_view> sheet_format_names();
 
 /// Checks every range above. Throws Error naming the field, the value and the range.

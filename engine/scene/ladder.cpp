@@ -1,0 +1,226 @@
+#include "engine/scene/ladder.h"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cmath>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+namespace {
+
+using View = std::string_view;
+
+std::vector<View> all(std::span<const View> names) {
+    return {names.begin(), names.end()};
+}
+
+template <auto Member>
+std::string get_name(const Settings& s) {
+    return std::string(name_of(s.*Member));
+}
+
+template <auto Member>
+std::string get_number(const Settings& s) {
+    return fmt::format("{}", s.*Member);
+}
+
+/// Sets a number that is the whole of `text` and in the knob's range.
+template <auto Member>
+void set_number(Settings& s, const Knob& knob, View text) {
+    View digits = text;
+    if (digits.size() > 1 && digits.front() == '+') digits.remove_prefix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    const bool whole = error == std::errc() && end == digits.data() + digits.size();
+    if (!whole || !(knob.above_low ? value > knob.low : value >= knob.low) || !(value <= knob.high)) {
+        fail("'{}' is not a number {} {} {} {}", text, knob.above_low ? "above" : "from", knob.low,
+             knob.above_low ? "and at most" : "to", knob.high);
+    }
+    s.*Member = value;
+}
+
+bool warps(const Settings& s) {
+    return s.edges != EdgeEstimator::Off && s.footprints != FootprintMode::Isotropic;
+}
+bool edge_family(const Settings& s) {
+    return warps(s) && s.warp == WarpFamily::Edge;
+}
+bool tables(const Settings& s) {
+    return edge_family(s) && s.sheets == SheetCut::Whole && s.edge_shape == EdgeShape::Plane &&
+           (s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp);
+}
+
+std::vector<Knob> make_ladder() {
+    std::vector<Knob> knobs;
+    knobs.push_back({.name = "edges",
+                     .help = "How edges are found; off: conventional splatting, taylor: as in the paper",
+                     .kind = KnobKind::Model,
+                     .steps = {"off", "quadratic", "march", "cubic"},
+                     .others = {"taylor"},
+                     .get = get_name<&Settings::edges>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.edges = edge_estimator_named(v); }});
+    knobs.push_back({.name = "warp",
+                     .help = "Shape of the warp: the paper's curve, or one that is defined by the distance to the edge",
+                     .kind = KnobKind::Model,
+                     .steps = {"paper", "edge"},
+                     .others = {},
+                     .get = get_name<&Settings::warp>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },
+                     .matters = warps});
+    knobs.push_back({.name = "edge-half-width",
+                     .help = "Half width of the warped band, voxels",
+                     .kind = KnobKind::Model,
+                     .steps = {"0.4", "0.8", "1.2", "1.6"},
+                     .others = {},
+                     .number = true,
+                     .low = 0,
+                     .high = 3,
+                     .above_low = true,
+                     .get = get_number<&Settings::edge_half_width>,
+                     .assign = set_number<&Settings::edge_half_width>,
+                     .matters = edge_family});
+    knobs.push_back({.name = "edge-strength",
+                     .help = "Slope of the warp at the edge; 1 is no warp",
+                     .kind = KnobKind::Model,
+                     .steps = {"2", "4", "8", "16", "24"},
+                     .others = {},
+                     .number = true,
+                     .low = 1,
+                     .high = 64,
+                     .get = get_number<&Settings::edge_strength>,
+                     .assign = set_number<&Settings::edge_strength>,
+                     .matters = edge_family});
+    knobs.push_back({.name = "edge-shape",
+                     .help = "What an edge is within a kernel's reach: its tangent plane, or a sphere of its curvature",
+                     .kind = KnobKind::Model,
+                     .steps = all(edge_shape_names()),
+                     .others = {},
+                     .get = get_name<&Settings::edge_shape>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.edge_shape = edge_shape_named(v); },
+                     .matters = edge_family});
+    knobs.push_back({.name = "normalise",
+                     .help = "Whether kernels are weighted so that they sum to one at each voxel, also at curved edges",
+                     .kind = KnobKind::Model,
+                     .steps = all(normalisation_names()),
+                     .others = {},
+                     .get = get_name<&Settings::normalisation>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
+                     .matters = warps});
+    knobs.push_back({.name = "footprints",
+                     .help = "How a warped kernel's footprint is evaluated (the paper family, walls, curved edges and "
+                             "sliced sheets are integrated in the table modes)",
+                     .kind = KnobKind::Method,
+                     .steps = all(footprint_mode_names()),
+                     .others = {},
+                     .get = get_name<&Settings::footprints>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
+                     .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
+    knobs.push_back({.name = "table-size",
+                     .help = "Texels and layers of the footprint table",
+                     .kind = KnobKind::Method,
+                     .steps = all(table_size_names()),
+                     .others = {},
+                     .get = get_name<&Settings::table_size>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.table_size = table_size_named(v); },
+                     .matters = tables});
+    knobs.push_back({.name = "sheets",
+                     .help = "Whether a kernel lies in one sheet whole, or is cut at the planes between sheets",
+                     .kind = KnobKind::Method,
+                     .steps = all(sheet_cut_names()),
+                     .others = {},
+                     .get = get_name<&Settings::sheets>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.sheets = sheet_cut_named(v); }});
+    knobs.push_back({.name = "sheet-spacing",
+                     .help = "Voxels between sheets",
+                     .kind = KnobKind::Method,
+                     .steps = {"2", "1", "0.5", "0.25"},
+                     .others = {},
+                     .number = true,
+                     .low = 0.05,
+                     .high = 16,
+                     .get = get_number<&Settings::sheet_spacing>,
+                     .assign = set_number<&Settings::sheet_spacing>});
+    knobs.push_back({.name = "sheet-format",
+                     .help = "Precision of a sheet",
+                     .kind = KnobKind::Method,
+                     .steps = all(sheet_format_names()),
+                     .others = {},
+                     .get = get_name<&Settings::sheet_format>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.sheet_format = sheet_format_named(v); }});
+    knobs.push_back({.name = "accumulation",
+                     .help = "Precision of the picture that sheets are composited into",
+                     .kind = KnobKind::Method,
+                     .steps = all(sheet_format_names()),
+                     .others = {},
+                     .get = get_name<&Settings::accumulation>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.accumulation = sheet_format_named(v); }});
+    knobs.push_back({.name = "saturation",
+                     .help = "Opacity at which a pixel is finished; 1: never",
+                     .kind = KnobKind::Method,
+                     .steps = {"0.98", "0.99", "0.999", "0.9999"},
+                     .others = {},
+                     .number = true,
+                     .low = 0,
+                     .high = 1,
+                     .above_low = true,
+                     .get = get_number<&Settings::saturation>,
+                     .assign = set_number<&Settings::saturation>});
+    return knobs;
+}
+
+template <typename Row>
+const Row& row_named(View name, std::span<const Row> rows, const char* what) {
+    std::string known;
+    for (const Row& row : rows) {
+        if (row.name == name) return row;
+        known += (known.empty() ? "" : ", ") + std::string(row.name);
+    }
+    fail("unknown {} '{}', expected one of: {}", what, name, known);
+}
+
+}  // namespace
+
+std::span<const Knob> ladder() {
+    static const std::vector<Knob> knobs = make_ladder();
+    return knobs;
+}
+
+const Knob& knob_named(View name) {
+    return row_named(name, ladder(), "knob");
+}
+
+std::span<const Preset> presets() {
+    static const std::vector<Preset> rows = [] {
+        Settings draft;
+        draft.footprints = FootprintMode::Warp2d;
+        draft.sheet_spacing = 1;
+        draft.sheet_format = SheetFormat::Half;
+        Settings accurate;
+        accurate.edges = EdgeEstimator::Cubic;
+        accurate.footprints = FootprintMode::Procedural;
+        accurate.edge_shape = EdgeShape::Curved;
+        accurate.sheets = SheetCut::Sliced;
+        accurate.saturation = 0.9999;
+        return std::vector<Preset>{{"draft", "while moving", draft},
+                                   {"balanced", "the default", Settings{}},
+                                   {"accurate", "for pictures that are to be trusted", accurate}};
+    }();
+    return rows;
+}
+
+const Preset& preset_named(View name) {
+    return row_named(name, presets(), "preset");
+}
+
+std::string difference(const Settings& settings, const Settings& from) {
+    std::string text;
+    for (const Knob& knob : ladder()) {
+        const std::string value = knob.get(settings);
+        if (value != knob.get(from)) text += fmt::format("{}{}={}", text.empty() ? "" : " ", knob.name, value);
+    }
+    return text;
+}
+
+}  // namespace edgesplat
