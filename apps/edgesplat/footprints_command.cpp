@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/edgesplat/footprint_plots.h"
+#include "apps/plots/paper_curves.h"
 #include "footprints/footprint_cache.h"
 #include "footprints/footprint_integral.h"
 #include "footprints/footprint_table.h"
@@ -112,7 +112,7 @@ void add_footprints_command(CLI::App& app) {
     command->callback([options] {
         if (options->report || options->plot_folder.empty()) report(*options);
         if (options->plot_folder.empty()) return;
-        for (const auto& file : plot_paper_figures(options->plot_folder, options->band))
-            fmt::print("{}\n", file.string());
+        for (const Plot& plot : paper_plots({.band = options->band}))
+            fmt::print("{}\n", draw(plot, options->plot_folder, PlotFormat::Png).string());
     });
 }

@@ -1,0 +1,95 @@
+#include "apps/plots/gnuplot.h"
+
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string quoted(const fs::path& path) {
+    std::string text = "'";
+    for (const char c : path.string())
+        text += c == '\'' ? "''" : std::string(1, c);
+    return text + "'";
+}
+
+std::string script_of(const Plot& figure, PlotFormat format) {
+    const bool svg = format == PlotFormat::Svg;
+    std::string script = svg ? "set terminal svg size 720,440 font 'sans-serif,13' background 'white'\n"
+                             : "set terminal pngcairo size 900,600 enhanced font ',12'\n";
+    script += fmt::format("set title '{}'\nset xlabel '{}'\nset ylabel '{}'\nset xrange [{}:{}]\n{}\n", figure.title,
+                          figure.x_label, figure.y_label, figure.low, figure.high, figure.extra);
+    const int steps = svg ? 600 : 1200;  // each is text in an SVG
+    std::string plot = "plot ";
+    for (std::size_t c = 0; c < figure.curves.size(); ++c) {
+        const Curve& curve = figure.curves[c];
+        script += fmt::format("$curve{} << EOD\n", c);
+        for (int i = 0; i <= steps; ++i) {
+            const double x = figure.low + (figure.high - figure.low) * i / steps;
+            script += fmt::format("{:.8g} {:.8g}\n", x, curve.y(x));
+        }
+        script += "EOD\n";
+        plot += fmt::format("{}$curve{} with lines {} {}", c == 0 ? "" : ", ", c, curve.style,
+                            curve.title.empty() ? "notitle" : "title '" + curve.title + "'");
+    }
+    return script + plot + "\n";
+}
+
+void run_gnuplot(const std::string& script, const fs::path& target) {
+    const fs::path script_file = fs::path(target).replace_extension(".gp");
+    {
+        std::ofstream out(script_file);
+        out << "set output " << quoted(target) << "\n" << script << "set output\n";
+        if (!out.flush()) fail("{}: cannot be written", script_file.string());
+    }
+    // No shell in between: nothing in a path can be mistaken for syntax.
+    std::string program = "gnuplot", argument = script_file.string();
+    char* arguments[] = {program.data(), argument.data(), nullptr};
+    pid_t child = 0;
+    const int problem = ::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+    int status = 0;
+    if (problem == 0) ::waitpid(child, &status, 0);
+    std::error_code ignored;
+    fs::remove(script_file, ignored);
+    if (problem == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == 127))
+        fail("gnuplot is not installed (Debian: gnuplot-nox); it draws the plots");
+    if (problem != 0) fail("gnuplot cannot be started: {}", std::generic_category().message(problem));
+    if (status != 0 || !fs::exists(target, ignored))
+        fail("gnuplot failed to write {} (status {})", target.string(), status);
+}
+
+}  // namespace
+
+void draw_script(const std::string& script, const fs::path& target) {
+    const fs::path folder = target.parent_path();
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (error) fail("{}: {}", folder.string(), error.message());
+    if (::access(folder.c_str(), W_OK) != 0) fail("{}: cannot be written", folder.string());
+    const fs::path temporary = folder / fmt::format(".{}.{}", ::getpid(), target.filename().string());
+    try {
+        run_gnuplot(script, temporary);
+        fs::rename(temporary, target);
+    } catch (...) {
+        fs::remove(temporary, error);
+        throw;
+    }
+}
+
+fs::path draw(const Plot& plot, const fs::path& folder, PlotFormat format) {
+    fs::path target = folder / (plot.name + (format == PlotFormat::Svg ? ".svg" : ".png"));
+    draw_script(script_of(plot, format), target);
+    return target;
+}
+
+}  // namespace edgesplat
