@@ -72,6 +72,22 @@ double warped_coordinate(double t, const Edge& edge) {
     return w;
 }
 
+double warped_distance2(double r2, double t, const Edge& edge) {
+    if (edge.curvature == 0) {
+        const double w = warped_coordinate(t, edge);
+        return r2 + (w - t) * (w + t);
+    }
+    // With q = t - D and e the distance from the axis through the voxel, s = (2q + c(q^2 + e^2)) / (root + 1) is the
+    // distance to the sphere and (1 + cq, ce) / root its normal at x; nothing cancels as the curvature c goes to 0.
+    const double c = edge.curvature, q = t - edge.distance;
+    const double e2 = std::max(r2 - t * t, 0.0);
+    const double root = std::sqrt((1 + c * q) * (1 + c * q) + c * c * e2);
+    const double s = (2 * q + c * (q * q + e2)) / (root + 1);
+    const double moved = edge_warp(s, edge.band) - s;
+    const double along = ((1 + c * q) * t + c * e2) / std::max(root, 1e-9);
+    return std::max(r2 + moved * (2 * along + moved), 0.0);
+}
+
 double unwarped_coordinate(double w, const Edge& edge) {
     // Each face maps its own band onto itself, so w tells which face it belongs to.
     const double s = w - edge.distance;
@@ -145,6 +161,25 @@ std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
         cover.radius += step / 2;
         cover.radius_about_voxel += step;
         spheres.push_back(cover);
+    }
+    return spheres;
+}
+
+std::vector<Support> covering_supports_of_curved(const EdgeBand& band, int cells) {
+    if (cells < 1) throw std::invalid_argument("covering_supports_of_curved: cells must be at least 1");
+    const double step = (kKernelRadius + band.half_width) / cells;
+    constexpr int kSteps = 256;
+    std::vector<Support> spheres;
+    for (int i = 0; i < cells; ++i) {
+        // A point of the ball lies at a distance s from the edge with |s + D| <= R, D anywhere in the cell.
+        const double low = -step * (i + 1) - kKernelRadius, high = -step * i + kKernelRadius;
+        double farthest = 0;
+        for (int j = 0; j <= kSteps; ++j) {
+            const double s = low + (high - low) * j / kSteps;
+            farthest = std::max(farthest, std::abs(edge_warp_inverse(s, band) - s));
+        }
+        const double radius = kKernelRadius + farthest + (high - low) / kSteps;
+        spheres.push_back({0, radius, radius});
     }
     return spheres;
 }

@@ -24,6 +24,9 @@ struct Edge {
     EdgeBand band;        ///< of both faces; see wall_edge()
     double second_distance =
         std::numeric_limits<double>::infinity();  ///< D2, voxels along -n; infinite: no second face
+    /// The edge is a sphere of this curvature, 1/voxel, positive where its centre lies on the side of -n; 0: a plane.
+    /// |curvature| * half_width < 1, so that the band does not reach the centre. Walls are plane.
+    double curvature = 0;
 };
 
 /// M(s) of design (7): where a point at signed distance s from the edge is sampled. Odd, C1, strictly increasing, slope
@@ -40,6 +43,10 @@ Edge wall_edge(double distance, double second_distance, const EdgeBand& band);
 
 /// w(t) = t plus the displacements of both faces (their bands are disjoint): the normal coordinate of W(x).
 double warped_coordinate(double t, const Edge& edge);
+/// |W(x) - x_i|^2 of a point with r2 = |x - x_i|^2 and t as above, whatever the edge's shape. On a curved edge space is
+/// stretched along the radius, by the distance to the sphere: neighbours that know the same sphere share one warp.
+double warped_distance2(double r2, double t, const Edge& edge);
+
 /// The t with warped_coordinate(t) = w.
 double unwarped_coordinate(double w, const Edge& edge);
 
@@ -61,6 +68,10 @@ std::vector<Support> warped_support_table(const EdgeBand& band, int entries);
 /// entry min(int(|D| / (R + a) * cells), cells - 1) serves D, with sign(D) * shift. No interpolation, so nothing is cut
 /// off.
 std::vector<Support> covering_supports(const EdgeBand& band, int cells);
+
+/// The same for edges of any curvature: spheres around the voxel (shift 0) of radius R + the farthest that W moves a
+/// point of the kernel's ball.
+std::vector<Support> covering_supports_of_curved(const EdgeBand& band, int cells);
 
 /// The largest radius_about_voxel over every D, walls included: a bound that needs no look-up.
 double largest_support_radius(const EdgeBand& band);

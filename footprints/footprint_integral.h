@@ -5,7 +5,7 @@
 // and a footprint is a function of them and of the edge. Values are integrals of K along the ray, in 1/voxel^2.
 #pragma once
 
-#include <span>
+#include <limits>
 
 #include "footprints/edge_warp.h"
 #include "footprints/paper_warp.h"
@@ -20,6 +20,15 @@ struct Ray {
     double un = 0;    ///< u . n, [-1, 1]
 };
 
+/// A piece of a ray: z from `low` to `high`, voxels along u from p. A sheet's share of a footprint.
+struct Slice {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+};
+
+/// The plain footprint's share of a slice.
+double sliced_kernel_footprint(double rho2, const Slice& slice);
+
 /// The ray of design (8): n = (sqrt(1-c^2), 0, c), u = z, through (x, y).
 Ray ray_through(double x, double y, double c);
 
@@ -29,14 +38,15 @@ double exact_footprint(const Ray& ray, const Edge& edge);
 double exact_footprint(const Ray& ray, const PaperEdge& edge);
 
 /// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per
-/// half band (edge) or per piece of the profile (paper) within.
-double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 10);
-double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 10);
+/// half band (edge) or per piece of the profile (paper) within. A curved edge's half bands meet the ray in up to two
+/// pieces each.
+double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 10, const Slice& slice = {});
+double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 10, const Slice& slice = {});
 
 /// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the
 /// point p, shortened by the projection of n: the edge stands at D/sin(theta), its strength fades to 1 as n turns along
 /// the ray.
-double warp2d_footprint(const Ray& ray, const Edge& edge);
-double warp2d_footprint(const Ray& ray, const PaperEdge& edge);
+double warp2d_footprint(const Ray& ray, const Edge& edge, const Slice& slice = {});
+double warp2d_footprint(const Ray& ray, const PaperEdge& edge, const Slice& slice = {});
 
 }  // namespace edgesplat

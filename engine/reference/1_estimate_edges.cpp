@@ -173,16 +173,24 @@ VoxelEdge adopted(const Field& field, const ScaledScene& scene, const Settings& 
     return found && best.D >= -0.5 ? best : fallback;
 }
 
-/// Mean difference between a voxel's plane and its neighbours' planes on the same piece of surface. The chord between
-/// two foot points of a sphere is at right angles to the mean of their normals, so curvature does not bias it.
-double distance_correction(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& edges,
-                           const glm::ivec3& i) {
+struct SurfaceAround {
+    /// Mean difference between a voxel's plane and its neighbours' planes on the same piece of surface. The chord
+    /// between two foot points of a sphere is at right angles to the mean of their normals, so curvature does not bias
+    /// it.
+    double distance_correction = 0;
+    double curvature = 0;  ///< of the sphere that fits the normals best, 1/voxel, positive where n points away from it
+};
+
+SurfaceAround surface_around(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& edges,
+                             const glm::ivec3& i) {
     const VoxelEdge& edge = edges[field.offset(i)];
     // The edge belongs to an iso-value; both of its sides look for it, and err in opposite directions.
     const auto iso_of = [](const VoxelEdge& e, int material) { return e.upper ? material : material - 1; };
     const int m = scene.material(field.at(i));
     double sum = 0;
     double weights = 1;
+    double turned = 0;
+    double apart = 0;
     for (int z = -1; z <= 1; ++z) {
         for (int y = -1; y <= 1; ++y) {
             for (int x = -1; x <= 1; ++x) {
@@ -199,10 +207,12 @@ double distance_correction(const Field& field, const ScaledScene& scene, const s
                 if (!(apart2 < kSmoothReach * kSmoothReach)) continue;
                 sum += 0.5 * glm::dot(edge.n + n, between);
                 weights += 1;
+                turned += glm::dot(n - edge.n, between);
+                apart += apart2;
             }
         }
     }
-    return sum / weights;
+    return {sum / weights, apart > 0 ? turned / apart : 0};
 }
 
 double snorm16(double v) {
@@ -279,17 +289,21 @@ std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene,
 std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                     const std::vector<VoxelEdge>& edges) {
     const bool marches = settings.edges == EdgeEstimator::March || settings.edges == EdgeEstimator::Cubic;
+    const bool curved = settings.edge_shape == EdgeShape::Curved && settings.warp == WarpFamily::Edge;
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = edges[field.offset(i)];
         if (!edge.has_edge) return edge;
-        if (marches) {
-            const double correction = distance_correction(field, scene, edges, i);
-            edge.D += correction;
-            edge.D2 -= correction;
+        if (marches || curved) {
+            const SurfaceAround around = surface_around(field, scene, edges, i);
+            if (marches) {
+                edge.D += around.distance_correction;
+                edge.D2 -= around.distance_correction;
+            }
+            if (curved) edge.curvature = std::clamp(around.curvature, -most_curved(settings), most_curved(settings));
         }
         if (!(std::abs(edge.D) <= reach_that_matters(settings))) {
             edge.has_edge = edge.adopted = edge.upper = false;
-            edge.D = 0;
+            edge.D = edge.curvature = 0;
             edge.D2 = kInfinity;
         }
         return edge;
@@ -303,6 +317,10 @@ std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& sce
     std::vector<VoxelEdge> edges = adopt_edges(field, scene, settings, own);
     if (quantised) std::transform(edges.begin(), edges.end(), edges.begin(), quantise);
     return edges;
+}
+
+double most_curved(const Settings& settings) {
+    return std::min(0.5, 0.9 / settings.edge_half_width);
 }
 
 VoxelEdge quantise(const VoxelEdge& edge) {

@@ -17,6 +17,9 @@ struct VoxelEdge {
     glm::dvec3 n{0};  ///< unit, from the voxel's own side across the edge; without an edge along -gradient
     double D = 0;     ///< distance to the edge along n; -0.5 .. R + a
     double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to the second edge
+    double curvature =
+        0;              ///< of the edge where it is drawn curved, 1/voxel, positive where n points away from its centre
+    double weight = 1;  ///< of the kernel, where kernels are normalised
     bool has_normal = false;
     bool has_edge = false;
     bool upper = false;    ///< the edge is the upper end of the voxel's interval
@@ -39,6 +42,9 @@ std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene
 /// through `quantise`, as on the GPU.
 std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                       bool quantised = false);
+
+/// The largest curvature that is drawn: the band must not reach a sphere's centre.
+double most_curved(const Settings& settings);
 
 /// The edge after its way through the 64 stored bits.
 VoxelEdge quantise(const VoxelEdge& edge);

@@ -28,6 +28,15 @@ double View::depth(const glm::dvec3& index) const {
     return glm::dot(frame.forward, geometry.to_world(index) - frame.eye);
 }
 
+namespace {
+
+/// mm along the view axis of a unit step in index space, where that is longest.
+double depth_of_unit(const View& view) {
+    return glm::length(glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward);
+}
+
+}  // namespace
+
 PixelBox screen_box(const View& view, const SplatSupport& support) {
     const PixelBox whole{0, 0, view.width, view.height};
     const glm::dmat3 to_index = glm::transpose(view.geometry.index_to_world_axes);
@@ -69,13 +78,12 @@ PixelBox screen_box(const View& view, const SplatSupport& support) {
     return box.empty() ? PixelBox{} : box;
 }
 
-std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
-                                        const Settings& settings, const Footprints& footprints) {
-    std::vector<Selected> selected(records.size());
-    if (records.empty()) return selected;
-    const double thickness = settings.sheet_spacing * view.mm_per_voxel_along;
-    const auto sheet_of = [&](double z) { return static_cast<int>(std::max(std::floor(z / thickness), 0.0)); };
+double sheet_thickness(const View& view, const Settings& settings) {
+    return settings.sheet_spacing * view.mm_per_voxel_along;
+}
 
+int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
+                const Footprints& footprints) {
     glm::dvec3 low(field.dims);
     glm::dvec3 high(0);
     for (const SplatRecord& record : records) {
@@ -83,14 +91,23 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         low = glm::min(low, x);
         high = glm::max(high, x);
     }
-    int base = std::numeric_limits<int>::max();
+    double nearest = std::numeric_limits<double>::max();
     for (int corner = 0; corner < 8; ++corner) {
         const glm::dvec3 at((corner & 1) != 0 ? high.x : low.x, (corner & 2) != 0 ? high.y : low.y,
                             (corner & 4) != 0 ? high.z : low.z);
-        base = std::min(base, sheet_of(view.depth(at)));
+        nearest = std::min(nearest, view.depth(at));
     }
+    if (settings.sheets == SheetCut::Sliced) nearest -= footprints.farthest_reach() * depth_of_unit(view);
+    return static_cast<int>(std::max(std::floor(nearest / sheet_thickness(view, settings)), 0.0));
+}
 
-    const double depth_of_unit = glm::length(glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward);
+std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
+                                        const Settings& settings, const Footprints& footprints) {
+    std::vector<Selected> selected(records.size());
+    if (records.empty()) return selected;
+    const double thickness = sheet_thickness(view, settings);
+    const int base = first_sheet(records, field, view, settings, footprints);
+    const auto sheet_of = [&](double z) { return static_cast<int>(std::max(std::floor(z / thickness), 0.0)) - base; };
     for (std::size_t i = 0; i < records.size(); ++i) {
         Selected& s = selected[i];
         const glm::dvec3 x(field.voxel(records[i].voxel));
@@ -98,8 +115,12 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const Support support = footprints.support(records[i].edge);
         s.support = {x + support.shift * records[i].edge.n, support.radius};
         s.box = screen_box(view, s.support);
-        s.sheet = sheet_of(s.z) - base;
-        s.kept = view.depth(s.support.center) > -s.support.radius * depth_of_unit && !s.box.empty();
+        const double middle = view.depth(s.support.center);
+        const double extent = s.support.radius * depth_of_unit(view);
+        const bool sliced = settings.sheets == SheetCut::Sliced;
+        s.sheet = sliced ? std::max(sheet_of(middle - extent), 0) : sheet_of(s.z);
+        s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
+        s.kept = middle > -extent && !s.box.empty();
     }
     return selected;
 }

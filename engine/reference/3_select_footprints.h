@@ -44,11 +44,19 @@ PixelBox screen_box(const View& view, const SplatSupport& support);
 
 struct Selected {
     bool kept = false;
-    int sheet = 0;  ///< from the first sheet that can occur
-    double z = 0;   ///< of the voxel centre, mm
+    int sheet = 0;       ///< from the first sheet that can occur
+    int last_sheet = 0;  ///< the same as `sheet` where kernels lie in sheets whole
+    double z = 0;        ///< of the voxel centre, mm
     SplatSupport support;
     PixelBox box;
 };
+
+/// Thickness of a sheet, mm along the view axis.
+double sheet_thickness(const View& view, const Settings& settings);
+
+/// The sheets' number 0, from the eye.
+int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
+                const Footprints& footprints);
 
 /// One entry per record.
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,

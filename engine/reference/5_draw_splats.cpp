@@ -72,13 +72,19 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
     }
 }
 
-double SplatDrawer::tau(std::uint32_t splat, int x, int y) const {
+double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
     const SplatRecord& record = records_[splat];
     const glm::dvec4& ray =
         rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
     const glm::dvec3 u(ray);
     const glm::dvec3 v = glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index;
     const double s0 = glm::dot(v, u);
+    if (cut) {
+        const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
+        const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
+        return scene_.materials[record.material].extinction * ray.w *
+               footprints_.along_slice(record.edge, s0 * u - v, u, slice);
+    }
     const double share = in_front(s0);
     if (!(share > 0)) return 0;
     const glm::dvec3 p = s0 * u - v;
@@ -86,7 +92,7 @@ double SplatDrawer::tau(std::uint32_t splat, int x, int y) const {
 }
 
 void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,
-                       std::span<glm::dvec4> sheet) const {
+                       std::span<glm::dvec4> sheet, const std::optional<DepthRange>& cut) const {
     std::vector<glm::dvec3> quantities;
     quantities.reserve(splats.size());
     for (const std::uint32_t i : splats) {
@@ -101,7 +107,7 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
                     const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) +
                                            static_cast<std::size_t>(x);
                     if (!closed.empty() && closed[at] != 0) continue;
-                    const double t = tau(splats[k], x, y);
+                    const double t = tau(splats[k], x, y, cut);
                     if (t > 0) sheet[at] += t * glm::dvec4(quantities[k], 1);
                 }
             }

@@ -1,6 +1,7 @@
 // Pass 5: the splats of one sheet, added up (method.md, 5_draw_splats).
 #pragma once
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,12 @@ double light_on(const Light& light, const VolumeGeometry& geometry, const glm::d
 glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                       const Settings& settings, Payload payload);
 
+/// Depths, mm along the view axis from the eye, that a kernel is cut to.
+struct DepthRange {
+    double near = 0;
+    double far = 0;
+};
+
 /// Everything the sheets of a frame have in common. Referenced objects must outlive it.
 class SplatDrawer {
   public:
@@ -29,12 +36,12 @@ class SplatDrawer {
                 const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints);
 
     /// Adds the splats (indices into the records) to `sheet`, one (sum of tau * quantity, sum of tau) per pixel.
-    /// Pixels of `closed` that are non-zero are skipped; empty: none is.
+    /// Pixels of `closed` that are non-zero are skipped; empty: none is. With `cut`, only what lies between.
     void draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,
-              std::span<glm::dvec4> sheet) const;
+              std::span<glm::dvec4> sheet, const std::optional<DepthRange>& cut = {}) const;
 
     /// tau of one splat at the centre of pixel (x, y).
-    double tau(std::uint32_t splat, int x, int y) const;
+    double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;
 
   private:
     std::span<const SplatRecord> records_;

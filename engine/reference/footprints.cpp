@@ -18,6 +18,7 @@ Footprints::Footprints(const Settings& settings)
     : settings_(settings),
       band_{settings.edge_half_width, settings.edge_strength},
       largest_radius_(largest_support_radius(band_)) {
+    if (settings.edge_shape == EdgeShape::Curved) largest_radius_ = covering_supports_of_curved(band_, 1)[0].radius;
     const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
     if (tabled && settings.warp == WarpFamily::Edge) {
         table_ = std::make_shared<const FootprintTable>(load_footprint_table(band_).table);
@@ -31,7 +32,9 @@ bool Footprints::is_wall(const VoxelEdge& edge) const {
 Edge Footprints::faces(const VoxelEdge& edge) const {
     // The two-dimensional short cut knows one face only.
     if (settings_.footprints == FootprintMode::Warp2d) return {edge.D, band_};
-    return wall_edge(edge.D, edge.D2, band_);
+    Edge drawn = wall_edge(edge.D, edge.D2, band_);
+    if (!is_wall(edge)) drawn.curvature = edge.curvature;
+    return drawn;
 }
 
 bool Footprints::warped(const VoxelEdge& edge) const {
@@ -42,25 +45,35 @@ bool Footprints::warped(const VoxelEdge& edge) const {
 
 double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
-    if (!warped(edge)) return kernel(r2);
+    if (!warped(edge)) return edge.weight * kernel(r2);
     const double t = glm::dot(r, edge.n);
-    const double w = settings_.warp == WarpFamily::Paper ? warped_coordinate(t, paper_edge(edge))
-                                                         : warped_coordinate(t, faces(edge));
-    return kernel(r2 - t * t + w * w);
+    if (settings_.warp == WarpFamily::Edge) return edge.weight * kernel(warped_distance2(r2, t, faces(edge)));
+    const double w = warped_coordinate(t, paper_edge(edge));
+    return edge.weight * kernel(r2 - t * t + w * w);
 }
 
 double Footprints::along_ray(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
     const Ray ray{glm::dot(p, p), glm::dot(p, edge.n), glm::dot(u, edge.n)};
-    if (!warped(edge)) return kernel_footprint(ray.rho2);
+    if (!warped(edge)) return edge.weight * kernel_footprint(ray.rho2);
+    if (table_ && !is_wall(edge) && edge.curvature == 0) {
+        return edge.weight * (settings_.footprints == FootprintMode::Table ? table_->nearest(ray, edge.D)
+                                                                           : table_->lerp(ray, edge.D));
+    }
+    return along_slice(edge, p, u, {});
+}
+
+double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
+                               const Slice& slice) const {
+    const Ray ray{glm::dot(p, p), glm::dot(p, edge.n), glm::dot(u, edge.n)};
+    if (!warped(edge)) return edge.weight * sliced_kernel_footprint(ray.rho2, slice);
     const bool flat = settings_.footprints == FootprintMode::Warp2d;
     if (settings_.warp == WarpFamily::Paper) {
-        return flat ? warp2d_footprint(ray, paper_edge(edge)) : procedural_footprint(ray, paper_edge(edge));
+        return edge.weight * (flat ? warp2d_footprint(ray, paper_edge(edge), slice)
+                                   : procedural_footprint(ray, paper_edge(edge), 10, slice));
     }
-    if (flat) return warp2d_footprint(ray, faces(edge));
-    if (table_ && !is_wall(edge)) {
-        return settings_.footprints == FootprintMode::Table ? table_->nearest(ray, edge.D) : table_->lerp(ray, edge.D);
-    }
-    return procedural_footprint(ray, faces(edge));
+    if (flat) return edge.weight * warp2d_footprint(ray, faces(edge), slice);
+    const Edge drawn = faces(edge);
+    return edge.weight * procedural_footprint(ray, drawn, drawn.curvature == 0 ? 10 : 16, slice);
 }
 
 Support Footprints::support(const VoxelEdge& edge) const {

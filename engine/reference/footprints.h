@@ -25,9 +25,15 @@ class Footprints {
     /// u a unit vector.
     double along_ray(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
 
+    /// The same over a piece of the line.
+    double along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
+
     /// Sphere around x + shift n outside which h is 0. A bound that holds for every edge of these settings, since the
     /// smallest sphere takes a search per edge; `warped_support` gives that one.
     Support support(const VoxelEdge& edge) const;
+
+    /// How far from its voxel a kernel of these settings can be anything but 0, voxels.
+    double farthest_reach() const { return largest_radius_; }
 
   private:
     Edge faces(const VoxelEdge& edge) const;  ///< edge family, with the rule for thin walls
