@@ -43,9 +43,4 @@ class PreparedVolume {
 Image render(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings, int width,
              int height, Output output = Output::Color);
 
-/// The model itself, without splats, sheets or tables (design.md, 9): rays marched in steps of `step` voxels through
-/// the sum of tau_i h_i(x). Color (4 channels) or Tau (1); other outputs throw Error.
-Image direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
-                        Output output = Output::Color, double step = 0.05);
-
 }  // namespace edgesplat::reference

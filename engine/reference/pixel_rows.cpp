@@ -1,0 +1,38 @@
+#include "engine/reference/pixel_rows.h"
+
+#include <algorithm>
+#include <atomic>
+#include <numeric>
+#include <thread>
+
+#include "engine/reference/parallel.h"
+
+namespace edgesplat::reference {
+
+void check_picture_size(int width, int height) {
+    if (width < 1 || height < 1 || width > 16384 || height > 16384) {
+        fail("picture of {} x {} pixels, expected 1 to 16384 each", width, height);
+    }
+}
+
+void for_each_row(int height, const Progress& progress, const std::function<void(int)>& row) {
+    // A stride without a common factor visits every row once, and neighbours long after one another.
+    int stride = std::max(height * 5 / 13, 1);
+    while (std::gcd(stride, height) != 1)
+        ++stride;
+
+    const std::thread::id caller = std::this_thread::get_id();
+    std::atomic<int> done{0};
+    std::atomic<bool> stopped{false};
+    parallel_for(height, [&](int begin, int end) {
+        for (int i = begin; i < end && !stopped; ++i) {
+            row(static_cast<int>(static_cast<long long>(i) * stride % height));
+            const int rows = ++done;
+            if (progress && std::this_thread::get_id() == caller && !progress(static_cast<double>(rows) / height))
+                stopped = true;
+        }
+    });
+    if (stopped || (progress && !progress(1))) throw Cancelled("cancelled");
+}
+
+}  // namespace edgesplat::reference
