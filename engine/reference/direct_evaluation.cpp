@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "engine/reference/7_resolve.h"
-#include "engine/reference/ray_quadrature.h"
 #include "engine/reference/splat_cloud.h"
 
 namespace edgesplat::reference {
@@ -13,13 +11,6 @@ namespace edgesplat::reference {
 namespace {
 
 constexpr double kPanel = 0.5;  ///< voxels: the coarsest panels, and how far splats are gathered at a time
-
-/// The tables are of no use here, and take seconds to build.
-Settings without_tables(Settings settings) {
-    const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
-    if (tabled) settings.footprints = FootprintMode::Procedural;
-    return settings;
-}
 
 /// Integrates one ray after the other; one per row.
 class RayWalker {
@@ -66,7 +57,10 @@ class RayWalker {
                 break;
             }
         }
-        if (tau_only_) sum.error /= std::max(sum.tau, 1.0);
+        if (tau_only_) {
+            sum.error /= std::max(sum.tau, 1.0);
+            sum.color = glm::dvec3(0);
+        }
         return sum;
     }
 
@@ -79,6 +73,12 @@ class RayWalker {
 };
 
 }  // namespace
+
+Settings without_tables(Settings settings) {
+    const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
+    if (tabled) settings.footprints = FootprintMode::Procedural;
+    return settings;
+}
 
 void check_options(const DirectOptions& options) {
     if (!(options.tolerance > 0 && options.tolerance <= 0.1)) {
@@ -96,29 +96,17 @@ DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& cam
     const Footprints footprints(without_tables(prepared.settings()));
     const SplatCloud cloud(prepared, view, footprints);
 
-    const auto w = static_cast<std::size_t>(width);
-    const auto h = static_cast<std::size_t>(height);
-    std::vector<glm::dvec4> frame(w * h, glm::dvec4(0));
-    std::vector<double> errors(h, 0.0);
-    std::vector<std::uint64_t> samples(h, 0);
-    for_each_row(height, options.progress, [&](int y) {
-        const auto row = static_cast<std::size_t>(y);
-        RayWalker walker(cloud, footprints, options.tolerance, output == Output::Tau);
-        for (int x = 0; x < width; ++x) {
-            const glm::dvec3 u = view.ray(x, y);
-            const RaySum sum = walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
-            const double last = output == Output::Tau ? sum.tau : 1 - sum.transmittance;
-            frame[row * w + static_cast<std::size_t>(x)] = glm::dvec4(sum.color, last);
-            errors[row] = std::max(errors[row], sum.error);
-            samples[row] += sum.samples;
-        }
+    const RayValue value = output == Output::Tau ? RayValue::Tau : RayValue::Opacity;
+    const RayFrame frame = trace_rays(width, height, value, options.progress, [&]() -> RayTracer {
+        return
+            [&, walker = RayWalker(cloud, footprints, options.tolerance, output == Output::Tau)](int x, int y) mutable {
+                const glm::dvec3 u = view.ray(x, y);
+                return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
+            };
     });
-    DirectResult result;
-    result.image = output == Output::Tau ? resolve_sum(frame, width, height)
-                                         : resolve_color(frame, width, height, prepared.scene().background);
-    result.error_estimate = *std::max_element(errors.begin(), errors.end());
-    result.samples = std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
-    return result;
+    return {output == Output::Tau ? resolve_sum(frame.pixels, width, height)
+                                  : resolve_color(frame.pixels, width, height, prepared.scene().background),
+            frame.error, frame.samples};
 }
 
 }  // namespace edgesplat::reference

@@ -15,6 +15,8 @@ void check_picture_size(int width, int height) {
     }
 }
 
+namespace {
+
 void for_each_row(int height, const Progress& progress, const std::function<void(int)>& row) {
     // A stride without a common factor visits every row once, and neighbours long after one another.
     int stride = std::max(height * 5 / 13, 1);
@@ -33,6 +35,32 @@ void for_each_row(int height, const Progress& progress, const std::function<void
         }
     });
     if (stopped || (progress && !progress(1))) throw Cancelled("cancelled");
+}
+
+}  // namespace
+
+RayFrame trace_rays(int width, int height, RayValue value, const Progress& progress,
+                    const std::function<RayTracer()>& make) {
+    const auto w = static_cast<std::size_t>(width);
+    const auto h = static_cast<std::size_t>(height);
+    RayFrame frame;
+    frame.pixels.assign(w * h, glm::dvec4(0));
+    std::vector<double> errors(h, 0.0);
+    std::vector<std::uint64_t> samples(h, 0);
+    for_each_row(height, progress, [&](int y) {
+        const auto row = static_cast<std::size_t>(y);
+        const RayTracer tracer = make();
+        for (int x = 0; x < width; ++x) {
+            const RaySum sum = tracer(x, y);
+            frame.pixels[row * w + static_cast<std::size_t>(x)] =
+                glm::dvec4(sum.color, value == RayValue::Tau ? sum.tau : 1 - sum.transmittance);
+            errors[row] = std::max(errors[row], sum.error);
+            samples[row] += sum.samples;
+        }
+    });
+    frame.error = *std::max_element(errors.begin(), errors.end());
+    frame.samples = std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
+    return frame;
 }
 
 }  // namespace edgesplat::reference

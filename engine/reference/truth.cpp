@@ -1,0 +1,269 @@
+#include "engine/reference/truth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "engine/reference/7_resolve.h"
+
+namespace edgesplat::reference {
+
+namespace {
+
+constexpr double kStep = 0.25;         ///< voxels between the points at which a ray is probed
+constexpr double kSlopeStep = 1e-4;    ///< voxels, for the slope of a distance
+constexpr double kFinestProbe = 1e-7;  ///< voxels, how exactly an extremum along a ray is found
+constexpr int kDeepestHalving = 40;
+
+/// A point of a ray.
+struct Probe {
+    double t = 0;
+    double value = 0;
+    double distance = 0;  ///< to the nearest edge; 0 where the scene does not know
+    int material = 0;
+};
+
+/// Integrates one ray after the other. Positions are in index space, t in voxels.
+class TruthWalker {
+  public:
+    TruthWalker(const AnalyticScene& scene, const Scene& look, const View& view, double tolerance)
+        : scene_(scene), look_(look), view_(view), cut_(tolerance / 10), tolerance_(tolerance - cut_) {}
+
+    RaySum walk(const glm::dvec3& u) {
+        sum_ = {};
+        u_ = u;
+        mm_per_voxel_ = glm::length(view_.geometry.index_to_world_axes * u);
+        double length = 0;
+        if (!enter(length)) return sum_;
+        // One probe before the beginning and one behind the end, for extrema near either.
+        const int steps = static_cast<int>(std::ceil(length / kStep));
+        const double step = length / steps;
+        std::array<Probe, 3> last{probe(-step), probe(0), probe(step)};
+        Extrema before = extrema(last);
+        for (int i = 1; i <= steps; ++i) {
+            const Probe next = probe((i + 1) * step);
+            last = {last[1], last[2], next};
+            const Extrema after = extrema(last);
+            stretch(last[0], last[1], before, after);
+            if (sum_.transmittance < cut_) break;
+            before = after;
+        }
+        // Whatever stands behind.
+        if (sum_.transmittance < cut_) sum_.error += sum_.transmittance;
+        return sum_;
+    }
+
+  private:
+    /// Where value and distance turn round, if they do between the outer two of three probes.
+    using Extrema = std::array<std::optional<Probe>, 2>;
+
+    /// Data reach half a voxel beyond the outermost centres: there the voxels' cells end, and the kernels' sum passes
+    /// one half.
+    bool enter(double& length) {
+        const glm::dvec3 low(-0.5);
+        const glm::dvec3 high = glm::dvec3(view_.geometry.dims) - 0.5;
+        double begin = 0;
+        double end = std::numeric_limits<double>::infinity();
+        for (int axis = 0; axis < 3; ++axis) {
+            const double at = view_.eye_index[axis];
+            if (u_[axis] == 0) {
+                if (!(at >= low[axis] && at <= high[axis])) return false;
+                continue;
+            }
+            const double a = (low[axis] - at) / u_[axis];
+            const double b = (high[axis] - at) / u_[axis];
+            begin = std::max(begin, std::min(a, b));
+            end = std::min(end, std::max(a, b));
+        }
+        if (!(begin < end)) return false;
+        origin_ = view_.eye_index + begin * u_;
+        length = end - begin;
+        return true;
+    }
+
+    Probe probe(double t) {
+        const glm::dvec3 x = origin_ + t * u_;
+        Probe p{t, scene_.value(x), scene_.signed_distance ? scene_.signed_distance(x) : 0.0, 0};
+        const auto above = std::upper_bound(look_.iso_values.begin(), look_.iso_values.end(), p.value);
+        p.material = static_cast<int>(above - look_.iso_values.begin());
+        ++sum_.samples;
+        return p;
+    }
+
+    Extrema extrema(const std::array<Probe, 3>& p) {
+        Extrema found;
+        if (p[0].material != p[1].material || p[1].material != p[2].material) return found;
+        // A surface is touched between two probes only if the value comes as near to it as it changes from one to the
+        // other; and a distance changes by no more than the way.
+        const double change = std::abs(p[1].value - p[0].value) + std::abs(p[2].value - p[1].value);
+        const bool near = std::any_of(look_.iso_values.begin(), look_.iso_values.end(),
+                                      [&](double iso) { return std::abs(iso - p[1].value) <= change; });
+        if (near) found[0] = extremum(p, &Probe::value);
+        if (scene_.signed_distance && std::abs(p[1].distance) <= p[2].t - p[0].t)
+            found[1] = extremum(p, &Probe::distance);
+        return found;
+    }
+
+    /// Golden section. Stops as soon as another material is met: bisection does the rest.
+    std::optional<Probe> extremum(const std::array<Probe, 3>& p, double Probe::*of) {
+        const auto [low, high] = std::minmax(p[0].*of, p[2].*of);
+        double sign = 0;
+        if (p[1].*of >= high && p[1].*of > low) sign = 1;
+        if (p[1].*of <= low && p[1].*of < high) sign = -1;
+        if (sign == 0) return std::nullopt;
+        constexpr double kGolden = 0.3819660112501051;
+        double begin = p[0].t;
+        double end = p[2].t;
+        Probe a = probe(begin + kGolden * (end - begin));
+        Probe b = probe(end - kGolden * (end - begin));
+        while (end - begin > kFinestProbe) {
+            if (a.material != p[1].material) return a;
+            if (b.material != p[1].material) return b;
+            if (sign * a.*of > sign * b.*of) {
+                end = b.t;
+                b = a;
+                a = probe(begin + kGolden * (end - begin));
+            } else {
+                begin = a.t;
+                a = b;
+                b = probe(end - kGolden * (end - begin));
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// From one probe to the next, by way of what turned up between them.
+    void stretch(const Probe& from, const Probe& to, const Extrema& before, const Extrema& after) {
+        std::array<Probe, 5> at;
+        std::size_t count = 0;
+        for (const Extrema* extrema : {&before, &after})
+            for (const std::optional<Probe>& e : *extrema)
+                if (e && e->t > from.t && e->t < to.t) at[count++] = *e;
+        std::sort(at.begin(), at.begin() + static_cast<std::ptrdiff_t>(count),
+                  [](const Probe& a, const Probe& b) { return a.t < b.t; });
+        at[count++] = to;
+        Probe p = from;
+        for (std::size_t i = 0; i < count; p = at[i++])
+            crossings(p, at[i]);
+    }
+
+    void crossings(Probe from, const Probe& to) {
+        while (from.material != to.material) {
+            Probe in = from;
+            Probe out = to;
+            const double fine = std::max(1e-12, std::min(kFinestProbe, tolerance_ * 1e-3 / fastest()));
+            for (int i = 0; i < kDeepestHalving && out.t - in.t > fine; ++i) {
+                const Probe middle = probe((in.t + out.t) / 2);
+                (middle.material == from.material ? in : out) = middle;
+            }
+            absorb(from.t, out.t, from.material);
+            from = out;
+        }
+        absorb(from.t, to.t, from.material);
+    }
+
+    /// Largest extinction per voxel along this ray.
+    double fastest() const {
+        double most = 1e-300;
+        for (const Material& m : look_.materials)
+            most = std::max(most, m.extinction * mm_per_voxel_);
+        return most;
+    }
+
+    void absorb(double begin, double end, int material) {
+        const Material& m = look_.materials[static_cast<std::size_t>(material)];
+        const double per_voxel = m.extinction * mm_per_voxel_;
+        if (!(per_voxel > 0) || !(end > begin)) return;
+        const double tau = per_voxel * (end - begin);
+        const double opacity = -std::expm1(-tau);
+        // Over opacity instead of length the weight of every point is the same, and only the light is left to
+        // integrate.
+        const auto color = [&](double a) {
+            const double t = std::min(begin - std::log1p(-a) / per_voxel, end);
+            ++sum_.samples;
+            return m.color * light(origin_ + t * u_);
+        };
+        const glm::dvec3 whole = mean(color, 0, opacity);
+        halved(color, 0, opacity, whole, 0);
+        sum_.tau += tau;
+        sum_.transmittance *= std::exp(-tau);
+    }
+
+    template <typename Color>
+    static glm::dvec3 mean(const Color& color, double begin, double end) {
+        const CollocationRule& rule = collocation_rule();
+        glm::dvec3 sum(0);
+        for (std::size_t i = 0; i < CollocationRule::kNodes; ++i)
+            sum += rule.weights[i] * color(begin + (end - begin) * rule.nodes[i]);
+        return (end - begin) * sum;
+    }
+
+    template <typename Color>
+    void halved(const Color& color, double begin, double end, const glm::dvec3& whole, int depth) {
+        const double middle = (begin + end) / 2;
+        const glm::dvec3 near = mean(color, begin, middle);
+        const glm::dvec3 far = mean(color, middle, end);
+        const glm::dvec3 change = glm::abs(near + far - whole);
+        const double largest = sum_.transmittance * std::max({change.x, change.y, change.z});
+        if (largest <= tolerance_ * sum_.transmittance * (end - begin) || depth >= kDeepestPanel) {
+            sum_.color += sum_.transmittance * (near + far);
+            sum_.error += largest;
+            return;
+        }
+        halved(color, begin, middle, near, depth + 1);
+        halved(color, middle, end, far, depth + 1);
+    }
+
+    double light(const glm::dvec3& x) const {
+        if (look_.light.kind == Light::Kind::None) return 1;
+        // Lower values lie where the gradient does not point. A distance rises in the same direction all the way from
+        // its edge, so that it need not be followed there; it has a slope where a step has no gradient.
+        glm::dvec3 n = scene_.signed_distance ? distance_slope(x) : -scene_.gradient(x);
+        const double length = glm::length(n);
+        n = length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
+        return light_on(look_.light, view_.geometry, n, view_.geometry.to_world(x), view_.frame.eye);
+    }
+
+    glm::dvec3 distance_slope(const glm::dvec3& x) const {
+        glm::dvec3 slope(0);
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::dvec3 step(0);
+            step[axis] = kSlopeStep;
+            slope[axis] = scene_.signed_distance(x + step) - scene_.signed_distance(x - step);
+        }
+        // Half-way between two edges there is none but rounding.
+        return glm::length(slope) > kSlopeStep * 1e-6 ? slope : glm::dvec3(0);
+    }
+
+    const AnalyticScene& scene_;
+    const Scene& look_;
+    const View& view_;
+    double cut_, tolerance_;
+    glm::dvec3 u_{0}, origin_{0};
+    double mm_per_voxel_ = 1;
+    RaySum sum_;
+};
+
+}  // namespace
+
+DirectResult truth(const AnalyticScene& scene, const VolumeGeometry& geometry, const Scene& look, const Camera& camera,
+                   int width, int height, const DirectOptions& options) {
+    check_picture_size(width, height);
+    check_options(options);
+    validate(look);
+    if (geometry.dims != scene.dims) {
+        fail("truth: {} is made for {} x {} x {} voxels, not {} x {} x {}", scene.name, scene.dims.x, scene.dims.y,
+             scene.dims.z, geometry.dims.x, geometry.dims.y, geometry.dims.z);
+    }
+    const View view(camera, geometry, width, height);
+    const RayFrame frame = trace_rays(width, height, RayValue::Opacity, options.progress, [&]() -> RayTracer {
+        return [&view, walker = TruthWalker(scene, look, view, options.tolerance)](int x, int y) mutable {
+            return walker.walk(view.ray(x, y));
+        };
+    });
+    return {resolve_color(frame.pixels, width, height, look.background), frame.error, frame.samples};
+}
+
+}  // namespace edgesplat::reference
