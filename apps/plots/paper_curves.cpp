@@ -51,7 +51,7 @@ Plot splat_plot(const CurveExample& e) {
     Plot plot{"figure7_splats",
               fmt::format("Figure 7: the four splats around an edge at {}, warped (dotted: not warped)", e.edge()),
               "x (voxels)",
-              "weight * value",
+              "kernel * value (1/voxel)",
               -2.6,
               3.6,
               {},
@@ -62,7 +62,7 @@ Plot splat_plot(const CurveExample& e) {
         const auto splat = [=](double x) { return weighted_kernel(e, i, x); };
         const auto warped = [=](double x) { return weighted_kernel(e, i, paper_map(x, e.profile)); };
         plot.curves.push_back({names[i + 1], warped, fmt::format("lw 2 lc {}", i + 2)});
-        plot.curves.push_back({"", splat, fmt::format("lw 1 dt 3 lc {}", i + 2)});
+        plot.curves.push_back({"", splat, fmt::format("lw 1.5 dt 3 lc {}", i + 2)});
     }
     return plot;
 }
