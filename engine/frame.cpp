@@ -65,7 +65,8 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     params.run_offsets = resources.run_offsets.address();
     const auto scene = resources.scene.address();
     const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
-    const passes::CollectSplats collect{scene, plan.dims, plan.edge_field, plan.buried, plan.edge_field && marched};
+    const passes::CollectSplats collect{scene,      plan.dims, plan.edge_field, plan.buried, plan.edge_field && marched,
+                                        plan.curved};
 
     commands.run([&] {
         if (plan.buried) {
@@ -95,6 +96,12 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     resources.splats =
         gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
     params.splats = resources.splats.address();
+    resources.traits = {};
+    if (plan.curved) {
+        resources.traits = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t),
+                                       gpu::Buffer::Place::Device, "splat traits");
+        params.traits = resources.traits.address();
+    }
     commands.run([&] {
         commands.begin_span("2_collect_splats");
         passes::write_splats(commands, collect);
@@ -119,8 +126,9 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
     commands.run([&] {
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        timed("3_select_footprints", [&] { passes::select_footprints(commands, frame, plan.params.splat_count); });
-        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame); });
+        timed("3_select_footprints",
+              [&] { passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant.sliced); });
+        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame, plan.variant.sliced); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             timed("6_composite_sheet",

@@ -20,6 +20,8 @@ constexpr int kMaxBuryDistance = 10;
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
 constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = 65536;
+// Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
+constexpr double kFewNodesSpacing = 0.3;
 
 /// Millimetres per voxel along the axis of shortest step.
 double shortest_step(const VolumeGeometry& geometry) {
@@ -46,13 +48,18 @@ bool draws_warped(const Settings& settings) {
     return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
 }
 
+double most_curved(const Settings& settings) {
+    return std::min(0.5, 0.9 / settings.edge_half_width);
+}
+
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& a = params;
     const auto& b = other.params;
     return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
-           buried == other.buried && skip_buried == other.skip_buried && a.iso_count == b.iso_count &&
-           std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask &&
-           a.bury_distance == b.bury_distance && a.band == b.band;
+           buried == other.buried && skip_buried == other.skip_buried && curved == other.curved &&
+           a.curvature_unit == b.curvature_unit && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
+           a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
+           a.band == b.band;
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -84,6 +91,8 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
+    plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
+    params.curvature_unit = plan.curved ? static_cast<float>(most_curved(settings)) : 1.0F;
     return plan;
 }
 
@@ -100,7 +109,7 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high) {
+                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach) {
     const auto& geometry = volume.geometry;
     const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
     const CameraFrame view = camera_frame(camera);
@@ -111,8 +120,21 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double thickness = settings.sheet_spacing * voxel_along_view;
 
     FramePlan plan;
-    plan.variant = {settings.footprints, settings.warp,
-                    payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None, payload};
+    // Optical depth is a plain sum: sheets would change nothing.
+    const bool sliced = settings.sheets == SheetCut::Sliced && payload != shader::PAYLOAD_TAU;
+    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
+    plan.variant = {.footprints = settings.footprints,
+                    .warp = settings.warp,
+                    .light = payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None,
+                    .payload = payload,
+                    .sliced = sliced,
+                    .curved = curved,
+                    .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
+                             : curved                                             ? 16U
+                                                                                  : 10U};
+    plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR
+                                  ? vk::Format::eR16G16B16A16Sfloat
+                                  : vk::Format::eR32G32B32A32Sfloat;
     const bool half = settings.sheet_format == SheetFormat::Half && payload == shader::PAYLOAD_COLOR;
     plan.sheet_format = half ? vk::Format::eR16G16B16A16Sfloat : vk::Format::eR32G32B32A32Sfloat;
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
@@ -156,6 +178,12 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
         nearest = std::min(nearest, z);
         farthest = std::max(farthest, z);
     }
+    const double reach = glm::length(glm::transpose(to_world) * view.forward) * farthest_reach;
+    if (sliced) {
+        nearest -= reach;
+        farthest += reach;
+        plan.sheets_per_splat = static_cast<std::uint32_t>(std::min(std::floor(2 * reach / thickness), 32766.0)) + 2;
+    }
     const double base = std::floor(std::max(nearest, 0.0) / thickness);
     const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
     if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
@@ -167,6 +195,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const std::uint64_t layer_bytes =
         static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * (half ? 8 : 16);
     p.sheet_base = static_cast<int>(base);
+    p.sheet_zero = static_cast<float>(base * thickness - glm::dot(view.forward, anchor_view));
+    p.curvature_unit = static_cast<float>(most_curved(settings));
     p.sheet_count = static_cast<std::uint32_t>(sheets);
     p.sheets_per_group = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));

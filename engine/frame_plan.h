@@ -10,6 +10,9 @@ namespace edgesplat {
 /// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
 bool draws_warped(const Settings& settings);
 
+/// The largest curvature that is drawn, 1/voxel: the band must not reach a sphere's centre.
+double most_curved(const Settings& settings);
+
 /// Passes 1 and 2 for one volume, scene and set of edge settings.
 struct CollectionPlan {
     glm::ivec3 dims{0};
@@ -19,6 +22,7 @@ struct CollectionPlan {
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
     /// voxel may adopt an edge that two of them share.
     bool skip_buried = true;
+    bool curved = false;           ///< splats carry the curvature of their edge
     shader::SceneParams params{};  ///< without addresses
 
     /// Whether the same splats come out of it.
@@ -35,13 +39,15 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
 struct FramePlan {
     passes::DrawVariant variant{};
     vk::Format sheet_format{};
-    shader::FrameParams params{};  ///< without addresses and what FootprintResources holds
+    vk::Format accumulated_format{};
+    std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
+    shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
 };
 
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
-/// come from the collection.
+/// come from the collection; no kernel reaches further than `farthest_reach` voxels.
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high);
+                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
 
 }  // namespace edgesplat

@@ -21,6 +21,7 @@ struct VolumeResources {
     gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
     gpu::Buffer run_offsets;     ///< (runs) uint, mapped; 2 <-> host
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
+    gpu::Buffer traits;          ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved
     std::uint64_t splat_count = 0, edge_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< voxels that hold splats: inclusive box, whole rows
 };
@@ -31,15 +32,16 @@ struct FootprintResources {
     shader::FootprintParams params{};
     std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};  ///< FrameParams::support_table
     float wall_support = 0;
+    double farthest_reach = 0;  ///< of any kernel, voxels
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes.
 struct TargetResources {
     gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f or rgba16f; 5 -> 6
     gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
-    gpu::GpuImage accumulated;  ///< (height, width) rgba32f; 6 -> 5a, 7
+    gpu::GpuImage accumulated;  ///< (height, width) rgba32f or rgba16f; 6 -> 5a, 7
     gpu::Buffer sheet_of;       ///< (splat_count) uint; 3 -> 4, 5
-    gpu::Buffer order;          ///< (splat_count) uint; 4 -> 5
+    gpu::Buffer order;          ///< (splat_count * sheets_per_splat) uint; 4 -> 5
     gpu::Buffer counters;       ///< (sheet_count, SORT_BLOCKS) uint; 4
     gpu::Buffer groups;         ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
     gpu::Buffer draws;          ///< (group_count) DrawCommand; 4 -> 5

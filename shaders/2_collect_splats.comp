@@ -11,6 +11,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
+layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
@@ -45,10 +46,15 @@ void main() {
             if (write == 1u) {
                 uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
                 Edge e = unpack_edge(code.x, code.y);
-                if (SMOOTH == 1u) {
-                    float correction = distance_correction(p, dims, e, material);
-                    e.d += correction;
-                    e.d2 -= correction;
+                if (SMOOTH == 1u || CURVED == 1u) {
+                    SurfaceAround around = surface_around(p, dims, e, material);
+                    if (SMOOTH == 1u) {
+                        e.d += around.distance_correction;
+                        e.d2 -= around.distance_correction;
+                    }
+                    if (CURVED == 1u)
+                        UintsRef(params.scene.traits).at[out_at] =
+                            pack_traits(around.curvature, 1.0, params.scene.curvature_unit);
                 }
                 if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
                 with_edge += e.state >= EDGE_LOWER ? 1u : 0u;

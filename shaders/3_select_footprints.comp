@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(push_constant) uniform Push { FrameRef params; };
 #include "shaders/lib/splat_projection.glsl"
 
@@ -22,11 +23,25 @@ void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= params.frame.splat_count) return;
     Splat splat = SplatsRef(params.frame.splats).at[i];
-    Projection p = project_splat(splat.voxel, unpack_edge(splat.normal, splat.edge));
+    Projection p = place_splat(splat.voxel, unpack_edge(splat.normal, splat.edge));
+    project_support(p);
     ivec4 box = pixel_box(p);
     bool drawn = p.visible && box.x < box.z && box.y < box.w;
-    int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
-    sheet = clamp(sheet, 0, int(params.frame.sheet_count) - 1);
-    UintsRef(params.frame.sheets).at[i] = drawn ? uint(sheet) : SHEET_NONE;
-    if (drawn) grow(GroupsRef(params.frame.groups), uint(sheet) / params.frame.sheets_per_group, box);
+    int most = int(params.frame.sheet_count) - 1;
+    if (SLICED == 1u) {
+        // Depths relative to the first sheet, where a far eye costs no digits.
+        float middle = dot(params.frame.view_z, p.position + p.centre) - params.frame.sheet_zero;
+        float reach = p.radius * length(params.frame.view_z);
+        int first = clamp(int(floor((middle - reach) / params.frame.sheet_thickness)), 0, most);
+        int last = clamp(int(floor((middle + reach) / params.frame.sheet_thickness)), first, most);
+        UintsRef(params.frame.sheets).at[i] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
+        int per_group = int(params.frame.sheets_per_group);
+        int groups = drawn ? last / per_group : first / per_group - 1;
+        for (int g = first / per_group; g <= groups; ++g) grow(GroupsRef(params.frame.groups), uint(g), box);
+    } else {
+        int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
+        sheet = clamp(sheet, 0, most);
+        UintsRef(params.frame.sheets).at[i] = drawn ? uint(sheet) : SHEET_NONE;
+        if (drawn) grow(GroupsRef(params.frame.groups), uint(sheet) / params.frame.sheets_per_group, box);
+    }
 }

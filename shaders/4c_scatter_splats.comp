@@ -4,6 +4,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(push_constant) uniform Push { FrameRef params; };
 
 void main() {
@@ -14,6 +15,12 @@ void main() {
     UintsRef order = UintsRef(params.frame.order);
     for (uint i = first; i < last; ++i) {
         uint sheet = sheets.at[i];
-        if (sheet != SHEET_NONE) order.at[counters.at[sheet * SORT_BLOCKS + block]++] = i;
+        if (SLICED == 1u) {
+            uint first = sheet & ((1u << SHEET_BITS) - 1u);
+            uint end = sheet != SHEET_NONE ? first + (sheet >> SHEET_BITS) + 1u : 0u;
+            for (sheet = first; sheet < end; ++sheet) order.at[counters.at[sheet * SORT_BLOCKS + block]++] = i;
+        } else {
+            if (sheet != SHEET_NONE) order.at[counters.at[sheet * SORT_BLOCKS + block]++] = i;
+        }
     }
 }

@@ -4,12 +4,14 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
-#include "shaders/lib/footprint.glsl"
-
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_WARP) const uint WARP = 0u;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 10u;
 const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
 const uint EDGE = 0u, PAPER = 1u;
+#include "shaders/lib/footprint.glsl"
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_TABLE) uniform sampler2DArray table;
@@ -22,27 +24,35 @@ layout(location = 0) in vec3 offset;
 layout(location = 1) flat in vec3 from_eye;
 layout(location = 2) flat in vec4 color_sigma;
 layout(location = 3) flat in vec4 normal_distance;
-layout(location = 4) flat in float face_distance;
+layout(location = 4) flat in vec4 shape;
 layout(location = 0) out vec4 sheet;
 
-float footprint(float rho2, float pn, float un) {
-    if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2);
-    float d = normal_distance.w, d2 = face_distance;
+float footprint(float rho2, float pn, float un, Slice slice) {
+    if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2, slice);
+    float d = normal_distance.w, d2 = shape.x;
     if (WARP == PAPER) {
-        float warped = FOOTPRINTS == WARP2D ? footprint_paper_warp2d(rho2, pn, un, d, params.frame.footprint)
-                                            : footprint_paper_procedural(rho2, pn, un, d, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2) : warped;
+        float warped = FOOTPRINTS == WARP2D ? footprint_paper_warp2d(rho2, pn, un, d, slice, params.frame.footprint)
+                                            : footprint_paper_procedural(rho2, pn, un, d, slice, params.frame.footprint);
+        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
     }
     if (FOOTPRINTS == WARP2D) {
-        float warped = footprint_warp2d(rho2, pn, un, d, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2) : warped;
+        float warped = footprint_warp2d(rho2, pn, un, d, slice, params.frame.footprint);
+        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
     }
     int faces = d2 < 0.0 ? 0 : footprint_faces(d, d2, params.frame.footprint);
-    // The table knows one face; walls are integrated. Without faces the loop is empty and the result is the plain
-    // footprint: lavapipe runs both sides of a branch, but no loop that is empty in every lane.
-    int integrated = FOOTPRINTS == PROCEDURAL || faces == 2 ? faces : 0;
-    float warped = footprint_procedural(rho2, pn, un, d, d2, integrated, params.frame.footprint);
-    if (FOOTPRINTS == PROCEDURAL || faces != 1) return warped;
+    // Walls are plane.
+    float curved = 0.0;
+    int bent = CURVED == 1u && faces == 1 ? 1 : 0;
+    for (int run = bent; run > 0; --run)
+        curved = footprint_curved(rho2, pn, un, d, shape.y, slice, params.frame.footprint);
+    if (CURVED == 1u) faces = faces == 1 ? 0 : faces;
+    // The table knows one plane face and no slices; everything else is integrated. Without faces the loop is empty and the
+    // result is the plain footprint: lavapipe runs both sides of a branch, but no loop that is empty in every lane.
+    bool integrate = FOOTPRINTS == PROCEDURAL || SLICED == 1u || CURVED == 1u;
+    int integrated = integrate || faces == 2 ? faces : 0;
+    float warped = footprint_procedural(rho2, pn, un, d, d2, integrated, slice, params.frame.footprint);
+    if (CURVED == 1u) warped = bent == 1 ? curved : warped;
+    if (integrate || faces != 1) return warped;
     return FOOTPRINTS == TABLE ? footprint_table_nearest(table, rho2, pn, un, d, params.frame.footprint)
                                : footprint_table_lerp(table, rho2, pn, un, d, params.frame.footprint);
 }
@@ -50,9 +60,17 @@ float footprint(float rho2, float pn, float un) {
 void main() {
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
-    float value = footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz));
-    // Only the part of the kernel in front of the eye counts.
-    float in_front = smoothstep(-params.frame.support, params.frame.support, dot(from_eye, u));
+    Slice slice = Slice(-1e9, 1e9);
+    float in_front = 1.0;
+    if (SLICED == 1u) {
+        float depth_along = dot(params.frame.view_z, u);
+        vec2 z = (shape.zw - dot(params.frame.view_z, p)) / depth_along;
+        slice = Slice(z.x, z.y);
+    } else {
+        // Only the part of the kernel in front of the eye counts.
+        in_front = smoothstep(-params.frame.support, params.frame.support, dot(from_eye, u));
+    }
+    float value = footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), slice);
     float tau = color_sigma.a * length(params.frame.index_to_world * u) * value * in_front;
     sheet = vec4(tau * color_sigma.rgb, tau);
 }

@@ -7,6 +7,9 @@
 
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_LIGHT) const uint LIGHT = 1u;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
+layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
 const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u, LIGHT_DIRECTIONAL = 2u;
 
 layout(push_constant) uniform Push {
@@ -19,7 +22,7 @@ layout(location = 0) out vec3 offset;              // a point of the pixel's ray
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
 layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
-layout(location = 4) flat out float face_distance;   // D2; negative: the splat is not warped
+layout(location = 4) flat out vec4 shape;  // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
 
 vec3 lit(vec3 color, Edge e, vec3 world_normal, vec3 to_eye) {
     if (LIGHT == LIGHT_NONE) return color;
@@ -35,7 +38,25 @@ void main() {
     uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
     Splat splat = SplatsRef(params.frame.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = project_splat(splat.voxel, e);
+    Projection p = place_splat(splat.voxel, e);
+    uint layer = 0u;
+    vec2 depths = vec2(0.0);
+    if (SLICED == 1u) {
+        // The sort left each sheet's end in its last counter.
+        uint nth_in_all = sheets.first + min(nth, sheets.count - 1u);
+        uint first_sheet = group * params.frame.sheets_per_group;
+        for (uint s = 0u; s + 1u < params.frame.sheets_per_group; ++s) {
+            uint sheet = min(first_sheet + s, params.frame.sheet_count - 1u);
+            layer += nth_in_all >= UintsRef(params.frame.counters).at[sheet * SORT_BLOCKS + SORT_BLOCKS - 1u] ? 1u : 0u;
+        }
+        float near = params.frame.sheet_zero + float(first_sheet + layer) * params.frame.sheet_thickness -
+                     dot(params.frame.view_z, p.position);
+        depths = vec2(near, near + params.frame.sheet_thickness);
+        cut_support(p, depths);
+    } else {
+        layer = UintsRef(params.frame.sheets).at[number] - group * params.frame.sheets_per_group;
+    }
+    project_support(p);
 
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
     vec2 slope = mix(p.low, p.high, corner);
@@ -44,7 +65,7 @@ void main() {
     offset = p.at_eye
         ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
         : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    if (!p.at_eye) offset += p.support.x * e.n;
+    if (!p.at_eye) offset += p.centre;
 
     vec4 material = params.frame.materials[splat.edge >> 28];
     // A surface faces its lower values, whichever side of it the splat is on.
@@ -55,16 +76,20 @@ void main() {
         payload = lit(material.rgb, e, world_normal, -normalize(params.frame.index_to_world * from_eye));
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
         float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
-        payload = vec3(p.view.z, signed_distance, 0.0);
+        float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
+        payload = vec3(depth, signed_distance, 0.0);
     }
     if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
     color_sigma = vec4(payload, material.a);
     normal_distance = vec4(e.n, e.d);
     bool warped = params.frame.edge_warped == 1u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
-    face_distance = warped ? e.d2 : -1.0;
+    vec2 traits = vec2(0.0, 1.0);
+    if (CURVED == 1u || WEIGHTED == 1u)
+        traits = unpack_traits(UintsRef(params.frame.traits).at[number], params.frame.curvature_unit);
+    shape = vec4(warped ? e.d2 : -1.0, CURVED == 1u ? traits.x : 0.0, depths);
+    if (WEIGHTED == 1u) color_sigma.a *= traits.y;
 
     vec2 ndc = (p.slope + slope) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     gl_Position = real ? vec4(ndc, 0.5, 1.0) : vec4(2.0, 2.0, 0.5, 1.0);
-    uint sheet = UintsRef(params.frame.sheets).at[number];
-    gl_Layer = int(sheet % params.frame.sheets_per_group);
+    gl_Layer = int(layer);
 }

@@ -8,9 +8,10 @@ namespace edgesplat::passes {
 struct CollectSplats {
     shader::Address scene;  ///< SceneParams
     glm::ivec3 dims;
-    bool edges = true;   ///< the edge field exists
-    bool buried = true;  ///< the buried mask exists: `mark_buried` has run
-    bool smooth = true;  ///< edge distances are smoothed along the surface (`march`, `cubic`)
+    bool edges = true;    ///< the edge field exists
+    bool buried = true;   ///< the buried mask exists: `mark_buried` has run
+    bool smooth = true;   ///< edge distances are smoothed along the surface (`march`, `cubic`)
+    bool curved = false;  ///< the curvature of each splat's edge is wanted
 };
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.

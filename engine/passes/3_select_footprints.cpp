@@ -2,8 +2,9 @@
 
 namespace edgesplat::passes {
 
-void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count) {
-    commands.dispatch("3_select_footprints.comp", {}, {frame, 0, 0}, gpu::groups_for(splat_count, 64));
+void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, bool sliced) {
+    commands.dispatch("3_select_footprints.comp", {{shader::SPEC_SLICED, sliced ? 1U : 0U}}, {frame, 0, 0},
+                      gpu::groups_for(splat_count, 64));
     commands.barrier();
 }
 

@@ -6,6 +6,7 @@
 namespace edgesplat::passes {
 
 /// FrameParams at `frame`: reads `splats`, writes `sheets`, grows the `rect` of `groups` (which must start out empty).
-void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count);
+/// With `sliced` a splat belongs to every sheet that its support touches.
+void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, bool sliced);
 
 }  // namespace edgesplat::passes

@@ -13,6 +13,10 @@ struct DrawVariant {
     WarpFamily warp;
     Light::Kind light;
     std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
+    bool sliced = false;        ///< kernels are cut at the sheets' planes
+    bool curved = false;        ///< edges are spheres of their curvature
+    bool weighted = false;      ///< kernels are normalised
+    std::uint32_t nodes = 10;   ///< quadrature nodes of a piece of a footprint: 4, 10 or 16
 };
 
 struct DrawSplats {

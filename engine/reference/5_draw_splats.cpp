@@ -96,7 +96,9 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
     std::vector<glm::dvec3> quantities;
     quantities.reserve(splats.size());
     for (const std::uint32_t i : splats) {
-        quantities.push_back(payload_of(records_[i], field_, scene_, view_, settings_, payload));
+        glm::dvec3 quantity = payload_of(records_[i], field_, scene_, view_, settings_, payload);
+        if (cut && payload == Payload::Depth) quantity.x = std::clamp(quantity.x, cut->near, cut->far);
+        quantities.push_back(quantity);
     }
     // Rows in parallel: every pixel adds its splats in the list's order, however the rows are shared out.
     parallel_for(view_.height, [&](int begin, int end) {

@@ -115,6 +115,32 @@ std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;
 }
 
+Settings drawn_as(const Settings& settings) {
+    const Settings usual;
+    Settings s = settings;
+    if (s.edges == EdgeEstimator::Off || s.footprints == FootprintMode::Isotropic) {
+        s.edges = EdgeEstimator::Off;
+        s.footprints = FootprintMode::Isotropic;
+        s.warp = usual.warp;
+        s.normalisation = usual.normalisation;
+    }
+    const bool edge_family = s.edges != EdgeEstimator::Off && s.warp == WarpFamily::Edge;
+    if (!edge_family) {
+        s.edge_half_width = usual.edge_half_width;
+        s.edge_strength = usual.edge_strength;
+        s.edge_shape = EdgeShape::Plane;
+    }
+    const bool tabled = s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp;
+    if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
+    if (tabled && (!edge_family || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
+        s.footprints = FootprintMode::Procedural;
+    }
+    if (s.footprints != FootprintMode::Table && s.footprints != FootprintMode::TableLerp) {
+        s.table_size = usual.table_size;
+    }
+    return s;
+}
+
 void validate(const Settings& settings) {
     // Comparisons are written so that NaN fails them.
     const auto in = [](double v, double low, double high) { return v >= low && v <= high; };

@@ -59,6 +59,11 @@ std::span<const std::string_view> table_size_names();
 std::span<const std::string_view> sheet_cut_names();
 std::span<const std::string_view> sheet_format_names();
 
+/// The same picture with every knob that has no say in it at its default, and with the footprints that are really
+/// evaluated: tables hold whole footprints of plane edges of the family `edge`; what is sliced, curved or of the
+/// paper's family is integrated.
+Settings drawn_as(const Settings& settings);
+
 /// Checks every range above. Throws Error naming the field, the value and the range.
 void validate(const Settings& settings);
 

@@ -7,8 +7,13 @@ const float SMOOTH_REACH = 1.5;      // voxels between foot points
 
 // The chord between two foot points of a sphere is at right angles to the mean of their normals, so what is left along
 // it is the difference of the two distances' errors: curvature does not bias the mean.
-float distance_correction(ivec3 p, ivec3 dims, Edge e, uint material) {
-    float sum = 0.0, count = 1.0;
+struct SurfaceAround {
+    float distance_correction;  // voxels
+    float curvature;            // of the sphere that fits the normals best, positive where n points away from its centre
+};
+
+SurfaceAround surface_around(ivec3 p, ivec3 dims, Edge e, uint material) {
+    float sum = 0.0, count = 1.0, turned = 0.0, apart = 0.0;
     // The edge belongs to an iso-value; both of its sides look for it, and err in opposite directions.
     uint iso = material + (e.state & 1u);  // EDGE_UPPER is odd: the interval's upper end
     int reach = e.state >= EDGE_LOWER ? 1 : -1;
@@ -26,7 +31,9 @@ float distance_correction(ivec3 p, ivec3 dims, Edge e, uint material) {
                 if (dot(n, e.n) >= SMOOTH_AGREEMENT && dot(between, between) < SMOOTH_REACH * SMOOTH_REACH) {
                     sum += 0.5 * dot(e.n + n, between);
                     count += 1.0;
+                    turned += dot(n - e.n, between);
+                    apart += dot(between, between);
                 }
             }
-    return sum / count;
+    return SurfaceAround(sum / count, apart > 0.0 ? turned / apart : 0.0);
 }

@@ -5,13 +5,15 @@
 // pn = dot(p, n), un = dot(u, n). D, D2: distances to the edge along n and to a wall's second face along -n, voxels. Results are
 // integrals of K per voxel length of the ray. Every input is safe: no NaN for un = 0 or 1, rho2 = 0, pn beyond rho.
 //
-//   footprint_isotropic(rho2)                               a splat without an edge
-//   footprint_warp2d(rho2, pn, un, D, params)               --footprints warp2d
+//   footprint_isotropic(rho2, slice)                        a splat without an edge
+//   footprint_warp2d(rho2, pn, un, D, slice, params)        --footprints warp2d
 //   footprint_table_nearest(table, rho2, pn, un, D, params) --footprints table
 //   footprint_table_lerp(table, rho2, pn, un, D, params)    --footprints table-lerp
-//   footprint_procedural(rho2, pn, un, D, D2, faces, params)  --footprints procedural, and walls in the table modes
-//   footprint_paper_warp2d(rho2, pn, un, D, params)         --warp paper with warp2d
-//   footprint_paper_procedural(rho2, pn, un, D, params)     --warp paper with any other mode
+//   footprint_procedural(rho2, pn, un, D, D2, faces, slice, params)  --footprints procedural; in the table modes walls
+//                                                           and whatever is sliced
+//   footprint_curved(rho2, pn, un, D, curvature, slice, params)  --edge-shape curved, but for walls
+//   footprint_paper_warp2d(rho2, pn, un, D, slice, params)  --warp paper with warp2d
+//   footprint_paper_procedural(rho2, pn, un, D, slice, params)  --warp paper with any other mode
 //
 // `faces` comes from footprint_faces(): with 0 the quadrature's loop does not run and the plain footprint is what is left. On
 // lavapipe a loop that does not run is the only way not to pay: both sides of an `if` are executed.
@@ -23,12 +25,25 @@
 
 const float KERNEL_R = 1.6;
 const float KERNEL_R2 = 2.56;
-const int FOOTPRINT_NODES = 10;
-// Gauss-Legendre on [0, 1].
-const float FOOTPRINT_NODE[10] = {0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029, 0.4255628305,
-                                   0.5744371695, 0.7166976971, 0.8397047841, 0.9325316833, 0.9869532643};
-const float FOOTPRINT_WEIGHT[10] = {0.0333356722, 0.0747256746, 0.1095431813, 0.1346333597, 0.1477621124,
-                                   0.1477621124, 0.1346333597, 0.1095431813, 0.0747256746, 0.0333356722};
+// Gauss-Legendre on [0, 1] with 4, 10 and 16 nodes, one after the other; the including shader declares NODES, one of them.
+const float FOOTPRINT_NODE[30] = {
+    0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558, 0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029,
+    0.4255628305, 0.5744371695, 0.7166976971, 0.8397047841, 0.9325316833, 0.9869532643, 0.0052995325, 0.0277124885,
+    0.0671843988, 0.1222977958, 0.1910618778, 0.2709916112, 0.3591982246, 0.4524937451, 0.5475062549, 0.6408017754,
+    0.7290083888, 0.8089381222, 0.8777022042, 0.9328156012, 0.9722875115, 0.9947004675};
+const float FOOTPRINT_WEIGHT[30] = {
+    0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0333356722, 0.0747256746, 0.1095431813, 0.1346333597,
+    0.1477621124, 0.1477621124, 0.1346333597, 0.1095431813, 0.0747256746, 0.0333356722, 0.0135762297, 0.0311267620,
+    0.0475792558, 0.0623144856, 0.0747979944, 0.0845782597, 0.0913017075, 0.0947253052, 0.0947253052, 0.0913017075,
+    0.0845782597, 0.0747979944, 0.0623144856, 0.0475792558, 0.0311267620, 0.0135762297};
+const int FOOTPRINT_NODES = int(NODES);
+const int FOOTPRINT_RULE = FOOTPRINT_NODES == 4 ? 0 : (FOOTPRINT_NODES == 10 ? 4 : 14);
+
+// A piece of the ray, z along u from p: a sheet's share of a footprint. All of it where footprints are not sliced.
+struct Slice {
+    float low;
+    float high;
+};
 
 // ---- kernel (footprints/kernel.h)
 
@@ -62,11 +77,19 @@ float kernel_chord(float rho2, float z) {
            w * (-0.680940898 * i5 + w * (1.37803587 * i6 + w * -0.611612954 * i7)))));
 }
 
-float footprint_isotropic(float rho2) { return kernel_footprint(rho2); }
+float kernel_between(float rho2, float low, float high) { return kernel_chord(rho2, high) - kernel_chord(rho2, low); }
+
+// The whole footprint has a closed form of its own, which costs less than two chords.
+bool is_whole(Slice slice) { return slice.low <= -1e8 && slice.high >= 1e8; }
+
+float footprint_isotropic(float rho2, Slice slice) {
+    if (is_whole(slice)) return kernel_footprint(rho2);
+    return max(0.0, kernel_between(rho2, slice.low, slice.high));
+}
 
 // Footprint of the point nearest to the voxel, moved by delta along n as far as the ray sees it.
-float displaced_footprint(float rho2, float pn, float un, float delta) {
-    return kernel_footprint(max(0.0, rho2 + delta * (2.0 * pn + (1.0 - un * un) * delta)));
+float displaced_footprint(float rho2, float pn, float un, float delta, Slice slice) {
+    return footprint_isotropic(max(0.0, rho2 + delta * (2.0 * pn + (1.0 - un * un) * delta)), slice);
 }
 
 // ---- edge warp (footprints/edge_warp.h, design (7))
@@ -102,7 +125,7 @@ struct Chord {
     float high;
 };
 
-Chord chord_of(float rho2, float pn, float un) {
+Chord chord_of(float rho2, float pn, float un, Slice slice) {
     Chord c;
     c.rho2 = rho2;
     c.pn = pn;
@@ -110,13 +133,13 @@ Chord chord_of(float rho2, float pn, float un) {
     float s2 = max(1.0 - c.un * c.un, 1e-5);
     float y2 = max(0.0, rho2 - pn * pn / s2);
     float half_length = sqrt(max(0.0, KERNEL_R2 - y2) / s2);
-    c.low = pn * c.un / s2 - half_length;
-    c.high = pn * c.un / s2 + half_length;
+    c.low = max(pn * c.un / s2 - half_length, un < 0.0 ? -slice.high : slice.low);
+    c.high = max(min(pn * c.un / s2 + half_length, un < 0.0 ? -slice.low : slice.high), c.low);
     return c;
 }
 
 float chord_plain(Chord c, float first, float last) {
-    return kernel_chord(c.rho2, (last - c.pn) / c.un) - kernel_chord(c.rho2, (first - c.pn) / c.un);
+    return kernel_between(c.rho2, clamp((first - c.pn) / c.un, c.low, c.high), clamp((last - c.pn) / c.un, c.low, c.high));
 }
 
 // The warped kernel over the ray's part with t in [first, last], on one side of the face at `face`.
@@ -125,20 +148,20 @@ float edge_piece(Chord c, float first, float last, float face, float a, float k)
     float len = max(0.0, min((last - c.pn) / c.un, c.high) - start);
     float sum = 0.0;
     for (int i = 0; i < FOOTPRINT_NODES; ++i) {
-        float z = start + len * FOOTPRINT_NODE[i];
+        float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
         float t = c.pn + z * c.un;
         float w = face + edge_warp(t - face, a, k);
-        sum += FOOTPRINT_WEIGHT[i] * kernel(c.rho2 + z * z + (w - t) * (w + t));
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] * kernel(c.rho2 + z * z + (w - t) * (w + t));
     }
     return len * sum;
 }
 
-float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, FootprintParams params) {
+float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, Slice slice, FootprintParams params) {
     float thickness = D + D2;
     float a = faces == 2 ? clamp(0.5 * thickness, 1e-3, params.half_width) : params.half_width;
     float k = faces == 2 ? 1.0 + (params.strength - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : params.strength;
-    Chord c = chord_of(rho2, pn, un);
-    float sum = kernel_footprint(rho2);
+    Chord c = chord_of(rho2, pn, un, slice);
+    float sum = footprint_isotropic(rho2, slice);
     float face = D;
     for (int i = 0; i < faces; ++i) {
         // w in [-R, R] is all the kernel there is.
@@ -151,11 +174,89 @@ float footprint_procedural(float rho2, float pn, float un, float D, float D2, in
     return max(sum, 0.0);
 }
 
+// ---- curved edges (footprints/edge_warp.cpp, procedural_footprint.cpp)
+
+// |W(x) - x_i|^2 for a point with r2 = |x - x_i|^2 and t = n . (x - x_i).
+float curved_distance2(float r2, float t, float D, float curvature, float a, float k) {
+    float q = t - D;
+    float e2 = max(r2 - t * t, 0.0);
+    float slope = 1.0 + curvature * q;
+    float root = sqrt(slope * slope + curvature * curvature * e2);
+    float s = (2.0 * q + curvature * (q * q + e2)) / (root + 1.0);
+    float moved = edge_warp(s, a, k) - s;
+    float along = (slope * t + curvature * e2) / max(root, 1e-6);
+    return max(r2 + moved * (2.0 * along + moved), 0.0);
+}
+
+// The two z on a ray at signed distance s from the edge, where A z^2 + 2 B z + C(s) = 0; both the vertex where there are none.
+struct Parabola {
+    float A;
+    float B;
+    float C;
+};
+struct Pair {
+    float first;
+    float second;
+};
+
+Pair parabola_at(Parabola p, float s, Slice clip) {
+    float c = p.C - s * (2.0 + p.A * s);
+    float disc = p.B * p.B - p.A * c;
+    float root = sqrt(max(disc, 0.0));
+    float q = -(p.B + (p.B < 0.0 ? -root : root));
+    float vertex = -p.B / p.A;
+    float far = disc > 0.0 ? q / p.A : vertex;
+    float near = disc > 0.0 && q != 0.0 ? c / q : vertex;
+    Pair z;
+    z.first = clamp(min(far, near), clip.low, clip.high);
+    z.second = clamp(max(far, near), clip.low, clip.high);
+    return z;
+}
+
+float footprint_curved(float rho2, float pn, float un, float D, float curvature, Slice slice, FootprintParams params) {
+    float a = params.half_width;
+    float k = params.strength;
+    // W moves no point further than the band is wide.
+    float reach = sqrt(max(0.0, (KERNEL_R + a) * (KERNEL_R + a) - rho2));
+    Slice clip = Slice(max(-reach, slice.low), min(reach, slice.high));
+    clip.high = max(clip.high, clip.low);
+    Parabola p;
+    p.A = abs(curvature) < 1e-5 ? (curvature < 0.0 ? -1e-5 : 1e-5) : curvature;
+    p.B = un * (1.0 - p.A * D);
+    p.C = 2.0 * (pn - D) + p.A * (rho2 - 2.0 * pn * D + D * D);
+    // Outside these distances W leads out of the kernel.
+    float inner = min(max(-a, edge_warp_inverse(-KERNEL_R - D, a, k)), 0.0);
+    float outer = max(min(a, edge_warp_inverse(KERNEL_R - D, a, k)), 0.0);
+    float sum = kernel_between(rho2, clip.low, clip.high);
+    Pair z0 = parabola_at(p, -a, clip);
+    Pair z1 = parabola_at(p, inner, clip);
+    Pair z2 = parabola_at(p, 0.0, clip);
+    Pair z3 = parabola_at(p, outer, clip);
+    Pair z4 = parabola_at(p, a, clip);
+    // The band is met twice, on the way in and on the way out. Its two ends bound what is not plain.
+    sum -= abs(kernel_between(rho2, z0.first, z4.first)) + abs(kernel_between(rho2, z0.second, z4.second));
+    for (int piece = 0; piece < 4; ++piece) {
+        float x = piece == 0 ? z1.first : (piece == 1 ? z2.first : (piece == 2 ? z1.second : z2.second));
+        float y = piece == 0 ? z2.first : (piece == 1 ? z3.first : (piece == 2 ? z2.second : z3.second));
+        float len = abs(y - x);
+        float start = min(x, y);
+        float part = 0.0;
+        int nodes = len > 0.0 ? FOOTPRINT_NODES : 0;
+        for (int i = 0; i < nodes; ++i) {
+            float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
+            part += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] *
+                    kernel(curved_distance2(rho2 + z * z, pn + z * un, D, p.A, a, k));
+        }
+        sum += len * part;
+    }
+    return max(sum, 0.0);
+}
+
 // ---- the paper's short cut
 
-float footprint_warp2d(float rho2, float pn, float un, float D, FootprintParams params) {
+float footprint_warp2d(float rho2, float pn, float un, float D, Slice slice, FootprintParams params) {
     float s = pn - D;
-    return displaced_footprint(rho2, pn, un, edge_warp(s, params.half_width, params.strength) - s);
+    return displaced_footprint(rho2, pn, un, edge_warp(s, params.half_width, params.strength) - s, slice);
 }
 
 // ---- table (footprints/table_coordinates.h, footprint_table.h)
@@ -183,7 +284,7 @@ TablePoint table_point(float rho2, float pn, float un, float D, FootprintParams 
     float x = clamp(m / max(p.sine, 1e-3), -rho, rho);
     p.X = x + p.sine * delta;
     p.y = sqrt(max(0.0, rho2 - x * x));
-    p.base = displaced_footprint(rho2, m, c, delta);
+    p.base = displaced_footprint(rho2, m, c, delta, Slice(-1e9, 1e9));
     p.distance = d / (KERNEL_R + a) * (params.table_distances - 1.0);
     p.direction = 1.4 * c / (c + 0.4 * (1.0 + p.sine)) * (params.table_directions - 1.0);
     return p;
@@ -277,10 +378,10 @@ float paper_map(float x, PaperKnots q, uint smooth_curve) {
     return w + (x - inside);
 }
 
-float footprint_paper_procedural(float rho2, float pn, float un, float D, FootprintParams params) {
+float footprint_paper_procedural(float rho2, float pn, float un, float D, Slice slice, FootprintParams params) {
     PaperKnots q = paper_knots(D, params);
-    Chord c = chord_of(rho2, pn, un);
-    float sum = kernel_footprint(rho2);
+    Chord c = chord_of(rho2, pn, un, slice);
+    float sum = footprint_isotropic(rho2, slice);
     int pieces = D < KERNEL_R ? 3 : 0;
     sum -= D < KERNEL_R ? chord_plain(c, q.start, q.start + 1.0) : 0.0;
     for (int i = 0; i < pieces; ++i) {
@@ -290,20 +391,20 @@ float footprint_paper_procedural(float rho2, float pn, float un, float D, Footpr
         float len = max(0.0, min((last - c.pn) / c.un, c.high) - start);
         float part = 0.0;
         for (int j = 0; j < FOOTPRINT_NODES; ++j) {
-            float z = start + len * FOOTPRINT_NODE[j];
+            float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + j];
             float t = c.pn + z * c.un;
             float w = q.start + paper_map(t - q.start, q, params.paper_smooth);
-            part += FOOTPRINT_WEIGHT[j] * kernel(c.rho2 + z * z + (w - t) * (w + t));
+            part += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + j] * kernel(c.rho2 + z * z + (w - t) * (w + t));
         }
         sum += len * part;
     }
     return max(sum, 0.0);
 }
 
-float footprint_paper_warp2d(float rho2, float pn, float un, float D, FootprintParams params) {
+float footprint_paper_warp2d(float rho2, float pn, float un, float D, Slice slice, FootprintParams params) {
     PaperKnots q = paper_knots(D, params);
     float w = q.start + paper_map(pn - q.start, q, params.paper_smooth);
-    return displaced_footprint(rho2, pn, un, D < KERNEL_R ? w - pn : 0.0);
+    return displaced_footprint(rho2, pn, un, D < KERNEL_R ? w - pn : 0.0, slice);
 }
 
 #endif

@@ -6,7 +6,8 @@
 struct Projection {
     vec3 position;    // voxel centre relative to the anchor, index space
     vec3 view;        // voxel centre, mm: right, down, forward of the eye
-    vec2 support;     // shift of the support's centre along n, its radius, voxels
+    vec3 centre;      // of the sphere that holds the support, relative to the voxel centre, index space
+    float radius;     // its radius, voxels
     float depth;      // of the support's centre, mm
     vec2 slope;       // view.xy / view.z of the support's centre
     vec2 low, high;   // box of the support in slopes, relative to `slope`
@@ -61,32 +62,49 @@ vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, flo
     return range;
 }
 
-Projection project_splat(uint voxel, Edge e) {
+// Position and support; project_support() finds where they lie on the screen.
+Projection place_splat(uint voxel, Edge e) {
     Projection p;
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
     p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
     p.view = view_position(p.position);
-    p.support = splat_support(e);
-    vec3 centre = view_position(p.position + p.support.x * e.n);
+    vec2 support = splat_support(e);
+    p.centre = support.x * e.n;
+    p.radius = support.y;
+    return p;
+}
+
+// The support's part between two depths, mm relative to the voxel centre: a cap, or what is left of the sphere, lies in
+// the sphere over the circle in which the nearer plane cuts it.
+void cut_support(inout Projection p, vec2 depths) {
+    float unit = length(params.frame.view_z);
+    float middle = dot(params.frame.view_z, p.centre);
+    float to_slab = clamp(middle, depths.x, depths.y) - middle;
+    float gap = min(abs(to_slab) / unit, p.radius);
+    p.centre += sign(to_slab) * gap / unit * params.frame.view_z;
+    p.radius = sqrt(p.radius * p.radius - gap * gap);
+}
+
+void project_support(inout Projection p) {
+    vec3 centre = view_position(p.position + p.centre);
     p.depth = centre.z;
-    float reach = p.support.y * length(params.frame.view_z);
+    float reach = p.radius * length(params.frame.view_z);
     p.visible = centre.z + reach > 0.0;
     p.at_eye = centre.z < 1.05 * reach;
     p.slope = p.at_eye ? vec2(0.0) : centre.xy / centre.z;
     vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     vec2 x, y;
     if (p.at_eye) {
-        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.support.y, edge.x);
-        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.support.y, edge.y);
+        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.radius, edge.x);
+        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.radius, edge.y);
     } else {
-        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, p.support.y);
-        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, p.support.y);
+        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, p.radius);
+        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, p.radius);
     }
     // Clipped to a little more than the picture, so that rounding loses no pixel.
     p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
     p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);
     p.visible = p.visible && all(lessThan(p.low, p.high));
-    return p;
 }
 
 // Slopes to pixels: x0 y0 x1 y1, half open, clipped.

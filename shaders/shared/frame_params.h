@@ -57,6 +57,8 @@ struct FrameParams {
     float near_depth;    // mm: depth of the plane that rays of full-screen splats are described in
     uint edge_warped;    // 1 when a warp is drawn at all (footprints are not `isotropic`)
     float wall_support;  // support radius of a splat with two faces, voxels
+    float sheet_zero;    // mm: depth of sheet 0's near plane relative to the anchor
+    float curvature_unit;  // the largest curvature that is drawn, 1/voxel
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
     Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
@@ -66,6 +68,7 @@ struct FrameParams {
     Address draws;          // (group_count) DrawCommand
     Address drawn;          // (1) uint: splats drawn
     Address output_pixels;  // (size.y, size.x) vec4
+    Address traits;         // (splat_count) uint: curvature and weight (edge_record.glsl); edges curved or kernels normalised
 };
 
 /// Push constants of every pass of the frame.
@@ -84,7 +87,7 @@ static_assert(sizeof(edgesplat::shader::FramePush) == 16);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 232);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1000);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1168);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1184);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef {
     FrameParams frame;

@@ -16,6 +16,8 @@ EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
+EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
+EDGESPLAT_CONSTANT float WEIGHT_UNIT = 8.0f;  // a kernel's weight is stored as unorm16 of weight / 8
 
 // Specialization constants: ids are the same in every shader.
 EDGESPLAT_CONSTANT uint SPEC_ESTIMATOR = 0u;   // EdgeEstimator
@@ -27,6 +29,10 @@ EDGESPLAT_CONSTANT uint SPEC_AXIS = 5u;        // 0 x, 1 y, 2 z
 EDGESPLAT_CONSTANT uint SPEC_EDGES = 6u;       // 1: the edge field exists
 EDGESPLAT_CONSTANT uint SPEC_BURIED = 7u;      // 1: the buried mask exists
 EDGESPLAT_CONSTANT uint SPEC_SMOOTH = 8u;      // 1: distances are smoothed along the surface
+EDGESPLAT_CONSTANT uint SPEC_SLICED = 9u;      // 1: kernels are cut at the sheets' planes
+EDGESPLAT_CONSTANT uint SPEC_CURVED = 10u;     // 1: edges are spheres of their curvature
+EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // 1: kernels are normalised
+EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 10 or 16
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

@@ -14,6 +14,9 @@ struct SceneParams {
     float band;           // R + a: an edge further away does not matter, voxels
     Address run_offsets;  // (runs) uint: splats of each run, then where it writes, then how many have an edge
     Address splats;       // (splat_count) Splat
+    Address traits;       // (splat_count) uint: curvature and weight; edges curved or kernels normalised
+    float curvature_unit;  // the largest curvature that is drawn, 1/voxel
+    uint pad;
 };
 
 /// One splat as collected: 12 bytes.
@@ -33,7 +36,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 112);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 128);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);
