@@ -6,9 +6,9 @@
 namespace edgesplat {
 namespace {
 
-constexpr double kSide = 12, kHoleRadius = 3.5;  // of builtin:cube-hole, voxels
-constexpr int kPixels = 640;                     // 16 voxels
-constexpr double kEye = 4000;                    // voxels: the cube's far face is 0.3 % smaller than its near one
+constexpr double kSide = 12;   // of builtin:cube-hole, voxels
+constexpr int kPixels = 640;   // 16 voxels
+constexpr double kEye = 4000;  // voxels: the cube's far face is 0.3 % smaller than its near one
 
 /// A picture straight on, in voxels from the cube's middle.
 class Plan {
@@ -43,6 +43,25 @@ std::shared_ptr<const Volume> middle_slices(const Volume& volume) {
     return middle;
 }
 
+/// Of the circle whose area is that of the values below one half around the middle of a slice.
+double hole_radius(const Volume& volume) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    constexpr double kStep = 0.02, kWithin = 5;
+    double area = 0;
+    for (double y = -kWithin; y < kWithin; y += kStep) {
+        for (double x = -kWithin; x < kWithin; x += kStep) {
+            const double px = (dims.x - 1) / 2.0 + x, py = (dims.y - 1) / 2.0 + y;
+            const int i = static_cast<int>(px), j = static_cast<int>(py);
+            const double u = px - i, v = py - j;
+            const auto value = [&](int a, int b) { return static_cast<double>(volume.at(a, b, dims.z / 2)); };
+            const double f = (value(i, j) * (1 - u) + value(i + 1, j) * u) * (1 - v) +
+                             (value(i, j + 1) * (1 - u) + value(i + 1, j + 1) * u) * v;
+            if (f < 0.5) area += kStep * kStep;
+        }
+    }
+    return std::sqrt(area / std::numbers::pi);
+}
+
 }  // namespace
 
 CubeQuality cube_quality(Renderer& renderer, const Volume& volume, const Settings& settings) {
@@ -62,6 +81,7 @@ CubeQuality cube_quality(Renderer& renderer, const Volume& volume, const Setting
         solid += plan.at(i % 2 == 0 ? 4 : -4, i < 2 ? 4 : -4) / 4;
 
     CubeQuality quality;
+    quality.hole_radius = hole_radius(*slices);
     const double step = 1 / test::kPixelsPerVoxel;
     const auto add = [&](double from, double to, double expected, const auto& point, test::EdgeProfiles& profiles) {
         std::vector<double> profile;
@@ -83,7 +103,7 @@ CubeQuality cube_quality(Renderer& renderer, const Volume& volume, const Setting
         const double angle = 2 * std::numbers::pi * (i + 0.5) / 64;
         const glm::dvec2 out(std::cos(angle), std::sin(angle));
         add(
-            4.75, 0.5, kHoleRadius, [&](double s) { return s * out; }, quality.hole);
+            4.75, 0.5, quality.hole_radius, [&](double s) { return s * out; }, quality.hole);
     }
     return quality;
 }

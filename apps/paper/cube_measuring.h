@@ -7,8 +7,9 @@
 namespace edgesplat {
 
 struct CubeQuality {
+    double hole_radius = 0;    ///< of a circle as large as the hole in the data, where they are below one half; voxels
     test::EdgeProfiles faces;  ///< the four sides, against the true cube
-    test::EdgeProfiles hole;   ///< the cylinder's wall at 64 angles, against the true circle
+    test::EdgeProfiles hole;   ///< the cylinder's wall at 64 angles, against a circle of `hole_radius`
 };
 
 /// Optical depth of the middle slices of `volume` (builtin:cube-hole, filtered) at 40 pixels per voxel. The renderer is

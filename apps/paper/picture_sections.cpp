@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/paper/cube_measuring.h"
+#include "apps/paper/sharpness.h"
 #include "engine/image_file.h"
 #include "engine/scene/views.h"
 #include "engine/volume/filters.h"
@@ -39,31 +40,6 @@ struct Shot {
     RenderStats stats;
 };
 
-/// Differences of neighbouring pixels' luminance: what blur takes away.
-struct Gradients {
-    double energy = 0;    ///< sum of their squares
-    double steepest = 0;  ///< exceeded by one pixel in a hundred
-};
-Gradients gradients(const Image& image) {
-    const auto luminance = [&](int x, int y) {
-        return 0.2126 * static_cast<double>(image.at(x, y, 0)) + 0.7152 * static_cast<double>(image.at(x, y, 1)) +
-               0.0722 * static_cast<double>(image.at(x, y, 2));
-    };
-    Gradients result;
-    std::vector<double> squares;
-    for (int y = 0; y + 1 < image.height; ++y) {
-        for (int x = 0; x + 1 < image.width; ++x) {
-            const double dx = luminance(x + 1, y) - luminance(x, y), dy = luminance(x, y + 1) - luminance(x, y);
-            squares.push_back(dx * dx + dy * dy);
-            result.energy += squares.back();
-        }
-    }
-    const auto rank = static_cast<std::ptrdiff_t>(squares.size() * 99 / 100);
-    std::nth_element(squares.begin(), squares.begin() + rank, squares.end());
-    result.steepest = std::sqrt(squares[static_cast<std::size_t>(rank)]);
-    return result;
-}
-
 double median(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return values[values.size() / 2];
@@ -78,7 +54,11 @@ void write_picture(const std::filesystem::path& path, const Image& color, const 
     write_image(path, opaque, {{"Software", "edgesplat " EDGESPLAT_VERSION}, {"edgesplat:volume", volume}});
 }
 
-std::string cube_rows(Renderer& renderer, const Volume& volume) {
+struct CubeText {
+    std::string rows, note;
+};
+
+CubeText cube_text(Renderer& renderer, const Volume& volume) {
     std::string faces = "| sides: rise; location, mean (bias) |", hole = "| hole: rise; location, mean (bias) |";
     const auto cell = [](const test::EdgeProfiles& p) {
         std::string text = fmt::format(" {:.2f}; {:.3f} ({:+.3f})", test::mean(p.rise),
@@ -87,12 +67,19 @@ std::string cube_rows(Renderer& renderer, const Volume& volume) {
         if (p.missed > 0) text += fmt::format("; {} of {} never reach 90 %", p.missed, all);
         return text + " |";
     };
+    double radius = 0;
     for (const Variant& variant : variants()) {
         const CubeQuality quality = cube_quality(renderer, volume, variant.settings);
         faces += cell(quality.faces);
         hole += cell(quality.hole);
+        radius = quality.hole_radius;
     }
-    return faces + "\n" + hole + "\n";
+    return {faces + "\n" + hole + "\n",
+            fmt::format("\nRise (10 to 90 %) and location error in voxels, of optical depth seen along the hole at 40 "
+                        "pixels per voxel (the middle slices); positive bias: the solid reaches too far. The hole is "
+                        "measured against a circle of radius {:.2f}: as large as the hole that binary voxels and the "
+                        "filter leave of one of 3.5.\n",
+                        radius)};
 }
 
 }  // namespace
@@ -121,8 +108,8 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
     }
 
     std::string names = "| |", rule = "|---|", pictures = "| |", energy = "| gradient energy / plain |",
-                steepest = "| steepest hundredth / plain |", frame = "| ms per frame |",
-                setup = "| ms once per volume |", splats = "| splats drawn; with an edge |";
+                width = "| width of edges, pixels |", frame = "| ms per frame |", setup = "| ms once per volume |",
+                splats = "| splats drawn; with an edge |";
     for (std::size_t i = 0; i < list.size(); ++i) {
         const Shot& shot = shots[i];
         const std::string file = fmt::format("figure{}_{}.png", figure.number, list[i].stem);
@@ -130,28 +117,22 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
         names += fmt::format(" {} |", list[i].name);
         rule += ":--:|";
         pictures += fmt::format(" ![{}, {}](images/paper/{}) |", figure.title, list[i].name, file);
-        const Gradients own = gradients(shot.color), plain = gradients(shots[0].color);
-        energy += fmt::format(" {:.2f} |", own.energy / plain.energy);
-        steepest += fmt::format(" {:.2f} |", own.steepest / plain.steepest);
+        const Sharpness own = sharpness(shot.color), plain = sharpness(shots[0].color);
+        energy += fmt::format(" {:.2f} |", own.gradient_energy / plain.gradient_energy);
+        width += fmt::format(" {:.2f} |", own.edge_width);
         frame += fmt::format(" {:.0f} |", median(shot.frame));
         setup += fmt::format(" {:.0f} |", median(shot.setup));
         splats += fmt::format(" {}; {} |", shot.stats.splats_drawn, shot.stats.edge_splats);
     }
     std::string table = names + "\n" + rule + "\n" + pictures + "\n";
-    if (figure.box_filter) table += cube_rows(renderer, *volume);
-    table += energy + "\n" + steepest + "\n" + frame + "\n" + setup + "\n" + splats + "\n";
-    std::string note;
-    if (figure.box_filter)
-        note =
-            "\nRise (10 to 90 %) and location error of the silhouettes in voxels, from optical depth seen along the "
-            "hole "
-            "at 40 pixels per\nvoxel; positive bias: the solid reaches too far. The hole is measured against the true "
-            "circle, which binary voxels do not know.\n";
+    CubeText cube;
+    if (figure.box_filter) cube = cube_text(renderer, *volume);
+    table += cube.rows + width + "\n" + energy + "\n" + frame + "\n" + setup + "\n" + splats + "\n" + cube.note;
     return {"figure " + figure.number,
-            fmt::format("## Figure {}: {}\n\n{}\n\n{}{}\nDevice: {}, {} x {} pixels, median of {} frames, the "
+            fmt::format("## Figure {}: {}\n\n{}\n\n{}\nDevice: {}, {} x {} pixels, median of {} frames, the "
                         "variants by turns.\n",
-                        figure.number, figure.title, figure.text, table, note, shots[0].stats.device.name, kPixels,
-                        kPixels, kRounds - 1)};
+                        figure.number, figure.title, figure.text, table, shots[0].stats.device.name, kPixels, kPixels,
+                        kRounds - 1)};
 }
 
 Section seam_section() {

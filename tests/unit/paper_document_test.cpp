@@ -11,6 +11,7 @@
 
 #include "apps/paper/curve_sections.h"
 #include "apps/paper/misprints.h"
+#include "apps/paper/sharpness.h"
 
 namespace edgesplat {
 namespace {
@@ -120,6 +121,23 @@ TEST(PaperMisprints, MapIsASquareRootAtItsKnots) {
             EXPECT_NEAR(rows[i].above_m2 / rows[i - 1].above_m2, 10, 0.15);
             EXPECT_NEAR(rows[i].smooth, (q.t2 - q.t1) / (q.m2 - q.m1), 0.01);
         }
+    }
+}
+
+TEST(PaperPictures, EdgesAreAsWideAsTheyAreBlurred) {
+    double energy = 0;
+    for (const double deviation : {4.0, 2.0, 1.0}) {  // pixels; a Gaussian's step rises from 10 to 90 % over 2.563
+        Image image(96, 96, 4);
+        for (int y = 0; y < image.height; ++y)
+            for (int x = 0; x < image.width; ++x)
+                for (int c = 0; c < 4; ++c)
+                    image.at(x, y, c) = static_cast<float>(
+                        0.5 * std::erfc(((x - 47.3) * 0.8 + (y - 48.1) * 0.6) / (deviation * std::sqrt(2.0))));
+        const Sharpness sharp = sharpness(image);
+        EXPECT_GT(sharp.edges, 50);
+        EXPECT_NEAR(sharp.edge_width, 2.563 * deviation, 0.25 + 0.08 * deviation);
+        EXPECT_GT(sharp.gradient_energy, energy * 1.9);  // proportional to 1 / deviation
+        energy = sharp.gradient_energy;
     }
 }
 
