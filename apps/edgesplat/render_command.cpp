@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "apps/edgesplat/camera_options.h"
+#include "apps/edgesplat/cpu_renderers.h"
 #include "apps/edgesplat/render_output.h"
 #include "apps/edgesplat/scene_options.h"
 #include "apps/edgesplat/volume_options.h"
@@ -25,6 +26,7 @@ struct RenderOptions {
     SceneOptions scene;
     CameraOptions camera;
     edgesplat::Settings settings;
+    RendererOptions renderer;
     std::string output, json;
     std::vector<std::string> aovs;
     std::string compare;
@@ -73,21 +75,44 @@ std::vector<RenderedFrame> render_frames(const RenderOptions& options, edgesplat
     return frames;
 }
 
+/// Everything the command leaves; `measurements` of the renderers that have them.
+void write(const RenderOptions& options, const RunDescription& description, const std::vector<RenderedFrame>& frames,
+           const std::vector<CpuMeasurements>& measurements) {
+    edgesplat::ImageMetadata metadata = picture_metadata(description);
+    metadata.emplace_back("edgesplat:renderer", name_of(options.renderer.kind));
+    std::vector<edgesplat::FileContent> files = picture_files(options.output, frames, metadata);
+    if (!options.json.empty()) {
+        nlohmann::ordered_json json = statistics(description, frames);
+        add_renderer_statistics(json, options.renderer, measurements);
+        files.push_back({options.json, json.dump(2) + "\n"});
+    }
+    edgesplat::write_files(files);
+}
+
 void run(const RenderOptions& options, const std::string& command_line) {
     check_outputs(options);
+    check_cpu_request(options.renderer, options.volume_path, options.scene, options.aovs, !options.compare.empty());
     edgesplat::validate(options.settings);
     const auto volume = std::make_shared<const edgesplat::Volume>(load(options));
     const edgesplat::Scene scene = scene_from_options(options.scene, *volume);
     const edgesplat::Camera camera = camera_from_options(options.camera, *volume, scene);
 
+    const RunDescription description{command_line, volume.get(), &scene, camera};
+    if (on_processor(options.renderer.kind)) {
+        const CpuRequest request{options.renderer,         options.settings,      options.camera.size,
+                                 !options.compare.empty(), wants(options, "tau"), options.quiet};
+        const CpuFrames done = render_on_processor(request, *volume, scene, camera);
+        write(options, description, done.frames, done.measurements);
+        const CpuMeasurements& last = done.measurements.back();
+        if (!options.quiet)
+            fmt::print("{}: {}, error at most about {:.1g}, {:.1f} s\n", options.output, name_of(options.renderer.kind),
+                       last.error_estimate, last.seconds);
+        return;
+    }
     edgesplat::Renderer renderer(options.device);
     renderer.set_volume(volume);
     const std::vector<RenderedFrame> frames = render_frames(options, renderer, scene, camera);
-
-    const RunDescription description{command_line, volume.get(), &scene, camera};
-    std::vector<edgesplat::FileContent> files = picture_files(options.output, frames, picture_metadata(description));
-    if (!options.json.empty()) files.push_back({options.json, statistics(description, frames).dump(2) + "\n"});
-    edgesplat::write_files(files);
+    write(options, description, frames, {});
 
     const edgesplat::RenderStats& stats = frames.back().result.stats;
     if (!options.quiet)
@@ -178,6 +203,7 @@ void add_render_command(CLI::App& app, const std::string& command_line) {
     add_output_options(command, *options);
     add_camera_options(command, options->camera);
     add_scene_options(command, options->scene);
+    add_renderer_options(command, options->renderer);
     add_settings_options(command, options->settings);
     add_volume_options(command, options->volume);
     add_device_options(command, *options);
