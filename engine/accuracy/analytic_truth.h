@@ -1,0 +1,14 @@
+// The exact scene behind a builtin volume.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "engine/volume/analytic_volumes.h"
+
+namespace edgesplat::accuracy {
+
+/// Of "builtin:NAME" or "builtin:NAME:SIZE", on the grid that `builtin_volume` samples; nothing for other paths.
+std::optional<AnalyticScene> analytic_scene_of(std::string_view path);
+
+}  // namespace edgesplat::accuracy

@@ -1,0 +1,111 @@
+#include "engine/accuracy/configurations.h"
+
+#include <algorithm>
+#include <array>
+#include <initializer_list>
+#include <set>
+
+#include "engine/scene/ladder.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+using Names = std::initializer_list<std::string_view>;
+
+constexpr std::array<std::string_view, 4> kKindNames{"base", "step", "combination", "preset"};
+
+/// Collects combinations, each once; those that are the base itself are left out.
+class Combinations {
+  public:
+    Combinations(const Settings& base, std::vector<Configuration>& rows)
+        : base_(base), rows_(rows), seen_{settings_key(base)} {}
+
+    void add(Names footprints, Names sheets, Names spacings, Names formats, Names saturations) {
+        for (const auto footprint : footprints)
+            for (const auto sheet : sheets)
+                for (const auto spacing : spacings)
+                    for (const auto format : formats)
+                        for (const auto saturation : saturations)
+                            add({{"footprints", footprint},
+                                 {"sheets", sheet},
+                                 {"sheet-spacing", spacing},
+                                 {"sheet-format", format},
+                                 {"saturation", saturation}});
+    }
+
+  private:
+    void add(std::initializer_list<std::pair<std::string_view, std::string_view>> values) {
+        Settings settings = base_;
+        for (const auto& [name, value] : values) {
+            const Knob& knob = knob_named(name);
+            if (knob.used(settings)) knob.set(settings, value);
+        }
+        if (!seen_.insert(settings_key(settings)).second) return;
+        rows_.push_back({ConfigurationKind::Combination, difference(settings, base_), "", "", settings});
+    }
+
+    Settings base_;
+    std::vector<Configuration>& rows_;
+    std::set<std::string> seen_;
+};
+
+}  // namespace
+
+std::string_view name_of(ConfigurationKind kind) {
+    return kKindNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Configuration> configurations(const Settings& base) {
+    std::vector<Configuration> rows{{ConfigurationKind::Base, "base", "", "", base}};
+    for (const Knob& knob : ladder()) {
+        if (!knob.used(base)) continue;
+        for (const std::string_view step : knob.steps) {
+            Configuration row{ConfigurationKind::Step, std::string(knob.name) + "=" + std::string(step),
+                              std::string(knob.name), std::string(step), base};
+            knob.set(row.settings, step);
+            rows.push_back(std::move(row));
+        }
+    }
+    // Sliced sheets are integrated in every table mode, so one stands for all there.
+    Combinations combinations(base, rows);
+    combinations.add({"warp2d", "table", "table-lerp", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"float"},
+                     {"0.999"});
+    combinations.add({"procedural"}, {"sliced"}, {"2", "1", "0.5", "0.25"}, {"float"}, {"0.999"});
+    combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"half"}, {"0.98"});
+    combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"float"}, {"0.98"});
+    combinations.add({"procedural"}, {"sliced"}, {"1", "0.5"}, {"float"}, {"0.98", "0.9999"});
+    for (const Preset& preset : presets())
+        rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings});
+    return rows;
+}
+
+Settings canonical(const Settings& settings) {
+    const Settings standard;
+    Settings result = settings;
+    for (const Knob& knob : ladder())
+        if (!knob.used(settings)) knob.set(result, knob.get(standard));
+    return result;
+}
+
+std::string settings_key(const Settings& settings) {
+    const Settings plain = canonical(settings);
+    std::string key;
+    for (const Knob& knob : ladder())
+        key += (key.empty() ? "" : " ") + std::string(knob.name) + "=" + knob.get(plain);
+    if (!settings.cull_buried) key += " keep-buried";
+    return key;
+}
+
+Settings model_of(const Settings& settings) {
+    Settings model;  // the method knobs at their defaults, which the reference does not read
+    for (const Knob& knob : ladder())
+        if (knob.kind == KnobKind::Model) knob.set(model, knob.get(settings));
+    model.footprints = FootprintMode::Procedural;
+    return canonical(model);
+}
+
+std::string model_key(const Settings& settings) {
+    return settings_key(model_of(settings));
+}
+
+}  // namespace edgesplat::accuracy

@@ -1,0 +1,37 @@
+// What the report measures: each step of each knob on its own, combinations of method knobs, and the presets.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "engine/scene/settings.h"
+
+namespace edgesplat::accuracy {
+
+enum class ConfigurationKind { Base, Step, Combination, Preset };
+std::string_view name_of(ConfigurationKind kind);  ///< base, step, combination, preset
+
+/// One row of the report. Several rows may have the same settings; those are measured once.
+struct Configuration {
+    ConfigurationKind kind = ConfigurationKind::Base;
+    std::string name;        ///< "base", "footprints=table", "sheets=sliced sheet-spacing=1", "draft"
+    std::string knob, step;  ///< of a Step
+    Settings settings;
+};
+
+/// Steps of every knob that is used in `base`, in the ladder's order; then combinations (at most 40) and presets.
+std::vector<Configuration> configurations(const Settings& base);
+
+/// The same pictures are made: knobs that are of no use there are at their defaults.
+Settings canonical(const Settings& settings);
+
+/// "edges=march footprints=..." of every knob, canonical: equal for settings that make the same pictures.
+std::string settings_key(const Settings& settings);
+
+/// The model that a method stands for: method knobs are at what the reference evaluates, whatever they were.
+Settings model_of(const Settings& settings);
+
+/// settings_key of the model.
+std::string model_key(const Settings& settings);
+
+}  // namespace edgesplat::accuracy

@@ -1,0 +1,130 @@
+#include "engine/accuracy/edge_profiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/accuracy/metrics.h"
+#include "engine/reference/parallel.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+constexpr double kUndisturbed = 3;     ///< voxels
+constexpr double kBorderDistance = 3;  ///< voxels
+
+/// The gradient of the signed distance, numerically; 0 where it has none.
+glm::dvec3 outwards(const AnalyticScene& scene, const glm::dvec3& x) {
+    constexpr double kDelta = 1e-4;
+    glm::dvec3 g(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 step(0);
+        step[axis] = kDelta;
+        g[axis] = scene.signed_distance(x + step) - scene.signed_distance(x - step);
+    }
+    const double length = glm::length(g);
+    return length > 0 ? g / length : glm::dvec3(0);
+}
+
+/// Whether the distance along the normal is the distance to this surface and no other, as far as it matters.
+bool undisturbed(const AnalyticScene& scene, const SurfacePoint& point) {
+    for (double s = -kUndisturbed; s <= kUndisturbed; s += 0.25)
+        if (std::abs(scene.signed_distance(point.position + s * point.axis) - s) > 0.02) return false;
+    return true;
+}
+
+/// One profile: the kernels of all voxels inside, summed along the axis.
+std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, const reference::Footprints& footprints,
+                                     const SurfacePoint& point, const ProfileRange& range) {
+    struct Splat {
+        const reference::VoxelEdge* edge;
+        glm::dvec3 center;
+        double reach;
+    };
+    const reference::Field field = prepared.field();
+    const double reach = footprints.farthest_reach() + range.reach * glm::length(point.axis);
+    std::vector<Splat> splats;
+    const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(point.position - reach)), glm::ivec3(0));
+    const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(point.position + reach)), field.dims - 1);
+    for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+            for (int x = low.x; x <= high.x; ++x) {
+                const std::size_t i = field.offset({x, y, z});
+                if (prepared.scaled_scene().material(static_cast<double>(field.values[i])) < 1) continue;
+                const reference::VoxelEdge& edge = prepared.edges()[i];
+                const Support support = footprints.support(edge);
+                splats.push_back({&edge, {x, y, z}, support.radius + std::abs(support.shift)});
+            }
+        }
+    }
+    std::vector<double> profile;
+    const int half = static_cast<int>(std::lround(range.reach / range.step));
+    for (int i = -half; i <= half; ++i) {
+        const glm::dvec3 p = point.position + i * range.step * point.axis;
+        double sum = 0;
+        for (const Splat& splat : splats) {
+            const glm::dvec3 r = p - splat.center;
+            if (glm::dot(r, r) < splat.reach * splat.reach) sum += footprints.at_point(*splat.edge, r);
+        }
+        profile.push_back(sum);
+    }
+    return profile;
+}
+
+}  // namespace
+
+SurfacePoints surface_points(const AnalyticScene& scene, int count) {
+    SurfacePoints result;
+    std::mt19937 random(20);
+    const auto uniform = [&] { return random() / 4294967296.0; };
+    const glm::dvec3 top(scene.dims - 1);
+    for (int trial = 0; trial < 1000 * count && static_cast<int>(result.points.size()) < count; ++trial) {
+        const double a = uniform(), b = uniform(), c = uniform();  // in an order that the language fixes
+        SurfacePoint point{glm::dvec3(a, b, c) * top, {}};
+        // Only from nearby, so that the points are spread evenly.
+        if (std::abs(scene.signed_distance(point.position)) > 1) continue;
+        for (int i = 0; i < 8; ++i)
+            point.position -= scene.signed_distance(point.position) * outwards(scene, point.position);
+        point.axis = outwards(scene, point.position);
+        if (std::abs(scene.signed_distance(point.position)) > 1e-6 || point.axis == glm::dvec3(0)) continue;
+        if (glm::any(glm::lessThan(point.position, glm::dvec3(kBorderDistance))) ||
+            glm::any(glm::greaterThan(point.position, top - kBorderDistance)))
+            ++result.near_border;
+        else if (!undisturbed(scene, point))
+            ++result.disturbed;
+        else
+            result.points.push_back(point);
+    }
+    return result;
+}
+
+EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<const SurfacePoint> points,
+                         const ProfileRange& range) {
+    Settings settings = prepared.settings();
+    settings.footprints = FootprintMode::Procedural;  // points need no table
+    const reference::Footprints footprints(settings);
+    std::vector<std::optional<ProfileEdge>> edges(points.size());
+    reference::parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
+            edges[i] = profile_edge(two_tone_profile(prepared, footprints, points[i], range), -range.reach, range.step);
+    });
+    EdgeFigures figures;
+    for (const auto& edge : edges) {
+        if (!edge) {
+            ++figures.missed;
+            continue;
+        }
+        ++figures.measured;
+        figures.rise_mean += edge->rise;
+        figures.rise_max = std::max(figures.rise_max, edge->rise);
+        figures.location_mean += std::abs(edge->location);
+        figures.location_max = std::max(figures.location_max, std::abs(edge->location));
+        figures.bias += edge->location;
+    }
+    if (figures.measured > 0)
+        for (double* mean : {&figures.rise_mean, &figures.location_mean, &figures.bias})
+            *mean /= figures.measured;
+    return figures;
+}
+
+}  // namespace edgesplat::accuracy

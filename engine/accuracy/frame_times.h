@@ -1,0 +1,47 @@
+// What a frame costs, next to the ray caster: measured so that the ratio is the same on a machine that others use too.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "engine/accuracy/metrics.h"
+#include "engine/renderer.h"
+
+namespace edgesplat::accuracy {
+
+/// A frame, the ray caster, the same frame again: what disturbs the machine disturbs all three alike.
+struct TimedTriple {
+    double before = 0, ray = 0, after = 0;  ///< ms
+};
+
+/// One visit to one configuration and camera.
+struct TimedVisit {
+    std::vector<TimedTriple> triples;
+    std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, fastest of the visit
+    double setup_milliseconds = 0;  ///< estimation and collection; 0 where nothing was to be set up
+};
+
+/// Renders and ray casts the camera in turns; the first frame of each is dropped. Fast frames are repeated up to 6
+/// times.
+TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& camera, const Settings& settings, int width,
+                      int height);
+
+nlohmann::ordered_json to_json(const TimedVisit& visit);
+TimedVisit timed_visit_from(const nlohmann::ordered_json& json);
+
+/// Over all visits of one configuration and camera.
+struct FrameTimes {
+    Spread frame;           ///< ms
+    Spread ratio;           ///< of a triple: frame / ray caster; the median is the figure that is reported
+    double ray_median = 0;  ///< ms
+    std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, median of the visits
+};
+FrameTimes summarise(std::span<const TimedVisit> visits);
+
+/// 0 .. count - 1 in an order of its own for each round, always the same.
+std::vector<std::size_t> order_of_round(std::size_t count, int round);
+
+}  // namespace edgesplat::accuracy

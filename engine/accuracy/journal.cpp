@@ -1,0 +1,121 @@
+#include "engine/accuracy/journal.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include "engine/error.h"
+#include "engine/image_file.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr const char* kIdentityKey = "identity";
+
+std::string check_of(const std::string& key, const ordered_json& value) {
+    return checksum_of(key + "\n" + value.dump());
+}
+
+std::string line_of(const std::string& key, const ordered_json& value) {
+    return ordered_json{{"key", key}, {"value", value}, {"check", check_of(key, value)}}.dump() + "\n";
+}
+
+/// "size: 192x192 there, 96x96 asked for; ..." of the keys in which two identities differ.
+std::string differences(const ordered_json& there, const ordered_json& wanted) {
+    std::string text;
+    for (const auto& [key, value] : wanted.items()) {
+        const ordered_json other = there.contains(key) ? there.at(key) : ordered_json();
+        if (other == value) continue;
+        const std::string a = other.dump(), b = value.dump();
+        const bool brief = a.size() + b.size() < 120;
+        text += (text.empty() ? "" : "; ") + key + (brief ? fmt::format(": {} there, {} asked for", a, b) : " differs");
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string checksum_of(std::string_view bytes) {
+    std::uint64_t hash = 14695981039346656037ULL;
+    for (const char c : bytes)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+    return fmt::format("{:016x}", hash);
+}
+
+Journal::Journal(std::filesystem::path path, const ordered_json& identity, bool restart) : path_(std::move(path)) {
+    file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (file_ < 0) fail("cannot open {}: {}", path_.string(), std::strerror(errno));
+    try {
+        if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail("{}: another process is writing this report", path_.string());
+        read(identity, restart);
+    } catch (...) {
+        close(file_);
+        throw;
+    }
+}
+
+Journal::~Journal() {
+    close(file_);
+}
+
+void Journal::read(const ordered_json& identity, bool restart) {
+    std::ifstream in(path_, std::ios::binary);
+    std::string text;
+    if (!restart) text.assign(std::istreambuf_iterator<char>(in), {});
+    std::string good;
+    bool known = false;
+    for (std::size_t begin = 0; begin < text.size();) {
+        const std::size_t end = std::min(text.find('\n', begin), text.size());
+        const std::string line = text.substr(begin, end - begin);
+        const ordered_json entry = ordered_json::parse(line, nullptr, false);
+        const bool whole = end < text.size() && entry.is_object() && entry.contains("key") &&
+                           entry["key"].is_string() && entry.contains("value") && entry.contains("check") &&
+                           entry["check"] == check_of(entry["key"], entry["value"]);
+        begin = end + 1;
+        if (!whole) {
+            ++dropped_;
+            continue;
+        }
+        good += line + "\n";
+        if (entry["key"] != kIdentityKey) {
+            values_[entry["key"]] = entry["value"];
+            continue;
+        }
+        known = true;
+        if (entry["value"] != identity)
+            fail("{} belongs to another measurement ({}); choose another folder, or --restart to throw it away",
+                 path_.string(), differences(entry["value"], identity));
+    }
+    if (!known) {  // without its first line nobody knows what the rest was measured on
+        values_.clear();
+        good = line_of(kIdentityKey, identity);
+    }
+    if (good != text || restart) {
+        // In place, since the lock belongs to this file.
+        if (ftruncate(file_, 0) != 0 || pwrite(file_, good.data(), good.size(), 0) != static_cast<ssize_t>(good.size()))
+            fail("cannot write {}: {}", path_.string(), std::strerror(errno));
+        fsync(file_);
+    }
+    lseek(file_, 0, SEEK_END);
+}
+
+const ordered_json* Journal::find(const std::string& key) const {
+    const auto found = values_.find(key);
+    return found == values_.end() ? nullptr : &found->second;
+}
+
+void Journal::add(const std::string& key, const ordered_json& value) {
+    const std::string line = line_of(key, value);
+    if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) || fdatasync(file_) != 0)
+        fail("cannot write {}: {}", path_.string(), std::strerror(errno));
+    // As it will be read again: what a second run computes from the journal is the same to the last digit.
+    values_[key] = ordered_json::parse(value.dump());
+}
+
+}  // namespace edgesplat::accuracy

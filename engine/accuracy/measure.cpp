@@ -1,0 +1,379 @@
+#include "engine/accuracy/measure.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "engine/accuracy/model_references.h"
+#include "engine/accuracy/report_json.h"
+#include "engine/scene/ladder.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+using nlohmann::ordered_json;
+
+/// What must be the same for the journal of an earlier run to be of use.
+ordered_json identity_of(const ReportInput& input, const ReportOptions& options, const DeviceInfo& device) {
+    ordered_json materials = ordered_json::array();
+    for (const Material& m : input.scene.materials)
+        materials.push_back({m.color.x, m.color.y, m.color.z, m.extinction});
+    const Light& light = input.scene.light;
+    return {{"program", input.program},
+            {"journal", 1},
+            {"volume", input.volume->name},
+            {"checksum", fmt::format("{:016x}", input.volume->checksum)},
+            {"iso_values", input.scene.iso_values},
+            {"materials", materials},
+            {"light",
+             {static_cast<int>(light.kind), light.direction.x, light.direction.y, light.direction.z, light.ambient,
+              light.diffuse}},
+            {"background", {input.scene.background.x, input.scene.background.y, input.scene.background.z}},
+            {"truth", input.analytic.has_value()},
+            {"base", settings_key(options.base)},
+            {"size", fmt::format("{}x{}", options.size.x, options.size.y)},
+            {"tolerance", options.tolerance},
+            {"repeats", options.repeats},
+            {"orbit", fmt::format("{} frames of {} pixels", options.orbit_frames, options.orbit_size)},
+            {"surface_points", options.surface_points},
+            {"device", device.name},
+            {"driver", device.driver + " " + device.driver_version}};
+}
+
+/// The camera turned around the volume's middle by so many degrees about its own up.
+Camera orbited(const Camera& camera, const VolumeGeometry& geometry, double degrees) {
+    const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 axis = camera_frame(camera).up;
+    const double angle = glm::radians(degrees);
+    const auto turned = [&](const glm::dvec3& v) {
+        return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) +
+               axis * glm::dot(axis, v) * (1 - std::cos(angle));
+    };
+    return {center + turned(camera.eye - center), turned(camera.direction), camera.up, camera.fov_y};
+}
+
+class Measurement {
+  public:
+    Measurement(Renderer& renderer, const ReportInput& input, const ReportOptions& options, Journal& journal,
+                const ProgressFunction& progress)
+        : renderer_(renderer),
+          input_(input),
+          options_(options),
+          journal_(journal),
+          work_(journal, progress),
+          references_(input, options.tolerance, options.folder / "cache", journal,
+                      [this](double share) { work_.check(share); }) {
+        report_.input = input;
+        report_.options = options;
+        report_.device = renderer.device();
+        report_.cameras = report_cameras(*input.volume, input.scene, options.size.x, options.size.y);
+        report_.rows = configurations(options.base);
+        collect_settings();
+        if (input.analytic && input.analytic->signed_distance && !input.analytic->iso_values.empty() &&
+            input.scene.iso_values == input.analytic->iso_values)
+            report_.surface = surface_points(*input.analytic, options.surface_points);
+    }
+
+    Measured run() {
+        add_errors();
+        add_orbit();
+        add_times();
+        work_.run();
+        assemble();
+        return {report_, pictures()};
+    }
+
+  private:
+    void collect_settings() {
+        std::map<std::string, std::size_t> known;
+        for (const Configuration& row : report_.rows) {
+            const std::string key = settings_key(row.settings);
+            const auto [at, fresh] = known.emplace(key, report_.results.size());
+            if (fresh) {
+                report_.results.push_back({.settings = canonical(row.settings)});
+                keys_.push_back(key);
+            }
+            report_.result_of_row.push_back(at->second);
+        }
+        for (std::size_t i = 0; i < keys_.size(); ++i) {
+            const std::string model = model_key(report_.results[i].settings);
+            if (std::find(models_.begin(), models_.end(), model) == models_.end()) models_.push_back(model);
+        }
+    }
+
+    RenderResult render(const Settings& settings, const Camera& camera) {
+        return renderer_.render(input_.scene, camera, settings, options_.size.x, options_.size.y);
+    }
+
+    std::string error_key(std::size_t i, const ReportCamera& camera) const {
+        return "error|" + camera.name + "|" + keys_[i];
+    }
+    std::string edges_key(const std::string& model) const { return "edges|" + model; }
+    std::string time_key(std::size_t i, int round) const { return fmt::format("time|{}|{}", round, keys_[i]); }
+    std::string orbit_key(std::size_t i) const { return "orbit|" + keys_[i]; }
+
+    /// Model by model, so that each is prepared once.
+    void add_errors() {
+        const double pixels = static_cast<double>(options_.size.x) * options_.size.y;
+        for (const ReportCamera& camera : report_.cameras)
+            if (references_.has_truth())
+                work_.add(
+                    {"truth", references_.truth_key(camera.name), "truth, " + camera.name,
+                     [this, &camera] { return references_.make_truth(camera.name, camera.camera, options_.size); }},
+                    2e-5 * pixels);
+        for (const std::string& model : models_) {
+            std::vector<std::size_t> of_model;
+            for (std::size_t i = 0; i < keys_.size(); ++i)
+                if (model_key(report_.results[i].settings) == model) of_model.push_back(i);
+            const Settings settings = model_of(report_.results[of_model.front()].settings);
+            for (const ReportCamera& camera : report_.cameras) {
+                work_.add({"reference", references_.key(settings, camera.name), "reference, " + camera.name,
+                           [this, &camera, settings] {
+                               return references_.make(settings, camera.name, camera.camera, options_.size);
+                           }},
+                          1e-4 * pixels);
+                for (const std::size_t i : of_model)
+                    work_.add({"error", error_key(i, camera), "errors, " + camera.name,
+                               [this, i, &camera] { return measure_error(i, camera); }},
+                              0.3);
+            }
+            if (report_.surface)
+                work_.add({"edges", edges_key(model), "edges", [this, settings] {
+                               return to_json(edge_figures(references_.prepared(settings), report_.surface->points));
+                           }});
+        }
+    }
+
+    ordered_json measure_error(std::size_t i, const ReportCamera& camera) {
+        const Settings& settings = report_.results[i].settings;
+        const RenderResult result = render(settings, camera.camera);
+        const ReferencePicture reference =
+            references_.get(model_of(settings), camera.name, camera.camera, options_.size);
+        ordered_json json{{"method", to_json(image_error(result.color, reference.image))},
+                          {"reference_error", reference.error_estimate}};
+        if (references_.has_truth())
+            json["model"] =
+                to_json(image_error(result.color, references_.truth(camera.name, camera.camera, options_.size).image));
+        json["device_bytes"] = result.stats.device_bytes;
+        json["splats_drawn"] = result.stats.splats_drawn;
+        json["sheets"] = result.stats.sheets;
+        return json;
+    }
+
+    /// Rows whose popping is measured: sheets whole and sliced, and presets of the same model.
+    std::vector<std::size_t> orbit_results() const {
+        std::vector<std::size_t> list;
+        for (std::size_t row = 0; row < report_.rows.size(); ++row) {
+            const Configuration& c = report_.rows[row];
+            const bool wanted =
+                c.kind == ConfigurationKind::Base || c.kind == ConfigurationKind::Preset ||
+                (c.kind == ConfigurationKind::Step && (c.knob == "sheets" || c.knob == "sheet-spacing"));
+            const std::size_t i = report_.result_of_row[row];
+            if (wanted && model_key(c.settings) == model_key(options_.base) &&
+                std::find(list.begin(), list.end(), i) == list.end())
+                list.push_back(i);
+        }
+        return list;
+    }
+
+    Camera orbit_camera(int frame) const {
+        return orbited(report_.cameras.front().camera, input_.volume->geometry, frame);
+    }
+
+    void add_orbit() {
+        if (options_.orbit_frames < 1) return;
+        const glm::ivec2 size(options_.orbit_size);
+        const Settings model = model_of(options_.base);
+        for (int frame = 0; frame <= options_.orbit_frames; ++frame) {
+            const std::string name = fmt::format("orbit {}", frame);
+            work_.add({"orbit reference", references_.key(model, name), "reference of an orbit",
+                       [=, this] { return references_.make(model, name, orbit_camera(frame), size); }},
+                      1e-4 * size.x * size.y);
+        }
+        for (const std::size_t i : orbit_results())
+            work_.add(
+                {"orbit", orbit_key(i), "popping",
+                 [=, this] {
+                     std::vector<Image> frames, expected;
+                     for (int frame = 0; frame <= options_.orbit_frames; ++frame) {
+                         const Camera camera = orbit_camera(frame);
+                         frames.push_back(
+                             renderer_.render(input_.scene, camera, report_.results[i].settings, size.x, size.y).color);
+                         expected.push_back(references_.get(model, fmt::format("orbit {}", frame), camera, size).image);
+                         work_.check(static_cast<double>(frame) / (options_.orbit_frames + 1));
+                     }
+                     return to_json(popping(frames, expected));
+                 }},
+                2);
+    }
+
+    /// Rounds over everything, in blocks of one model, since each change of it is estimated anew.
+    void add_times() {
+        for (int round = 0; round < options_.repeats; ++round) {
+            for (const std::size_t m : order_of_round(models_.size(), round)) {
+                std::vector<std::size_t> of_model;
+                for (std::size_t i = 0; i < keys_.size(); ++i)
+                    if (model_key(report_.results[i].settings) == models_[m]) of_model.push_back(i);
+                for (const std::size_t k : order_of_round(of_model.size(), round)) {
+                    const std::size_t i = of_model[k];
+                    work_.add({"time", time_key(i, round),
+                               fmt::format("times, round {} of {}", round + 1, options_.repeats), [this, i] {
+                                   ordered_json visits = ordered_json::object();
+                                   for (const ReportCamera& camera : report_.cameras) {
+                                       visits[camera.name] = to_json(time_visit(renderer_, input_.scene, camera.camera,
+                                                                                report_.results[i].settings,
+                                                                                options_.size.x, options_.size.y));
+                                       work_.check();
+                                   }
+                                   return visits;
+                               }});
+                }
+            }
+        }
+    }
+
+    void assemble() {
+        std::map<std::string, std::vector<double>> setups;  // by model
+        std::vector<std::vector<double>> rays(report_.cameras.size());
+        for (std::size_t i = 0; i < keys_.size(); ++i) {
+            SettingsResult& result = report_.results[i];
+            const std::string model = model_key(result.settings);
+            for (std::size_t c = 0; c < report_.cameras.size(); ++c) {
+                const ReportCamera& camera = report_.cameras[c];
+                const ordered_json& error = *journal_.find(error_key(i, camera));
+                CameraResult of_camera;
+                of_camera.method = image_error_from(error.at("method"));
+                if (error.contains("model")) of_camera.model = image_error_from(error.at("model"));
+                of_camera.reference_error = error.at("reference_error");
+                of_camera.device_bytes = error.at("device_bytes");
+                of_camera.splats_drawn = error.at("splats_drawn");
+                of_camera.sheets = error.at("sheets");
+                std::vector<TimedVisit> visits;
+                for (int round = 0; round < options_.repeats; ++round) {
+                    visits.push_back(timed_visit_from(journal_.find(time_key(i, round))->at(camera.name)));
+                    if (visits.back().setup_milliseconds > 0) setups[model].push_back(visits.back().setup_milliseconds);
+                }
+                of_camera.times = summarise(visits);
+                rays[c].push_back(of_camera.times.ray_median);
+                report_.largest_reference_error = std::max(report_.largest_reference_error, of_camera.reference_error);
+                result.cameras.push_back(std::move(of_camera));
+            }
+            if (const ordered_json* edges = journal_.find(edges_key(model))) result.edges = edge_figures_from(*edges);
+            if (const ordered_json* orbit = journal_.find(orbit_key(i))) result.popping = popping_from(*orbit);
+            take_together(result);
+        }
+        for (SettingsResult& result : report_.results)
+            result.setup_ms = quantile(setups[model_key(result.settings)], 0.5);
+        for (const auto& list : rays)
+            report_.raycast_ms.push_back(quantile(list, 0.5));
+        find_front();
+        add_notes();
+    }
+
+    static void take_together(SettingsResult& result) {
+        std::vector<ImageError> method, model;
+        const double n = static_cast<double>(result.cameras.size());
+        glm::dvec3 logs(0);
+        for (const CameraResult& c : result.cameras) {
+            method.push_back(c.method);
+            if (c.model) model.push_back(*c.model);
+            result.frame_ms += c.times.frame.median / n;
+            const Spread& r = c.times.ratio;
+            logs += glm::log(glm::dvec3(r.median, r.low, r.high)) / n;
+            result.device_bytes = std::max(result.device_bytes, c.device_bytes);
+        }
+        result.ratio = {std::exp(logs.x), std::exp(logs.y), std::exp(logs.z)};
+        result.method = pooled(method);
+        if (!model.empty()) result.model = pooled(model);
+    }
+
+    /// Of the rows whose model is the base's: others answer another question.
+    void find_front() {
+        std::vector<std::size_t> rows;
+        std::vector<CostAndError> points;
+        std::vector<std::size_t> taken;
+        for (std::size_t row = 0; row < report_.rows.size(); ++row) {
+            const std::size_t i = report_.result_of_row[row];
+            if (model_key(report_.rows[row].settings) != model_key(options_.base) ||
+                std::find(taken.begin(), taken.end(), i) != taken.end())
+                continue;
+            taken.push_back(i);
+            rows.push_back(row);
+            points.push_back({report_.results[i].ratio.median, report_.results[i].method.rms});
+        }
+        for (const std::size_t p : pareto_front(points))
+            report_.front.push_back(rows[p]);
+    }
+
+    void add_notes() {
+        double smallest = 1;
+        for (const SettingsResult& r : report_.results)
+            for (const CameraResult& c : r.cameras)
+                smallest = std::min(smallest, c.method.rms);
+        report_.notes.push_back(fmt::format(
+            "References are exact to {:.1e} of full scale at their worst pixel; the smallest method error (RMS of a "
+            "camera) is {:.1e}, {:.0f} times that.",
+            report_.largest_reference_error, smallest, smallest / std::max(report_.largest_reference_error, 1e-300)));
+        if (smallest < 10 * report_.largest_reference_error)
+            report_.notes.push_back("That is less than 10 times: a smaller --tolerance would tell more of it.");
+        for (const std::string_view name : {"near", "grazing", "inside"})
+            if (std::none_of(report_.cameras.begin(), report_.cameras.end(),
+                             [&](const ReportCamera& c) { return c.name == name; }))
+                report_.notes.push_back(fmt::format("No camera `{}`: no such place was found in this volume.", name));
+        if (report_.surface)
+            report_.notes.push_back(fmt::format(
+                "Edges are measured at {} points of the surface; {} more were left out near the grid's border, {} "
+                "because of a corner or another surface within 3 voxels.",
+                report_.surface->points.size(), report_.surface->near_border, report_.surface->disturbed));
+        else
+            report_.notes.push_back("Rise and location of edges are not given: the true surface is not known.");
+    }
+
+    std::vector<ReportPictures> pictures() {
+        Settings plain = options_.base;
+        plain.edges = EdgeEstimator::Off;
+        const Settings accurate = presets().back().settings;
+        std::vector<ReportPictures> list;
+        for (const ReportCamera& camera : report_.cameras) {
+            const auto reference = [&](const Settings& s) {
+                return references_.get(model_of(s), camera.name, camera.camera, options_.size).image;
+            };
+            ReportPictures p{render(plain, camera.camera).color,
+                             render(options_.base, camera.camera).color,
+                             render(accurate, camera.camera).color,
+                             reference(options_.base),
+                             reference(accurate),
+                             renderer_
+                                 .raycast(input_.scene, camera.camera, options_.base, RaycastSettings{},
+                                          options_.size.x, options_.size.y)
+                                 .color,
+                             {}};
+            if (references_.has_truth()) p.truth = references_.truth(camera.name, camera.camera, options_.size).image;
+            list.push_back(std::move(p));
+        }
+        return list;
+    }
+
+    Renderer& renderer_;
+    ReportInput input_;
+    ReportOptions options_;
+    Journal& journal_;
+    WorkList work_;
+    ModelReferences references_;
+    Report report_;
+    std::vector<std::string> keys_;    ///< settings_key of each result
+    std::vector<std::string> models_;  ///< model_key of each model, in order of appearance
+};
+
+}  // namespace
+
+Measured measure_accuracy(Renderer& renderer, const ReportInput& input, const ReportOptions& options,
+                          const ProgressFunction& progress) {
+    std::error_code error;
+    std::filesystem::create_directories(options.folder / "cache", error);
+    if (error) fail("cannot make the folder {}: {}", options.folder.string(), error.message());
+    Journal journal(options.folder / "journal.jsonl", identity_of(input, options, renderer.device()), options.restart);
+    return Measurement(renderer, input, options, journal, progress).run();
+}
+
+}  // namespace edgesplat::accuracy

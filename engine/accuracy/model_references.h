@@ -1,0 +1,48 @@
+// The two truths that pictures are measured against: the converged evaluation of their own model, and for analytic
+// scenes the exact inside and outside.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "engine/accuracy/picture_store.h"
+#include "engine/accuracy/report.h"
+#include "engine/reference/reference_renderer.h"
+
+namespace edgesplat::accuracy {
+
+/// Computes and keeps them. Names tell cameras apart; one name must always stand for one camera and size.
+class ModelReferences {
+  public:
+    /// `check` is called now and then with the share done of a picture and stops it by throwing.
+    ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder, Journal& journal,
+                    std::function<void(double)> check);
+
+    bool has_truth() const { return input_.analytic.has_value(); }
+
+    // What the journal calls them, what it is to hold, and the pictures themselves.
+    std::string key(const Settings& model, const std::string& camera) const;
+    std::string truth_key(const std::string& camera) const;
+    nlohmann::ordered_json make(const Settings& model, const std::string& name, const Camera& camera, glm::ivec2 size);
+    nlohmann::ordered_json make_truth(const std::string& name, const Camera& camera, glm::ivec2 size);
+    ReferencePicture get(const Settings& model, const std::string& name, const Camera& camera, glm::ivec2 size);
+    ReferencePicture truth(const std::string& name, const Camera& camera, glm::ivec2 size);
+
+    /// Edges of the model, unquantised; kept until another model is asked for.
+    const reference::PreparedVolume& prepared(const Settings& model);
+
+  private:
+    ReferencePicture evaluate(const Settings& model, const Camera& camera, glm::ivec2 size);
+    ReferencePicture evaluate_truth(const Camera& camera, glm::ivec2 size);
+    bool go_on(double share) const;
+
+    const ReportInput& input_;
+    double tolerance_;
+    PictureStore store_;
+    std::function<void(double)> check_;
+    std::string prepared_key_;
+    std::optional<reference::PreparedVolume> prepared_;
+};
+
+}  // namespace edgesplat::accuracy

@@ -1,0 +1,221 @@
+#include "engine/accuracy/report_page.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/accuracy/heat_map.h"
+#include "engine/accuracy/page_parts.h"
+#include "engine/accuracy/svg_plot.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+std::string rms_text(double error) {
+    return error < 0.001 ? fmt::format("{:.2e}", error) : fmt::format("{:.4f}", error);
+}
+
+std::string optional_cell(bool known, const std::string& text) {
+    return known ? text : "\u2013";
+}
+
+/// What the numbers say, in two sentences.
+std::string summary(const Report& report) {
+    const SettingsResult& base = report.of_row(0);
+    std::string text = fmt::format(
+        "With its base settings the method is {} RMS (at most {:.3f}) from the converged picture of its own model",
+        rms_text(base.method.rms), base.method.max);
+    if (base.model) text += fmt::format(" and {} RMS from the exact scene", rms_text(base.model->rms));
+    text += fmt::format(", at {:.2f} times the time of the ray caster.", base.ratio.median);
+    if (base.edges && base.edges->measured > 0)
+        text += fmt::format(" Edges rise over {:.2f} voxel and lie within {:.3f} voxel of their place on average.",
+                            base.edges->rise_mean, base.edges->location_mean);
+    if (!report.front.empty()) {
+        const std::size_t last = report.front.back();
+        text += fmt::format(" The smallest method error measured is {} RMS, with {}, at {:.2f} times the ray caster.",
+                            rms_text(report.of_row(last).method.rms), report.rows[last].name,
+                            report.of_row(last).ratio.median);
+    }
+    return text;
+}
+
+std::string tooltip(const Report& report, std::size_t row) {
+    const SettingsResult& r = report.of_row(row);
+    return fmt::format("{}: {} RMS, {:.2f} x ray caster, {:.1f} ms", report.rows[row].name, rms_text(r.method.rms),
+                       r.ratio.median, r.frame_ms);
+}
+
+/// Rows that the plot shows: the base's model only. Model steps have references of their own and are in the table.
+std::string error_against_time(const Report& report) {
+    LogPlot plot{"time, times the ray caster's", "method error, RMS of full scale", {}, {}};
+    const std::string model = model_key(report.options.base);
+    const auto add = [&](std::size_t row, const std::string& kind, const std::string& label) {
+        const SettingsResult& r = report.of_row(row);
+        plot.points.push_back({r.ratio.median, r.method.rms, kind, label, tooltip(report, row)});
+    };
+    for (std::size_t row = 0; row < report.rows.size(); ++row) {
+        const Configuration& c = report.rows[row];
+        if (model_key(c.settings) != model) continue;
+        if (c.kind == ConfigurationKind::Combination) add(row, "combination", "");
+        if (c.kind == ConfigurationKind::Step) add(row, "step", "");
+    }
+    for (std::size_t i = 0; i < report.front.size(); ++i) {
+        const SettingsResult& r = report.of_row(report.front[i]);
+        add(report.front[i], "best", fmt::format("{}", i + 1));
+        plot.line.emplace_back(r.ratio.median, r.method.rms);
+    }
+    for (std::size_t row = 0; row < report.rows.size(); ++row)
+        if (report.rows[row].kind == ConfigurationKind::Preset) add(row, "preset", report.rows[row].name);
+    std::string html = log_plot_svg(plot);
+    html +=
+        "<p class=\"key\"><span class=\"dot step\"></span>one step from the base <span class=\"dot "
+        "combination\"></span>combination <span class=\"dot best\"></span>no other is both faster and better "
+        "<span class=\"dot preset\"></span>preset</p>\n<ol class=\"front-list\">\n";
+    for (const std::size_t row : report.front)
+        html += "<li>" + escaped(tooltip(report, row)) + "</li>\n";
+    return html + "</ol>\n";
+}
+
+std::vector<std::string> cells_of(const Report& report, std::size_t row) {
+    const Configuration& c = report.rows[row];
+    const SettingsResult& r = report.of_row(row);
+    const EdgeFigures edges = r.edges.value_or(EdgeFigures{});
+    const bool rises = edges.measured > 0;
+    return {c.kind == ConfigurationKind::Step ? c.step : c.name,
+            rms_text(r.method.rms),
+            fmt::format("{:.3f}", r.method.max),
+            optional_cell(r.model.has_value(), r.model ? rms_text(r.model->rms) : ""),
+            optional_cell(rises, fmt::format("{:.3f}", edges.rise_mean)),
+            optional_cell(rises, fmt::format("{:.4f}", edges.location_mean)),
+            optional_cell(r.popping.has_value(), r.popping ? rms_text(r.popping->mean_difference) : ""),
+            optional_cell(r.popping.has_value(), r.popping ? fmt::format("{:+.5f}", r.popping->mean_excess) : ""),
+            fmt::format("{:.1f}", r.frame_ms),
+            fmt::format("{:.2f}", r.ratio.median),
+            fmt::format("{:.2f}\u2013{:.2f}", r.ratio.low, r.ratio.high),
+            fmt::format("{:.1f}", r.setup_ms),
+            fmt::format("{:.1f}", static_cast<double>(r.device_bytes) / 1e6)};
+}
+
+std::string steps_section(const Report& report) {
+    HtmlTable table({"", "error RMS", "max", "model RMS", "rise", "place", "popping", "excess", "ms", "\u00d7 ray",
+                     "p10\u2013p90", "setup ms", "MB"});
+    std::string group;
+    for (std::size_t row = 0; row < report.rows.size(); ++row) {
+        const Configuration& c = report.rows[row];
+        const std::string name = c.kind == ConfigurationKind::Step          ? c.knob
+                                 : c.kind == ConfigurationKind::Base        ? "base settings"
+                                 : c.kind == ConfigurationKind::Combination ? "combinations"
+                                                                            : "presets";
+        if (name != group) table.group(group = name);
+        const bool best = std::find(report.front.begin(), report.front.end(), row) != report.front.end();
+        const bool same = report.result_of_row[row] == report.result_of_row[0];
+        table.row(cells_of(report, row), same && c.kind != ConfigurationKind::Base ? "base" : best ? "best" : "");
+    }
+    return table.html() +
+           "<p class=\"note\"><b>error</b>: against the converged picture of the same model, all cameras, full scale = "
+           "1, linear light. <b>model</b>: against the exact scene. <b>rise</b>: 10\u201390 % width of an edge, "
+           "<b>place</b>: distance of its 50 % crossing from the true surface, both in voxels, of the model's "
+           "reconstruction. <b>popping</b>: RMS change between frames one degree apart that the model does not have; "
+           "<b>excess</b>: RMS change minus the model's own. <b>\u00d7 ray</b>: time over the ray caster's, measured "
+           "in "
+           "turns; geometric mean over the cameras. Bold: no other is both faster and better. Grey: the base itself."
+           "</p>\n";
+}
+
+std::string cameras_section(const Report& report) {
+    HtmlTable table({"", "eye (mm)", "direction", "angle", "ray caster ms"});
+    for (std::size_t i = 0; i < report.cameras.size(); ++i) {
+        const ReportCamera& c = report.cameras[i];
+        const auto vector = [](const glm::dvec3& v) { return fmt::format("{:.2f}, {:.2f}, {:.2f}", v.x, v.y, v.z); };
+        table.row({c.name + ": " + c.what, vector(c.camera.eye), vector(glm::normalize(c.camera.direction)),
+                   fmt::format("{:.0f}\u00b0", c.camera.fov_y), fmt::format("{:.1f}", report.raycast_ms[i])},
+                  "");
+    }
+    return table.html();
+}
+
+std::string pictures_section(const Measured& measured) {
+    std::string html;
+    for (std::size_t i = 0; i < measured.pictures.size(); ++i) {
+        const ReportPictures& p = measured.pictures[i];
+        const Report& report = measured.report;
+        html += "<h3>" + escaped(report.cameras[i].name) + "</h3>\n<div class=\"pictures\">\n";
+        html += figure(p.plain, "plain splatting");
+        html += figure(p.base, "base settings");
+        html += figure(p.accurate, "preset accurate");
+        html += figure(p.reference, "converged model");
+        if (p.truth) html += figure(*p.truth, "exact scene");
+        html += figure(p.raycast, "ray caster");
+        html += figure(heat_map(p.base, p.reference), "base \u2212 its model");
+        html += figure(heat_map(p.accurate, p.accurate_reference), "accurate \u2212 its model");
+        if (p.truth) {
+            html += figure(heat_map(p.plain, *p.truth), "plain \u2212 exact");
+            html += figure(heat_map(p.base, *p.truth), "base \u2212 exact");
+            html += figure(heat_map(p.raycast, *p.truth), "ray caster \u2212 exact");
+        }
+        html += "</div>\n";
+    }
+    std::string ticks;
+    for (double v = kHeatLow; v < kHeatHigh * 1.01; v *= 10)
+        ticks += fmt::format("<span>{:g}</span>", v);
+    return html + "<div class=\"scale\"><div class=\"bar\" style=\"background:" + heat_gradient() + "\"></div><div " +
+           "class=\"ticks\">" + ticks +
+           "</div><p class=\"note\">Differences: largest of a pixel's colour channels, of full scale, linear light; "
+           "logarithmic, the same in all pictures.</p></div>\n";
+}
+
+std::string passes_section(const Report& report) {
+    std::vector<std::size_t> rows{0};
+    for (std::size_t row = 0; row < report.rows.size(); ++row)
+        if (report.rows[row].kind == ConfigurationKind::Preset) rows.push_back(row);
+    std::vector<std::string> names;
+    for (const std::size_t row : rows)
+        for (const CameraResult& c : report.of_row(row).cameras)
+            for (const auto& [name, ms] : c.times.passes)
+                if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    std::vector<std::string> head{""};
+    head.insert(head.end(), names.begin(), names.end());
+    head.emplace_back("frame");
+    HtmlTable table(head);
+    for (const std::size_t row : rows) {
+        table.group(report.rows[row].name);
+        const SettingsResult& r = report.of_row(row);
+        for (std::size_t i = 0; i < r.cameras.size(); ++i) {
+            std::vector<std::string> cells{report.cameras[i].name};
+            for (const std::string& name : names) {
+                const auto& passes = r.cameras[i].times.passes;
+                const auto found =
+                    std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
+                cells.push_back(found == passes.end() ? "\u2013" : fmt::format("{:.2f}", found->second));
+            }
+            cells.push_back(fmt::format("{:.1f}", r.cameras[i].times.frame.median));
+            table.row(cells, "");
+        }
+    }
+    return table.html() + "<p class=\"note\">Milliseconds on the device, median.</p>\n";
+}
+
+}  // namespace
+
+std::string report_page(const Measured& measured) {
+    const Report& report = measured.report;
+    const glm::ivec3 d = report.input.volume->geometry.dims;
+    std::string notes;
+    for (const std::string& note : report.notes)
+        notes += "<li>" + escaped(note) + "</li>\n";
+    const std::string facts = fmt::format(
+        "{}\u00d7{}\u00d7{} voxels, checksum {:016x} \u00b7 {} ({}), {} {} \u00b7 {} \u00b7 {}\u00d7{} pixels, "
+        "{} rounds",
+        d.x, d.y, d.z, report.input.volume->checksum, report.device.name, report.device.type, report.device.driver,
+        report.device.driver_version, report.input.program, report.options.size.x, report.options.size.y,
+        report.options.repeats);
+    return page_begin("What accuracy costs: " + report.input.volume->name) + "<p class=\"facts\">" + escaped(facts) +
+           "</p>\n<p class=\"lead\">" + escaped(summary(report)) + "</p>\n<h2>Error against time</h2>\n" +
+           error_against_time(report) + "<h2>Every step</h2>\n" + steps_section(report) + "<h2>Pictures</h2>\n" +
+           pictures_section(measured) + "<h2>Time of each pass</h2>\n" + passes_section(report) + "<h2>Cameras</h2>\n" +
+           cameras_section(report) + "<h2>Notes</h2>\n<ul>\n" + notes + "</ul>\n<p class=\"facts\">Made by: <code>" +
+           escaped(report.input.command) + "</code></p>\n" + page_end();
+}
+
+}  // namespace edgesplat::accuracy

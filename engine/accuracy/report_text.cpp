@@ -1,0 +1,102 @@
+#include "engine/accuracy/report_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace edgesplat::accuracy {
+namespace {
+
+constexpr double kMegabyte = 1e6;
+
+std::string cell(double value) {
+    return fmt::format("{}", value);
+}
+
+/// A value with a comma or a quote in quotes, as RFC 4180 says.
+std::string quoted(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string out = "\"";
+    for (const char c : text)
+        out += c == '"' ? "\"\"" : std::string(1, c);
+    return out + "\"";
+}
+
+std::string brief(const std::optional<double>& value, const char* format = "{:.4f}") {
+    return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+std::string line_of(const Report& report, std::size_t row, const std::string& name) {
+    const SettingsResult& r = report.of_row(row);
+    const auto edge = [&](double EdgeFigures::*member) {
+        return r.edges && r.edges->measured > 0 ? std::optional<double>((*r.edges).*member) : std::nullopt;
+    };
+    return fmt::format("  {:<32} {:>8.5f} {:>7.4f} {:>7} {:>6} {:>7} {:>8} {:>8.1f} {:>6.2f} {:>7.1f}\n", name,
+                       r.method.rms, r.method.max, brief(r.model ? std::optional(r.model->rms) : std::nullopt),
+                       brief(edge(&EdgeFigures::rise_mean), "{:.3f}"), brief(edge(&EdgeFigures::location_mean)),
+                       brief(r.popping ? std::optional(r.popping->mean_difference) : std::nullopt, "{:.5f}"),
+                       r.frame_ms, r.ratio.median, static_cast<double>(r.device_bytes) / kMegabyte);
+}
+
+}  // namespace
+
+std::string steps_csv(const Report& report) {
+    std::string text =
+        "kind,name,knob,step,on_front,method_rms,method_max,model_rms,model_max,rise_mean_voxels,rise_max_voxels,"
+        "location_mean_voxels,location_max_voxels,popping_mean_excess,popping_max_excess,popping_mean_difference,"
+        "popping_max_difference,frame_ms,times_raycast,times_raycast_p10,times_raycast_p90,setup_ms,device_bytes";
+    for (const ReportCamera& camera : report.cameras)
+        for (const char* column : {"method_rms", "method_max", "frame_ms", "times_raycast"})
+            text += "," + camera.name + "_" + column;
+    text += "\n";
+    for (std::size_t row = 0; row < report.rows.size(); ++row) {
+        const Configuration& c = report.rows[row];
+        const SettingsResult& r = report.of_row(row);
+        const bool front = std::find(report.front.begin(), report.front.end(), row) != report.front.end();
+        std::vector<std::string> cells{
+            std::string(name_of(c.kind)), quoted(c.name),    c.knob, c.step, front ? "1" : "0",
+            cell(r.method.rms),           cell(r.method.max)};
+        const auto add = [&](bool known, std::initializer_list<double> values) {
+            for (const double v : values)
+                cells.push_back(known ? cell(v) : "");
+        };
+        const ImageError model = r.model.value_or(ImageError{});
+        const EdgeFigures edges = r.edges.value_or(EdgeFigures{});
+        const Popping popping = r.popping.value_or(Popping{});
+        add(r.model.has_value(), {model.rms, model.max});
+        add(edges.measured > 0, {edges.rise_mean, edges.rise_max, edges.location_mean, edges.location_max});
+        add(r.popping.has_value(),
+            {popping.mean_excess, popping.max_excess, popping.mean_difference, popping.max_difference});
+        add(true, {r.frame_ms, r.ratio.median, r.ratio.low, r.ratio.high, r.setup_ms});
+        cells.push_back(fmt::format("{}", r.device_bytes));
+        for (const CameraResult& camera : r.cameras)
+            add(true, {camera.method.rms, camera.method.max, camera.times.frame.median, camera.times.ratio.median});
+        text += fmt::format("{}\n", fmt::join(cells, ","));
+    }
+    return text;
+}
+
+std::string steps_table(const Report& report) {
+    std::string text = fmt::format("  {:<32} {:>8} {:>7} {:>7} {:>6} {:>7} {:>8} {:>8} {:>6} {:>7}\n", "", "error",
+                                   "max", "model", "rise", "place", "popping", "ms", "x ray", "MB");
+    std::string knob;
+    for (std::size_t row = 0; row < report.rows.size(); ++row) {
+        const Configuration& c = report.rows[row];
+        if (c.kind == ConfigurationKind::Combination) continue;
+        if (c.kind == ConfigurationKind::Step && c.knob != knob) {
+            knob = c.knob;
+            text += knob + "\n";
+        } else if (c.kind == ConfigurationKind::Preset && knob != "presets") {
+            knob = "presets";
+            text += knob + "\n";
+        }
+        text += line_of(report, row, c.kind == ConfigurationKind::Step ? c.step : c.name);
+    }
+    return text +
+           "error, max: against the converged picture of the same model, RMS and largest, full scale = 1, all cameras; "
+           "model: RMS\nagainst the exact scene; rise, place: 10-90 % width and displacement of edges, voxels; "
+           "popping: RMS change between frames\none degree apart that the model has not; x ray: time over the ray "
+           "caster's.\n";
+}
+
+}  // namespace edgesplat::accuracy
