@@ -31,9 +31,10 @@ are written by
 and gradient (`--edges taylor`), its curve, corrected (`--warp paper`), as a warp of the two-dimensional footprint
 (`--footprints warp2d`). *Ours* is what `edgesplat render` does by default.
 
-The pictures' *width of edges* is from 10 to 90 % of luminance, median of the steepest edges in the picture. Their
-*gradient energy* counts all that is steep, so also the staircase that plain splatting makes of a smooth surface: a figure
-below 1 need not be blur. Where translucent matter lies in front of an edge, both see it dimmed.
+The pictures' *width* is from 10 to 90 % across an edge, median over the steepest places: of luminance inside the nose,
+elsewhere of the opacity of the opaque surface alone, that is its outline. *Gradient energy* of luminance counts all that is
+steep, so also the staircase that plain splatting makes of a smooth surface: less of it need not be blur. Times are to be
+compared between columns: the machine had other work.
 
 What is certain and what is not: the print was not at hand, nor is it among the public texts that could be searched. That
 Figures 4, 6, 7 and 8 show the profile, its inverse, the warped splats and the two-tone reconstruction, and Figures 9 to 12

@@ -53,6 +53,7 @@ std::vector<PictureFigure> picture_figures() {
     nose.eye = {128, 148, 14};
     nose.direction = {0, 1, 0.05};
     nose.fov_y = 90;
+    nose.outline = false;
     figures.push_back(nose);
 
     PictureFigure close{.number = "11",

@@ -54,6 +54,18 @@ void write_picture(const std::filesystem::path& path, const Image& color, const 
     write_image(path, opaque, {{"Software", "edgesplat " EDGESPLAT_VERSION}, {"edgesplat:volume", volume}});
 }
 
+/// Opacity of the scene's highest material alone, as a grey picture: its edges are its outline, whatever the shading.
+Image outline_of(Renderer& renderer, Scene scene, const Camera& camera, const Settings& settings) {
+    for (std::size_t m = 0; m + 1 < scene.materials.size(); ++m)
+        scene.materials[m].extinction = 0;
+    Image image = renderer.render(scene, camera, settings, kPixels, kPixels).color;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y, c) = image.at(x, y, 3);
+    return image;
+}
+
 struct CubeText {
     std::string rows, note;
 };
@@ -108,8 +120,8 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
     }
 
     std::string names = "| |", rule = "|---|", pictures = "| |", energy = "| gradient energy / plain |",
-                width = "| width of edges, pixels |", frame = "| ms per frame |", setup = "| ms once per volume |",
-                splats = "| splats drawn; with an edge |";
+                width = fmt::format("| width of {}, pixels |", figure.outline ? "the outline" : "edges"),
+                frame = "| ms per frame |", setup = "| ms once per volume |", splats = "| splats drawn; with an edge |";
     for (std::size_t i = 0; i < list.size(); ++i) {
         const Shot& shot = shots[i];
         const std::string file = fmt::format("figure{}_{}.png", figure.number, list[i].stem);
@@ -119,7 +131,10 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
         pictures += fmt::format(" ![{}, {}](images/paper/{}) |", figure.title, list[i].name, file);
         const Sharpness own = sharpness(shot.color), plain = sharpness(shots[0].color);
         energy += fmt::format(" {:.2f} |", own.gradient_energy / plain.gradient_energy);
-        width += fmt::format(" {:.2f} |", own.edge_width);
+        const double pixels = figure.outline
+                                  ? sharpness(outline_of(renderer, figure.scene, camera, list[i].settings)).edge_width
+                                  : own.edge_width;
+        width += fmt::format(" {:.2f} |", pixels);
         frame += fmt::format(" {:.0f} |", median(shot.frame));
         setup += fmt::format(" {:.0f} |", median(shot.setup));
         splats += fmt::format(" {}; {} |", shot.stats.splats_drawn, shot.stats.edge_splats);

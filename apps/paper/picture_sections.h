@@ -21,6 +21,7 @@ struct PictureFigure {
     glm::dvec3 eye{0}, direction{0}, up{0, 0, 1};  ///< voxels
     double fov_y = 45;
     bool box_filter = false;
+    bool outline = true;  ///< the background is seen: edges are measured on the opaque surface's outline
     bool is_builtin() const { return volume_path.starts_with("builtin:"); }
 };
 
