@@ -65,8 +65,13 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     params.run_offsets = resources.run_offsets.address();
     const auto scene = resources.scene.address();
     const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
-    const passes::CollectSplats collect{scene,      plan.dims, plan.edge_field, plan.buried, plan.edge_field && marched,
-                                        plan.curved};
+    const passes::CollectSplats collect{.scene = scene,
+                                        .dims = plan.dims,
+                                        .edges = plan.edge_field,
+                                        .buried = plan.buried,
+                                        .smooth = plan.edge_field && marched,
+                                        .curved = plan.curved,
+                                        .weighted = plan.weighted};
 
     commands.run([&] {
         if (plan.buried) {
@@ -97,7 +102,7 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
         gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
     params.splats = resources.splats.address();
     resources.traits = {};
-    if (plan.curved) {
+    if (plan.curved || plan.weighted) {
         resources.traits = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t),
                                        gpu::Buffer::Place::Device, "splat traits");
         params.traits = resources.traits.address();

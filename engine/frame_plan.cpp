@@ -57,7 +57,8 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
            buried == other.buried && skip_buried == other.skip_buried && curved == other.curved &&
-           a.curvature_unit == b.curvature_unit && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
+           weighted == other.weighted && a.curvature_unit == b.curvature_unit && a.estimate_mask == b.estimate_mask &&
+           a.strength == b.strength && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
            a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
            a.band == b.band;
 }
@@ -92,6 +93,11 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     if (!plan.buried) params.opaque_mask = 0;
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
     plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
+    plan.weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel;
+    params.estimate_mask = plan.weighted ? ~0U : params.visible_mask;
+    params.half_width = static_cast<float>(settings.edge_half_width);
+    // Only weights depend on the strength here.
+    params.strength = plan.weighted ? static_cast<float>(settings.edge_strength) : 0.0F;
     params.curvature_unit = plan.curved ? static_cast<float>(most_curved(settings)) : 1.0F;
     return plan;
 }
@@ -129,6 +135,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .payload = payload,
                     .sliced = sliced,
                     .curved = curved,
+                    .weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel,
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
                                                                                   : 10U};

@@ -22,7 +22,8 @@ struct CollectionPlan {
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
     /// voxel may adopt an edge that two of them share.
     bool skip_buried = true;
-    bool curved = false;           ///< splats carry the curvature of their edge
+    bool curved = false;    ///< splats carry the curvature of their edge
+    bool weighted = false;  ///< splats carry a weight; edges are estimated on both sides, also where nothing is drawn
     shader::SceneParams params{};  ///< without addresses
 
     /// Whether the same splats come out of it.

@@ -159,7 +159,7 @@ void main() {
     float high = params.scene.iso[material];
 
     uvec2 code = uvec2(0u);
-    bool visible = in_mask(params.scene.visible_mask, material);
+    bool visible = in_mask(params.scene.estimate_mask, material);
     if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
     // A loop that runs once or not at all: lavapipe runs both sides of an if, but no loop that is empty in every lane.
     for (int run = visible ? 1 : 0; run > 0; --run) {

@@ -12,6 +12,7 @@ layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
+layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
@@ -24,6 +25,7 @@ layout(push_constant) uniform Push {
 
 uint material_at(ivec3 p) { return material_of(imageLoad(volume, p).r); }
 #include "shaders/lib/edge_smoothing.glsl"
+#include "shaders/lib/kernel_weight.glsl"
 
 void main() {
     ivec3 dims = params.scene.dims;
@@ -46,6 +48,9 @@ void main() {
             if (write == 1u) {
                 uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
                 Edge e = unpack_edge(code.x, code.y);
+                if (WEIGHTED == 1u)
+                    UintsRef(params.scene.traits).at[out_at] =
+                        pack_traits(0.0, kernel_weight(p, dims, e), params.scene.curvature_unit);
                 if (SMOOTH == 1u || CURVED == 1u) {
                     SurfaceAround around = surface_around(p, dims, e, material);
                     if (SMOOTH == 1u) {

@@ -71,9 +71,12 @@ void main() {
     // A surface faces its lower values, whichever side of it the splat is on.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
+    vec3 to_eye = -normalize(params.frame.index_to_world * from_eye);
+    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    if (e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0) world_normal = -world_normal;
     vec3 payload = vec3(0.0);
     if (PAYLOAD == PAYLOAD_COLOR)
-        payload = lit(material.rgb, e, world_normal, -normalize(params.frame.index_to_world * from_eye));
+        payload = lit(material.rgb, e, world_normal, to_eye);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
         float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
         float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;

@@ -7,7 +7,8 @@ void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool wri
     const gpu::Specialization constants{{shader::SPEC_EDGES, in.edges ? 1 : 0},
                                         {shader::SPEC_BURIED, in.buried ? 1 : 0},
                                         {shader::SPEC_SMOOTH, in.smooth ? 1 : 0},
-                                        {shader::SPEC_CURVED, in.curved ? 1 : 0}};
+                                        {shader::SPEC_CURVED, in.curved ? 1 : 0},
+                                        {shader::SPEC_WEIGHTED, in.weighted ? 1 : 0}};
     commands.dispatch("2_collect_splats.comp", constants, {in.scene, write ? 1U : 0U, 0},
                       gpu::groups_for(collect_runs(in.dims), 64));
     commands.barrier();

@@ -8,10 +8,11 @@ namespace edgesplat::passes {
 struct CollectSplats {
     shader::Address scene;  ///< SceneParams
     glm::ivec3 dims;
-    bool edges = true;    ///< the edge field exists
-    bool buried = true;   ///< the buried mask exists: `mark_buried` has run
-    bool smooth = true;   ///< edge distances are smoothed along the surface (`march`, `cubic`)
-    bool curved = false;  ///< the curvature of each splat's edge is wanted
+    bool edges = true;      ///< the edge field exists
+    bool buried = true;     ///< the buried mask exists: `mark_buried` has run
+    bool smooth = true;     ///< edge distances are smoothed along the surface (`march`, `cubic`)
+    bool curved = false;    ///< the curvature of each splat's edge is wanted
+    bool weighted = false;  ///< the weight of each splat's kernel is wanted
 };
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.

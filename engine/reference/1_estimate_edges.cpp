@@ -327,6 +327,7 @@ VoxelEdge quantise(const VoxelEdge& edge) {
     VoxelEdge stored = edge;
     if (edge.has_normal) stored.n = through_octahedron(edge.n);
     stored.D = 4 * snorm16(edge.D / 4);
+    stored.weight = std::round(std::min(edge.weight / 4, 1.0) * 65535) / 65535 * 4;
     stored.D2 = edge.D2 >= 4 ? kInfinity : std::round(std::max(edge.D2, 0.0) / 4 * 1022) / 1022 * 4;
     return stored;
 }

@@ -33,6 +33,10 @@ std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene&
 std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                    const std::vector<VoxelEdge>& own);
 
+/// The weight of each kernel (`VoxelEdge::weight`) that makes the kernels around a voxel sum to one where its own is
+/// largest. Edges as estimated, on both sides of every iso-value; before step 5.
+void weigh_kernels(const Field& field, const Settings& settings, std::vector<VoxelEdge>& edges);
+
 /// Step 5: distances smoothed along the surface (march and cubic only), then edges that cannot matter are dropped. On
 /// the device this happens on the way into the splat list.
 std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,

@@ -38,7 +38,12 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     const VoxelEdge& edge = record.edge;
     const glm::dvec3 x(field.voxel(record.voxel));
     // A surface faces its lower values, whichever side of it the splat is on.
-    const glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
+    glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
+    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    const bool wall = edge.has_edge && edge.D2 < kKernelRadius + settings.edge_half_width;
+    if (wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0) {
+        n = -n;
+    }
     switch (payload) {
         case Payload::Color:
             return scene.materials[record.material].color *

@@ -46,14 +46,20 @@ Image resolve(std::span<const glm::dvec4> frame, int width, int height, const Sc
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
     : volume_(&volume),
       scene_((validate(scene), scene)),
-      settings_((validate(settings), settings)),
+      settings_((validate(settings), drawn_as(settings))),
       scaled_(scale_scene(scene, volume)),
       values_(scaled_field(volume)),
-      footprints_(settings) {
-    if (settings.edges == EdgeEstimator::Cubic) {
+      footprints_(settings_) {
+    if (settings_.edges == EdgeEstimator::Cubic) {
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
-    edges_ = smooth_edges(field(), scaled_, settings_, estimate_edges(field(), scaled_, settings_, quantised));
+    // Weights are of the kernels on both sides of an edge, drawn or not.
+    const bool weighted = settings_.normalisation == Normalisation::Voxel;
+    ScaledScene estimated = scaled_;
+    if (weighted) estimated.drawn.assign(estimated.drawn.size(), true);
+    std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
+    if (weighted) weigh_kernels(field(), settings_, edges);
+    edges_ = smooth_edges(field(), scaled_, settings_, edges);
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
 }
 

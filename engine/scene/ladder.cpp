@@ -100,14 +100,15 @@ std::vector<Knob> make_ladder() {
                      .get = get_name<&Settings::edge_shape>,
                      .assign = [](Settings& s, const Knob&, View v) { s.edge_shape = edge_shape_named(v); },
                      .matters = edge_family});
-    knobs.push_back({.name = "normalise",
-                     .help = "Whether kernels are weighted so that they sum to one at each voxel, also at curved edges",
-                     .kind = KnobKind::Model,
-                     .steps = all(normalisation_names()),
-                     .others = {},
-                     .get = get_name<&Settings::normalisation>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
-                     .matters = warps});
+    knobs.push_back(
+        {.name = "normalise",
+         .help = "Whether kernels are weighted so that those around a voxel sum to one, also at curved edges",
+         .kind = KnobKind::Model,
+         .steps = all(normalisation_names()),
+         .others = {},
+         .get = get_name<&Settings::normalisation>,
+         .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
+         .matters = [](const Settings& s) { return edge_family(s) && s.edge_shape == EdgeShape::Plane; }});
     knobs.push_back({.name = "footprints",
                      .help = "How a warped kernel's footprint is evaluated (the paper family, walls, curved edges and "
                              "sliced sheets are integrated in the table modes)",

@@ -122,16 +122,18 @@ Settings drawn_as(const Settings& settings) {
         s.edges = EdgeEstimator::Off;
         s.footprints = FootprintMode::Isotropic;
         s.warp = usual.warp;
-        s.normalisation = usual.normalisation;
     }
     const bool edge_family = s.edges != EdgeEstimator::Off && s.warp == WarpFamily::Edge;
     if (!edge_family) {
         s.edge_half_width = usual.edge_half_width;
         s.edge_strength = usual.edge_strength;
         s.edge_shape = EdgeShape::Plane;
+        s.normalisation = usual.normalisation;
     }
     const bool tabled = s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp;
     if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
+    // Kernels of curved edges sum to one as they are.
+    if (s.edge_shape == EdgeShape::Curved) s.normalisation = usual.normalisation;
     if (tabled && (!edge_family || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
         s.footprints = FootprintMode::Procedural;
     }

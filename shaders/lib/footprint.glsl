@@ -21,10 +21,9 @@
 // Written in the subset of GLSL that is C++ too (tests/unit/footprints_shader_test.cpp runs it): scalars, no swizzles.
 #ifndef EDGESPLAT_FOOTPRINT_GLSL
 #define EDGESPLAT_FOOTPRINT_GLSL
+#include "shaders/lib/kernel.glsl"
 #include "shaders/shared/footprint_params.h"
 
-const float KERNEL_R = 1.6;
-const float KERNEL_R2 = 2.56;
 // Gauss-Legendre on [0, 1] with 4, 10 and 16 nodes, one after the other; the including shader declares NODES, one of them.
 const float FOOTPRINT_NODE[30] = {
     0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558, 0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029,
@@ -45,19 +44,7 @@ struct Slice {
     float high;
 };
 
-// ---- kernel (footprints/kernel.h)
-
-float kernel(float r2) {
-    float w = max(0.0, 1.0 - r2 / KERNEL_R2);
-    return w * w * (0.0173624837 + w * (-0.0404017909 + w * (0.531403221 + w * (-0.680940898 +
-           w * (1.37803587 + w * -0.611612954)))));
-}
-
-float kernel_footprint(float rho2) {
-    float w = max(0.0, 1.0 - rho2 / KERNEL_R2);
-    return w * w * sqrt(w) * (0.0296319722 + w * (-0.0591020484 + w * (0.690992887 + w * (-0.804944854 +
-           w * (1.50367897 + w * -0.622885261)))));
-}
+// ---- plain footprints (footprints/kernel.h)
 
 // Integral of K along the line from its nearest point to z; kernel_chord in kernel.cpp has the recurrence.
 float kernel_chord(float rho2, float z) {
@@ -90,21 +77,6 @@ float footprint_isotropic(float rho2, Slice slice) {
 // Footprint of the point nearest to the voxel, moved by delta along n as far as the ray sees it.
 float displaced_footprint(float rho2, float pn, float un, float delta, Slice slice) {
     return footprint_isotropic(max(0.0, rho2 + delta * (2.0 * pn + (1.0 - un * un) * delta)), slice);
-}
-
-// ---- edge warp (footprints/edge_warp.h, design (7))
-
-float edge_warp(float s, float a, float k) {
-    float v = min(abs(s) / a, 1.0);
-    float b = v * (1.0 - v);
-    return sign(s) * (a * (v * v + k * b) / (1.0 + (k - 1.0) * b) + max(abs(s) - a, 0.0));
-}
-
-float edge_warp_inverse(float w, float a, float k) {
-    float y = min(abs(w) / a, 1.0);
-    float b = (k - 1.0) * (1.0 - y);
-    float v = 2.0 * y / (1.0 + b + sqrt((1.0 - b) * (1.0 - b) + 4.0 * b * (1.0 - y)));
-    return sign(w) * (a * v + max(abs(w) - a, 0.0));
 }
 
 // Faces to integrate: 2 for a wall, 1 for a single edge, 0 where the kernel stays plain (out of reach, or a wall under a voxel).

@@ -17,7 +17,7 @@ EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], eac
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
-EDGESPLAT_CONSTANT float WEIGHT_UNIT = 8.0f;  // a kernel's weight is stored as unorm16 of weight / 8
+EDGESPLAT_CONSTANT float WEIGHT_UNIT = 4.0f;  // a kernel's weight is stored as unorm16 of weight / 4
 
 // Specialization constants: ids are the same in every shader.
 EDGESPLAT_CONSTANT uint SPEC_ESTIMATOR = 0u;   // EdgeEstimator

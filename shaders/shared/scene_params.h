@@ -16,7 +16,9 @@ struct SceneParams {
     Address splats;       // (splat_count) Splat
     Address traits;       // (splat_count) uint: curvature and weight; edges curved or kernels normalised
     float curvature_unit;  // the largest curvature that is drawn, 1/voxel
-    uint pad;
+    uint estimate_mask;    // bit m: edges of material m are estimated
+    float half_width;      // a, voxels
+    float strength;        // k
 };
 
 /// One splat as collected: 12 bytes.
@@ -36,7 +38,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 128);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 136);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -1,0 +1,36 @@
+// The kernel and the warp: the float32 mirror of footprints/kernel.h and edge_warp.h. The subset of GLSL that is C++ too.
+#ifndef EDGESPLAT_KERNEL_GLSL
+#define EDGESPLAT_KERNEL_GLSL
+
+const float KERNEL_R = 1.6;
+const float KERNEL_R2 = 2.56;
+
+// ---- kernel (footprints/kernel.h)
+
+float kernel(float r2) {
+    float w = max(0.0, 1.0 - r2 / KERNEL_R2);
+    return w * w * (0.0173624837 + w * (-0.0404017909 + w * (0.531403221 + w * (-0.680940898 +
+           w * (1.37803587 + w * -0.611612954)))));
+}
+
+float kernel_footprint(float rho2) {
+    float w = max(0.0, 1.0 - rho2 / KERNEL_R2);
+    return w * w * sqrt(w) * (0.0296319722 + w * (-0.0591020484 + w * (0.690992887 + w * (-0.804944854 +
+           w * (1.50367897 + w * -0.622885261)))));
+}
+
+// ---- edge warp (footprints/edge_warp.h, design (7))
+
+float edge_warp(float s, float a, float k) {
+    float v = min(abs(s) / a, 1.0);
+    float b = v * (1.0 - v);
+    return sign(s) * (a * (v * v + k * b) / (1.0 + (k - 1.0) * b) + max(abs(s) - a, 0.0));
+}
+
+float edge_warp_inverse(float w, float a, float k) {
+    float y = min(abs(w) / a, 1.0);
+    float b = (k - 1.0) * (1.0 - y);
+    float v = 2.0 * y / (1.0 + b + sqrt((1.0 - b) * (1.0 - b) + 4.0 * b * (1.0 - y)));
+    return sign(w) * (a * v + max(abs(w) - a, 0.0));
+}
+#endif
