@@ -1,0 +1,119 @@
+#include "engine/accuracy/choose_settings.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "engine/accuracy/configurations.h"
+#include "engine/accuracy/metrics.h"
+#include "engine/error.h"
+#include "engine/reference/direct_evaluation.h"
+#include "engine/scene/ladder.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+constexpr double kProxyPixels = 112;  ///< longer side of the small picture
+constexpr int kFrames = 3;
+
+/// Methods that were on or near the front of measured volumes; the base's own is always among them.
+std::vector<Settings> candidates(const Settings& base) {
+    struct Row {
+        FootprintMode footprints;
+        SheetCut sheets;
+        double spacing, saturation;
+        SheetFormat format;
+    };
+    using F = FootprintMode;
+    using S = SheetCut;
+    const Row rows[] = {{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Half},
+                        {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Half},
+                        {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Float},
+                        {F::TableLerp, S::Whole, 1, 0.98, SheetFormat::Float},
+                        {F::TableLerp, S::Whole, 0.5, 0.99, SheetFormat::Float},
+                        {F::TableLerp, S::Whole, 0.25, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Float},
+                        {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Float}};
+    std::vector<Settings> list{base};
+    std::vector<std::string> known{settings_key(base)};
+    for (const Row& row : rows) {
+        Settings s = base;
+        s.footprints = row.footprints;
+        s.sheets = row.sheets;
+        s.sheet_spacing = row.spacing;
+        s.saturation = row.saturation;
+        s.sheet_format = row.format;
+        s.accumulation = SheetFormat::Float;
+        const std::string key = settings_key(s);
+        if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+        known.push_back(key);
+        list.push_back(s);
+    }
+    return list;
+}
+
+std::string percent(double share) {
+    return fmt::format("{:.3g} %", 100 * share);
+}
+
+}  // namespace
+
+double error_share(std::string_view text) {
+    const bool in_percent = text.ends_with('%');
+    std::string_view digits = text.substr(0, text.size() - (in_percent ? 1 : 0));
+    while (digits.ends_with(' '))
+        digits.remove_suffix(1);
+    double value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (in_percent) value /= 100;
+    if (error != std::errc() || end != digits.data() + digits.size() || !(value > 0) || !(value < 1))
+        fail("'{}' is not an error above 0 and below 1, such as 0.005 or 0.5%", text);
+    return value;
+}
+
+ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const Scene& scene, const Camera& camera,
+                               int width, int height, const ErrorLimit& limit) {
+    if (!(limit.rms > 0 && limit.rms < 1)) fail("an error of {} is not above 0 and below 1", limit.rms);
+    const double scale = std::min(1.0, kProxyPixels / std::max(width, height));
+    ChosenSettings result;
+    result.size = glm::max(glm::ivec2(1), glm::ivec2(std::lround(width * scale), std::lround(height * scale)));
+
+    const reference::PreparedVolume model(volume, scene, model_of(limit.base));
+    const reference::DirectOptions options{std::clamp(limit.rms / 10, 1e-6, 1e-3), {}};
+    const reference::DirectResult expected =
+        reference::direct_evaluation(model, camera, result.size.x, result.size.y, reference::Output::Color, options);
+    result.reference_error = expected.error_estimate;
+
+    for (const Settings& settings : candidates(limit.base)) {
+        TriedSettings tried{settings, 0, std::numeric_limits<double>::infinity()};
+        for (int frame = 0; frame < kFrames; ++frame) {
+            const RenderResult picture = renderer.render(scene, camera, settings, result.size.x, result.size.y);
+            tried.milliseconds = std::min(tried.milliseconds, picture.stats.frame_milliseconds);
+            if (frame == 0) tried.error = image_error(picture.color, expected.image).rms;
+        }
+        if (result.tried.empty()) result.default_milliseconds = tried.milliseconds;
+        result.tried.push_back(tried);
+    }
+    std::stable_sort(result.tried.begin(), result.tried.end(),
+                     [](const TriedSettings& a, const TriedSettings& b) { return a.milliseconds < b.milliseconds; });
+    const auto good = std::find_if(result.tried.begin(), result.tried.end(),
+                                   [&](const TriedSettings& t) { return kErrorMargin * t.error <= limit.rms; });
+    if (good == result.tried.end()) {
+        const auto best = std::min_element(result.tried.begin(), result.tried.end(),
+                                           [](const auto& a, const auto& b) { return a.error < b.error; });
+        const std::string how = difference(best->settings, limit.base);
+        fail("no method keeps the error of this view below {}; the best is {} with {}", percent(limit.rms),
+             percent(kErrorMargin * best->error), how.empty() ? "the settings as they are" : how);
+    }
+    result.chosen = *good;
+    result.expected_error = kErrorMargin * good->error;
+    return result;
+}
+
+}  // namespace edgesplat::accuracy

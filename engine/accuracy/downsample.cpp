@@ -1,0 +1,247 @@
+#include "engine/accuracy/downsample.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "engine/accuracy/metrics.h"
+#include "engine/error.h"
+#include "engine/reference/field.h"
+
+namespace edgesplat::accuracy {
+namespace {
+
+std::vector<std::pair<std::string, Settings>> variants_of(const Settings& edge) {
+    Settings plain = edge, paper = edge;
+    plain.edges = EdgeEstimator::Off;
+    paper.edges = EdgeEstimator::Taylor;
+    paper.warp = WarpFamily::Paper;
+    paper.footprints = FootprintMode::Warp2d;
+    paper.edge_shape = EdgeShape::Plane;
+    return {{"plain", plain}, {"paper", paper}, {"edge", edge}};
+}
+
+/// The points as a volume coarser by that factor has them; a unit of the profile stays a fine voxel.
+std::vector<SurfacePoint> coarser(std::vector<SurfacePoint> points, int factor) {
+    for (SurfacePoint& p : points) {
+        p.position = (p.position - (factor - 1) / 2.0) / static_cast<double>(factor);
+        p.axis /= factor;
+    }
+    return points;
+}
+
+double smallest_spacing(const VolumeGeometry& geometry) {
+    const glm::dvec3 s = geometry.spacing();
+    return std::min({s.x, s.y, s.z});
+}
+
+}  // namespace
+
+Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    if (glm::any(glm::lessThan(low, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(high, dims)) ||
+        glm::any(glm::lessThan(high - low, glm::ivec3(1))))
+        fail("crop {},{},{} to {},{},{}: expected at least 2 voxels along each axis within {} x {} x {}", low.x, low.y,
+             low.z, high.x, high.y, high.z, dims.x, dims.y, dims.z);
+    Volume result = volume;
+    result.geometry.dims = high - low + 1;
+    result.geometry.origin = volume.geometry.to_world(glm::dvec3(low));
+    result.values.clear();
+    for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
+                result.values.push_back(volume.at(x, y, z));
+    finish_volume(result);
+    return result;
+}
+
+Volume box_downsampled(const Volume& volume, int factor) {
+    const glm::ivec3 dims = volume.geometry.dims / std::max(factor, 1);
+    if (factor < 2 || glm::any(glm::lessThan(dims, glm::ivec3(2))))
+        fail("down-sampling by {}: expected 2 or more, and 2 voxels left along each axis", factor);
+    Volume result = volume;
+    result.geometry.dims = dims;
+    result.geometry.index_to_world_axes = volume.geometry.index_to_world_axes * static_cast<double>(factor);
+    result.geometry.origin = volume.geometry.to_world(glm::dvec3((factor - 1) / 2.0));
+    result.values.clear();
+    const double share = 1.0 / (static_cast<double>(factor) * factor * factor);
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x) {
+                double sum = 0;
+                for (int c = 0; c < factor; ++c)
+                    for (int b = 0; b < factor; ++b)
+                        for (int a = 0; a < factor; ++a)
+                            sum += static_cast<double>(volume.at(factor * x + a, factor * y + b, factor * z + c));
+                result.values.push_back(static_cast<float>(share * sum));
+            }
+    finish_volume(result);
+    return result;
+}
+
+SurfacePoints surface_points(const Volume& volume, double iso, int count, double room) {
+    SurfacePoints result;
+    const reference::Field field{volume.geometry.dims, volume.values, {}};
+    const glm::dvec3 top(volume.geometry.dims - 1);
+    const auto above = [&](const glm::dvec3& p) { return reference::sample(field, p) - iso; };
+    std::mt19937 random(21);
+    const auto uniform = [&] { return random() / 4294967296.0; };
+    for (int trial = 0; trial < 4000 * count && static_cast<int>(result.points.size()) < count; ++trial) {
+        const double a = uniform(), b = uniform(), c = uniform();
+        const glm::dvec3 start = glm::dvec3(a, b, c) * top;
+        const auto axis = static_cast<int>(random() % 3);
+        glm::dvec3 step(0);
+        step[axis] = 1;
+        if (start[axis] + 1 > top[axis] || (above(start) < 0) == (above(start + step) < 0)) continue;
+        double low = 0, high = 1;
+        for (int i = 0; i < 50; ++i) {
+            const double middle = (low + high) / 2;
+            ((above(start + middle * step) < 0) == (above(start) < 0) ? low : high) = middle;
+        }
+        SurfacePoint point{start + high * step, {}};
+        const glm::dvec3 g = reference::point_gradient(field, point.position);
+        if (!(glm::length(g) > 0)) continue;
+        point.axis = -g / glm::length(g);
+        // Oblique pieces cross more edges of cells per area: evened out.
+        if (uniform() * (std::abs(point.axis.x) + std::abs(point.axis.y) + std::abs(point.axis.z)) > 1) continue;
+        const glm::dvec3 margin(room + 2);
+        if (glm::any(glm::lessThan(point.position, margin)) ||
+            glm::any(glm::greaterThan(point.position, top - margin))) {
+            ++result.near_border;
+            continue;
+        }
+        bool clear = true;
+        for (double s = 0.5; s <= room && clear; s += 0.5)
+            clear = above(point.position - s * point.axis) >= 0 && above(point.position + s * point.axis) < 0;
+        if (clear)
+            result.points.push_back(point);
+        else
+            ++result.disturbed;
+    }
+    return result;
+}
+
+SurfaceDifference surface_difference(const RenderResult& coarse, const RenderResult& fine, double distance_mm) {
+    SurfaceDifference result;
+    const Image& a = coarse.color;
+    const Image& b = fine.color;
+    for (int y = 0; y < a.height; ++y) {
+        for (int x = 0; x < a.width; ++x) {
+            const bool here = a.at(x, y, 3) >= 0.5F, there = b.at(x, y, 3) >= 0.5F;
+            result.invented += here && !there ? 1 : 0;
+            result.lost += there && !here ? 1 : 0;
+            const double apart =
+                std::abs(static_cast<double>(coarse.depth->at(x, y, 0)) - static_cast<double>(fine.depth->at(x, y, 0)));
+            result.displaced += here && there && apart > distance_mm ? 1 : 0;
+        }
+    }
+    const double pixels = static_cast<double>(a.width) * a.height;
+    for (double* share : {&result.invented, &result.lost, &result.displaced})
+        *share /= pixels;
+    return result;
+}
+
+namespace {
+
+class Experiment {
+  public:
+    Experiment(Renderer& renderer, const ResolutionRequest& request, const ProgressFunction& progress)
+        : renderer_(renderer), request_(request), progress_(progress) {
+        report_.request = request;
+        report_.device = renderer.device();
+        report_.cameras = report_cameras(*request.volume, request.scene, request.size.x, request.size.y);
+        pieces_ = 1 + 4 * request.factors.size();
+    }
+
+    ResolutionReport run() {
+        renderer_.set_volume(request_.volume);
+        full_ = render_all(request_.settings);
+        for (const RenderResult& r : full_)
+            report_.full.push_back(r.color);
+        const reference::PreparedVolume model(*request_.volume, request_.scene, without_tables(request_.settings));
+        for (const int factor : request_.factors)
+            report_.factors.push_back(measure(factor, model));
+        renderer_.set_volume(request_.volume);
+        return report_;
+    }
+
+  private:
+    static Settings without_tables(Settings settings) {
+        settings.footprints = FootprintMode::Procedural;  // profiles need no table
+        return settings;
+    }
+
+    void next(const std::string& what) {
+        const Progress state{static_cast<double>(done_) / static_cast<double>(pieces_), 0, done_, pieces_, what};
+        ++done_;
+        if (progress_ && !progress_(state)) throw Interrupted("stopped; nothing was written");
+    }
+
+    std::vector<RenderResult> render_all(const Settings& settings) {
+        next("pictures");
+        std::vector<RenderResult> list;
+        for (const ReportCamera& camera : report_.cameras)
+            list.push_back(renderer_.render(request_.scene, camera.camera, settings, request_.size.x, request_.size.y,
+                                            {.depth = true}));
+        return list;
+    }
+
+    FactorResult measure(int factor, const reference::PreparedVolume& full_model) {
+        next(fmt::format("edges, factor {}", factor));
+        FactorResult result;
+        result.factor = factor;
+        const auto coarse = std::make_shared<const Volume>(box_downsampled(*request_.volume, factor));
+        result.dims = coarse->geometry.dims;
+        const SurfacePoints surface =
+            surface_points(*request_.volume, request_.scene.iso_values.front(), request_.surface_points, 1.5 * factor);
+        result.points = static_cast<int>(surface.points.size());
+        result.disturbed = surface.disturbed;
+        result.near_border = surface.near_border;
+        const ProfileRange range{2.5 * factor, 0.01 * factor};
+        result.full = edge_figures(full_model, surface.points, range);
+
+        renderer_.set_volume(coarse);
+        const double voxel_mm = smallest_spacing(coarse->geometry);
+        for (const auto& [name, settings] : variants_of(request_.settings)) {
+            VariantResult variant{.name = name, .settings = settings};
+            const std::vector<RenderResult> pictures = render_all(settings);
+            std::vector<ImageError> errors;
+            for (std::size_t c = 0; c < pictures.size(); ++c) {
+                errors.push_back(image_error(pictures[c].color, full_[c].color));
+                const SurfaceDifference d = surface_difference(pictures[c], full_[c], voxel_mm);
+                const double n = static_cast<double>(pictures.size());
+                variant.surface.invented += d.invented / n;
+                variant.surface.lost += d.lost / n;
+                variant.surface.displaced += d.displaced / n;
+                variant.pictures.push_back(pictures[c].color);
+            }
+            variant.rmse = pooled(errors).rms;
+            const reference::PreparedVolume model(*coarse, request_.scene, without_tables(settings));
+            variant.edges = edge_figures(model, coarser(surface.points, factor), range);
+            result.variants.push_back(std::move(variant));
+        }
+        const VariantResult plain = result.variants.front();
+        for (VariantResult& v : result.variants) {
+            v.recovered_rise =
+                (plain.edges.rise_mean - v.edges.rise_mean) / (plain.edges.rise_mean - result.full.rise_mean);
+            v.recovered_rmse = (plain.rmse - v.rmse) / plain.rmse;
+        }
+        return result;
+    }
+
+    Renderer& renderer_;
+    const ResolutionRequest& request_;
+    const ProgressFunction& progress_;
+    ResolutionReport report_;
+    std::vector<RenderResult> full_;
+    std::size_t pieces_ = 1, done_ = 0;
+};
+
+}  // namespace
+
+ResolutionReport measure_resolution(Renderer& renderer, const ResolutionRequest& request,
+                                    const ProgressFunction& progress) {
+    return Experiment(renderer, request, progress).run();
+}
+
+}  // namespace edgesplat::accuracy
