@@ -221,6 +221,7 @@ std::uint64_t Renderer::validation_messages() const {
 void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
     auto& self = *state_;
     self.collected.reset();
+    self.raycast.reset();
     self.volume_resources = {};
     self.volume = std::move(volume);
     try {

@@ -39,6 +39,16 @@ struct AovRequest {
     bool distance = false;  ///< mean signed distance of the seen voxels to their edge, voxels, 1 channel
 };
 
+/// How `Renderer::raycast` samples.
+struct RaycastSettings {
+    double step = 0.5;       ///< voxels between samples along the ray, (0.01, 4]
+    bool warped = false;     ///< materials at warped positions, by the edges that Settings ask for, instead of values
+    bool skip_empty = true;  ///< leap over transparent bricks; the picture is the same
+};
+
+/// Checks the ranges above. Throws Error naming the field, the value and the range.
+void validate(const RaycastSettings& settings);
+
 struct PassTime {
     std::string name;  ///< stem of the pass, e.g. "5_draw_splats"
     double milliseconds = 0;
@@ -82,6 +92,11 @@ class Renderer {
     /// the volume, the scene's materials or the edge settings changed.
     RenderResult render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
                         const AovRequest& aovs = {});
+
+    /// The same scene by casting rays through the interpolated volume: colour only. Of Settings it uses `saturation`,
+    /// and with `warped` the edges and their band.
+    RenderResult raycast(const Scene& scene, const Camera& camera, const Settings& settings,
+                         const RaycastSettings& raycast, int width, int height);
 
     /// Validation messages so far; 0 when validation was not asked for.
     std::uint64_t validation_messages() const;

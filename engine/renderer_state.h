@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/frame.h"
+#include "engine/frame_raycast.h"
 #include "footprints/footprint_cache.h"
 #include "footprints/footprint_table.h"
 
@@ -31,6 +32,7 @@ struct RendererState {
     VolumeResources volume_resources;
     FootprintResources footprint_resources;
     TargetResources targets;
+    std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way
 
     std::optional<CollectionPlan> collected;  ///< what the splat list was made with
     std::optional<EdgeBand> table_band;       ///< what the footprint table was made for

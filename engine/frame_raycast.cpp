@@ -1,0 +1,123 @@
+#include "engine/frame_raycast.h"
+
+#include <algorithm>
+
+namespace edgesplat {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+gpu::GpuImage brick_image(const gpu::Device& device, const glm::ivec3& dims, const char* name) {
+    return {
+        device,
+        {.format = vk::Format::eR8Uint, .size = passes::brick_count(dims), .volume = true, .usage = Usage::eStorage},
+        name};
+}
+
+bool same_bricks(const shader::SceneParams& a, const shader::SceneParams& b) {
+    return a.iso_count == b.iso_count && a.visible_mask == b.visible_mask && std::ranges::equal(a.iso, b.iso);
+}
+
+}  // namespace
+
+RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
+                         const RaycastSettings& raycast, const CollectionPlan& collection, const glm::ivec2& size) {
+    const auto& geometry = volume.geometry;
+    const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
+    const CameraFrame view = camera_frame(camera);
+    const glm::dvec3 anchor = glm::dvec3(geometry.dims - 1) / 2.0;
+    const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
+
+    RaycastPlan plan;
+    plan.size = size;
+    plan.variant = {scene.light.kind, collection.params.iso_count, raycast.warped,
+                    raycast.warped && draws_warped(settings), raycast.skip_empty};
+    plan.block.scene = collection.params;
+    auto& p = plan.block.rays;
+    p.anchor = anchor;
+    p.anchor_x = static_cast<float>(glm::dot(view.right, anchor_view));
+    p.anchor_y = static_cast<float>(glm::dot(-view.up, anchor_view));
+    p.anchor_z = static_cast<float>(glm::dot(view.forward, anchor_view));
+    p.ray_x = to_index * view.right;
+    p.ray_y = to_index * -view.up;
+    p.ray_z = to_index * view.forward;
+    p.tan_half_x = static_cast<float>(view.tan_half_y * size.x / size.y);
+    p.tan_half_y = static_cast<float>(view.tan_half_y);
+    p.index_to_world = glm::mat3(to_world);
+    p.normal_to_world = glm::mat3(glm::transpose(to_index));
+    if (scene.light.kind == Light::Kind::Directional) p.light = glm::normalize(scene.light.direction);
+    p.ambient = static_cast<float>(scene.light.ambient);
+    p.diffuse = static_cast<float>(scene.light.diffuse);
+    p.background = scene.background;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        p.materials[m] = glm::dvec4(scene.materials[m].color, scene.materials[m].extinction);
+    p.size = size;
+    p.saturation = settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
+    p.step = static_cast<float>(raycast.step);
+    p.half_width = static_cast<float>(settings.edge_half_width);
+    p.strength = static_cast<float>(settings.edge_strength);
+    return plan;
+}
+
+RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
+                                   const glm::ivec3& dims)
+    : bindings_(device, pipelines), layout_(pipelines.layout()), bricks_(brick_image(device, dims, "bricks")) {
+    block_ = gpu::Buffer(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters");
+    commands.run([&] {
+        bindings_.prepare(commands);
+        commands.prepare({&bricks_});
+    });
+}
+
+void RaycastResources::bind(const gpu::Device& device, std::uint32_t binding, const gpu::GpuImage& image) const {
+    const vk::DescriptorImageInfo info({}, image.view(), vk::ImageLayout::eGeneral);
+    const vk::WriteDescriptorSet write(bindings_.set(), binding, 0, vk::DescriptorType::eStorageImage, info);
+    device.handle().updateDescriptorSets(write, nullptr);
+}
+
+void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume) {
+    if (size_ != plan.size) {
+        const auto pixels = static_cast<std::size_t>(plan.size.x) * static_cast<std::size_t>(plan.size.y);
+        output_ = {};
+        output_ = gpu::Buffer(device, pixels * sizeof(glm::vec4), gpu::Buffer::Place::Host, "ray caster's pixels");
+        size_ = plan.size;
+    }
+    auto& block = block_.mapped<shader::RaycastBlock>(1)[0];
+    block = plan.block;
+    block.rays.pixels = output_.address();
+    bindings_.write(volume, {}, {});
+    bind(device, shader::BIND_BRICKS, bricks_);
+}
+
+bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& commands, const RaycastPlan& plan) {
+    if (!plan.variant.skip_empty || same_bricks(classified_, plan.block.scene)) return false;
+    const gpu::GpuImage scratch = brick_image(device, plan.block.scene.dims, "brick scratch");
+    bind(device, shader::BIND_BRICK_SCRATCH, scratch);
+    classified_ = {};
+    commands.run([&] {
+        commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
+        commands.prepare({&scratch});
+        commands.begin_span("raycast_bricks");
+        passes::classify_bricks(commands, block_.address(), plan.block.scene.dims);
+        commands.end_span();
+    });
+    // The slot must not be left with an image that is gone.
+    bind(device, shader::BIND_BRICK_SCRATCH, bricks_);
+    classified_ = plan.block.scene;
+    return true;
+}
+
+void RaycastResources::cast(gpu::Commands& commands, const RaycastPlan& plan) const {
+    commands.run([&] {
+        commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
+        commands.begin_span("raycast");
+        passes::cast_rays(commands, block_.address(), plan.variant, plan.size);
+        commands.end_span();
+    });
+}
+
+std::span<const float> RaycastResources::pixels() const {
+    return output_.mapped<float>(4 * static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y));
+}
+
+}  // namespace edgesplat

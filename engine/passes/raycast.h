@@ -1,0 +1,28 @@
+// Rays through the volume, in place of splats: what splatting is compared with.
+#pragma once
+
+#include "engine/gpu/commands.h"
+#include "engine/scene/scene.h"
+
+namespace edgesplat::passes {
+
+/// Bricks along each axis of a volume.
+glm::ivec3 brick_count(const glm::ivec3& dims);
+
+/// Volume -> distance of every brick to the nearest one that is not transparent. `block` is a RaycastBlock; the ray
+/// caster's descriptor set is bound.
+void classify_bricks(gpu::Commands& commands, shader::Address block, const glm::ivec3& dims);
+
+/// Pipeline variant of the ray caster: every member is a specialization constant.
+struct RaycastVariant {
+    Light::Kind light = Light::Kind::Headlight;
+    std::uint32_t iso_count = 1;
+    bool warped = false;     ///< materials are looked up at warped positions
+    bool edges = false;      ///< the edge field exists
+    bool skip_empty = true;  ///< transparent bricks are leapt over
+};
+
+/// Writes FrameParams::output_pixels of the block, (height, width) vec4, linear light.
+void cast_rays(gpu::Commands& commands, shader::Address block, const RaycastVariant& variant, const glm::ivec2& size);
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,66 @@
+// Renderer::raycast: the other way to look at the same scene.
+#include <chrono>
+
+#include "engine/error.h"
+#include "engine/renderer_state.h"
+
+namespace edgesplat {
+
+void validate(const RaycastSettings& settings) {
+    // Written so that NaN fails it.
+    if (!(settings.step > 0.01 && settings.step <= 4))
+        fail("raycast step: {} is outside (0.01, 4] voxels", settings.step);
+}
+
+RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const Settings& wanted,
+                               const RaycastSettings& raycast, int width, int height) {
+    using Clock = std::chrono::steady_clock;
+    const auto milliseconds_since = [](Clock::time_point start) {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    };
+    auto& self = *state_;
+    if (!self.volume) fail("raycast: no volume has been set");
+    if (width < 1 || height < 1 || width > 16384 || height > 16384)
+        fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
+    validate(scene);
+    validate(wanted);
+    validate(raycast);
+    const Settings settings = drawn_as(wanted);
+    RenderResult result;
+    auto& stats = result.stats;
+    try {
+        const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
+        const auto add_times = [&](const std::vector<PassTime>& times) {
+            stats.passes.insert(stats.passes.end(), times.begin(), times.end());
+        };
+        if (raycast.warped && draws_warped(settings)) {
+            stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
+            if (stats.setup_milliseconds > 0) add_times(self.collection_times);
+        }
+        auto start = Clock::now();
+        if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
+        auto& rays = *self.raycast;
+        const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
+                                       plan_collection(*self.volume, scene, settings, keep_buried), {width, height});
+        rays.prepare(self.device, plan, self.volume_resources);
+        if (rays.classify(self.device, self.commands, plan)) {
+            stats.setup_milliseconds += milliseconds_since(start);
+            add_times(self.commands.span_times());
+        }
+        start = Clock::now();
+        rays.cast(self.commands, plan);
+        stats.frame_milliseconds = milliseconds_since(start);
+        add_times(self.commands.span_times());
+        result.color = Image(width, height, 4);
+        std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
+    } catch (const vk::SystemError& error) {
+        fail("Vulkan: {}", error.what());
+    }
+    stats.device = self.device.info();
+    stats.voxels = self.volume->geometry.voxel_count();
+    stats.device_bytes = self.device.allocated_bytes();
+    stats.validation_messages = self.device.validation_messages();
+    return result;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,223 @@
+// The ray caster against closed forms, against itself without its short cuts, and against splatting.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "engine/error.h"
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+/// A picture by rays of what `render` would show by splats.
+RenderResult cast(const Shot& shot, const RaycastSettings& how = {}) {
+    Shot least = shot;  // so that render() knows which volume the renderer has
+    least.width = least.height = 1;
+    render(least);
+    return test_renderer().raycast(shot.scene, shot.camera, shot.settings, how, shot.width, shot.height);
+}
+
+/// A pixel's ray: eye and unit direction in index space, millimetres per voxel along it.
+struct PixelRay {
+    glm::dvec3 eye, u;
+    double mm;
+};
+PixelRay ray_of(const Shot& shot, int x, int y) {
+    const CameraFrame frame = camera_frame(shot.camera);
+    const double sx = (2 * (x + 0.5) / shot.width - 1) * frame.tan_half_y * shot.width / shot.height;
+    const double sy = (1 - 2 * (y + 0.5) / shot.height) * frame.tan_half_y;
+    const auto& geometry = shot.volume->geometry;
+    const glm::dvec3 world = frame.forward + sx * frame.right + sy * frame.up;
+    const glm::dvec3 u = glm::normalize(glm::inverse(geometry.index_to_world_axes) * world);
+    return {geometry.to_index(frame.eye), u, glm::length(geometry.index_to_world_axes * u)};
+}
+
+/// Values that fall linearly on both sides of the plane z = 10.3, and reach 0.5 at 5.2 voxels from it.
+Shot wedge_shot(double extinction, const glm::dmat3& axes = glm::dmat3(1)) {
+    Shot shot;
+    shot.volume = sampled(
+        {24, 22, 21}, [](const glm::dvec3& x) { return 5.7 - std::abs(x.z - 10.3); }, axes);
+    shot.scene = two_tone(0, extinction);
+    shot.camera = look(*shot.volume, {11, 9, -30}, {11.5, 10.5, 10}, 14, {0, 1, 0});
+    return shot;
+}
+
+TEST(Raycast, OpacityOfASlabIsExactAtEveryStep) {
+    const glm::dmat3 oblique(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.7));
+    for (const glm::dmat3& axes : {glm::dmat3(1), oblique}) {
+        for (const double step : {0.1, 0.5, 1.3}) {
+            const Shot shot = wedge_shot(0.08, axes);
+            const Image color = cast(shot, {.step = step}).color;
+            for (const glm::ivec2& p : {glm::ivec2(32, 32), glm::ivec2(20, 40), glm::ivec2(44, 25)}) {
+                const PixelRay ray = ray_of(shot, p.x, p.y);
+                const double expected = -std::expm1(-0.08 * 10.4 / std::abs(ray.u.z) * ray.mm);
+                EXPECT_NEAR(static_cast<double>(color.at(p.x, p.y, 3)), expected, 2e-4) << "step " << step;
+            }
+        }
+    }
+}
+
+TEST(Raycast, OnlyWhatIsInFrontOfTheEyeCounts) {
+    Shot shot = wedge_shot(0.2);
+    shot.camera.eye = shot.volume->geometry.to_world({11.2, 10.1, 9.4});
+    const Image color = cast(shot).color;
+    const PixelRay ray = ray_of(shot, 30, 31);
+    const double expected = -std::expm1(-0.2 * (10.3 + 5.2 - 9.4) / ray.u.z);
+    EXPECT_NEAR(static_cast<double>(color.at(30, 31, 3)), expected, 2e-4);
+}
+
+TEST(Raycast, SphereIsWhereItIsAndLitAsItShouldBe) {
+    const glm::dvec3 center(15.7, 15.2, 14.9);
+    constexpr double kRadius = 9;
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(sphere_scene(glm::ivec3(32), center, kRadius)));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 1, 1}, 8}};
+    shot.camera = look(*shot.volume, {14, -60, 20}, center, 22);
+    shot.width = shot.height = 96;
+    const Image color = cast(shot).color;
+    double squares = 0;
+    int hits = 0;
+    for (int y = 0; y < shot.height; ++y) {
+        for (int x = 0; x < shot.width; ++x) {
+            const PixelRay ray = ray_of(shot, x, y);
+            const glm::dvec3 to_center = center - ray.eye;
+            const double along = glm::dot(to_center, ray.u);
+            const double aside = std::sqrt(glm::dot(to_center, to_center) - along * along);
+            const double alpha = static_cast<double>(color.at(x, y, 3));
+            if (aside > kRadius + 0.05) {
+                EXPECT_EQ(alpha, 0) << x << ' ' << y;
+            }
+            if (aside > kRadius - 0.15) continue;
+            EXPECT_GT(alpha, 0.99) << x << ' ' << y;
+            const double cosine = std::sqrt(1 - aside * aside / (kRadius * kRadius));
+            const double error = static_cast<double>(color.at(x, y, 0)) / alpha - (0.15 + 0.85 * cosine);
+            EXPECT_LT(std::abs(error), 0.06) << x << ' ' << y;
+            squares += error * error;
+            ++hits;
+        }
+    }
+    EXPECT_GT(hits, 1500);
+    EXPECT_LT(std::sqrt(squares / hits), 0.03) << "central differences are off by 2.7 degrees rms";
+}
+
+TEST(Raycast, LeapsOverEmptySpaceDoNotShow) {
+    Shot shot = torus_shot();
+    shot.width = 90;
+    const Camera inside = look(*shot.volume, {14.2, 13.5, 9.5}, {4, 13, 9}, 100);
+    for (const Camera& camera : {shot.camera, inside}) {
+        shot.camera = camera;
+        for (const bool warped : {false, true}) {
+            const Image leapt = cast(shot, {.warped = warped}).color;
+            const Image walked = cast(shot, {.warped = warped, .skip_empty = false}).color;
+            EXPECT_EQ(leapt.pixels, walked.pixels) << (warped ? "warped" : "plain");
+        }
+    }
+}
+
+TEST(Raycast, MaterialsMayChangeBetweenPictures) {
+    Shot shot = torus_shot();
+    const Image before = cast(shot).color;
+    std::swap(shot.scene.materials[0], shot.scene.materials[1]);
+    const Image changed = cast(shot).color;
+    EXPECT_EQ(changed.pixels, cast(shot, {.skip_empty = false}).color.pixels);
+    std::swap(shot.scene.materials[0], shot.scene.materials[1]);
+    EXPECT_EQ(cast(shot).color.pixels, before.pixels);
+}
+
+TEST(Raycast, LooksLikeSplatting) {
+    const Shot shot = torus_shot();
+    const Image splatted = render(shot).color;
+    EXPECT_GT(compare_images(cast(shot).color, splatted).psnr, 24);
+    EXPECT_GT(compare_images(cast(shot, {.warped = true}).color, splatted).psnr, 26);
+}
+
+TEST(Raycast, WarpedEdgesAreAsSharpAsSplatted) {
+    constexpr int kWidth = 161, kHeight = 4, kSize = 18;
+    EdgeProfiles splatted, warped, interpolated;
+    for (const Pose& pose : poses(6)) {
+        const glm::dvec3 center = glm::dvec3((kSize - 1) / 2.0) + pose.shift;
+        Shot shot;
+        shot.volume =
+            sampled(glm::ivec3(kSize), [&](const glm::dvec3& x) { return blurred_step(glm::dot(pose.n, x - center)); });
+        shot.scene = two_tone(0, 0.02);
+        shot.camera = camera_at(center, pose.across, pose.n, kHeight);
+        shot.width = kWidth;
+        shot.height = kHeight;
+        const auto add = [&](const Image& color, EdgeProfiles& profiles) {
+            std::vector<double> tau = row_of(color, kHeight / 2, nullptr, 3);
+            for (double& value : tau)
+                value = -std::log1p(-value);
+            const double inside = tau[8];  // 1.8 voxels from the edge
+            for (double& value : tau)
+                value /= inside;
+            add_profile(tau, (kWidth - 1) / 2.0, profiles);
+        };
+        add(render(shot).color, splatted);
+        add(cast(shot, {.warped = true}).color, warped);
+        shot.settings.edges = EdgeEstimator::Off;
+        add(cast(shot, {.warped = true}).color, interpolated);
+    }
+    EXPECT_EQ(warped.missed, 0);
+    EXPECT_LE(mean(warped.rise), mean(splatted.rise));
+    EXPECT_LT(mean(warped.rise), 0.3 * mean(interpolated.rise));
+    EXPECT_LT(largest_magnitude(warped.location), 0.1);
+    RecordProperty("rise_splatted", fmt::format("{:.3f}", mean(splatted.rise)));
+    RecordProperty("rise_warped", fmt::format("{:.3f}", mean(warped.rise)));
+}
+
+TEST(Raycast, SmallAndFlatVolumes) {
+    for (const glm::ivec3& dims : {glm::ivec3(1), glm::ivec3(2), glm::ivec3(1, 9, 7), glm::ivec3(9, 1, 7),
+                                   glm::ivec3(9, 7, 1), glm::ivec3(1, 1, 9)}) {
+        for (const bool constant : {false, true}) {
+            for (const bool warped : {false, true}) {
+                Shot shot;
+                shot.volume = sampled(dims, [&](const glm::dvec3& x) { return constant ? 1 : x.x + x.y + x.z + 1; });
+                shot.scene = two_tone(0, 3);
+                shot.scene.light.kind = Light::Kind::Headlight;
+                const glm::dvec3 middle = glm::dvec3(dims - 1) / 2.0;
+                for (const glm::dvec3& eye : {middle - glm::dvec3(9, 21, -13), middle - glm::dvec3(0, 20, 0), middle}) {
+                    shot.camera = look(*shot.volume, eye, middle + glm::dvec3(0, 0.1, 0), 30);
+                    const Image color = cast(shot, {.warped = warped}).color;
+                    EXPECT_TRUE(within(color, 0, 1.0001F)) << fmt::format("{} x {} x {}", dims.x, dims.y, dims.z);
+                    EXPECT_GT(color.at(32, 32, 3), 0.7F) << fmt::format("{} x {} x {}", dims.x, dims.y, dims.z);
+                }
+            }
+        }
+    }
+}
+
+TEST(Raycast, FarEyesAndWideAngles) {
+    Shot shot = torus_shot();
+    const glm::dvec3 target(14.3, 13.6, 9.4), way = glm::normalize(glm::dvec3(0.2, 1, -0.8));
+    const auto seen_from = [&](double distance) {
+        shot.camera = look(*shot.volume, target - distance * way, target, glm::degrees(2 * std::atan(16 / distance)));
+        return cast(shot).color;
+    };
+    const Image far = seen_from(1e5);
+    EXPECT_TRUE(within(far, 0, 1.0001F));
+    EXPECT_GE(compare_images(seen_from(1e4), far).psnr, 35) << "both are parallel projections, nearly";
+    for (const bool warped : {false, true}) {
+        shot.camera = look(*shot.volume, {14, 5.5, 9}, target, 170);
+        EXPECT_TRUE(within(cast(shot, {.warped = warped}).color, 0, 1.0001F));
+        shot.camera.direction = -shot.camera.direction;
+        EXPECT_TRUE(within(cast(shot, {.warped = warped}).color, 0, 1.0001F));
+    }
+}
+
+TEST(Raycast, SaysWhatItDidAndRefusesWhatItCannot) {
+    Shot shot = torus_shot();
+    shot.scene.background = {0.25, 0.5, 0.75};
+    shot.camera.direction = -shot.camera.direction;
+    const RenderResult away = cast(shot);
+    EXPECT_EQ(away.stats.passes.back().name, "raycast");
+    EXPECT_FLOAT_EQ(away.color.at(5, 7, 1), 0.5F);
+    EXPECT_EQ(away.color.at(5, 7, 3), 0);
+    for (const double step : {0.0, -1.0, 5.0, std::numeric_limits<double>::quiet_NaN()})
+        EXPECT_THROW(cast(shot, {.step = step}), Error) << step;
+}
+
+}  // namespace
+}  // namespace edgesplat::test
