@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/edgesplat/accuracy_command.h"
 #include "apps/edgesplat/compare_command.h"
 #include "apps/edgesplat/footprints_command.h"
 #include "apps/edgesplat/help_formatter.h"
@@ -111,6 +112,7 @@ int main(int argc, char** argv) {
         add_info_command(app);
         add_compare_command(app, exit_status);
         add_footprints_command(app);
+        add_accuracy_command(app, shell_line(argc, argv), exit_status);
         app.footer(
             "Examples:\n"
             "  edgesplat render builtin:sphere -o sphere.png --compare plain\n"

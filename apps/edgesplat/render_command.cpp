@@ -8,6 +8,7 @@
 
 #include "apps/edgesplat/camera_options.h"
 #include "apps/edgesplat/cpu_renderers.h"
+#include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/render_output.h"
 #include "apps/edgesplat/scene_options.h"
 #include "apps/edgesplat/volume_options.h"
@@ -26,6 +27,7 @@ struct RenderOptions {
     SceneOptions scene;
     CameraOptions camera;
     edgesplat::Settings settings;
+    MaxErrorOption max_error;
     RendererOptions renderer;
     std::string output, json;
     std::vector<std::string> aovs;
@@ -77,19 +79,21 @@ std::vector<RenderedFrame> render_frames(const RenderOptions& options, edgesplat
 
 /// Everything the command leaves; `measurements` of the renderers that have them.
 void write(const RenderOptions& options, const RunDescription& description, const std::vector<RenderedFrame>& frames,
-           const std::vector<CpuMeasurements>& measurements) {
+           const std::vector<CpuMeasurements>& measurements,
+           const std::optional<edgesplat::accuracy::ChosenSettings>& choice = {}) {
     edgesplat::ImageMetadata metadata = picture_metadata(description);
     metadata.emplace_back("edgesplat:renderer", name_of(options.renderer.kind));
+    nlohmann::ordered_json json = statistics(description, frames);
+    add_error_estimate(choice, options.max_error, metadata, json);
     std::vector<edgesplat::FileContent> files = picture_files(options.output, frames, metadata);
     if (!options.json.empty()) {
-        nlohmann::ordered_json json = statistics(description, frames);
         add_renderer_statistics(json, options.renderer, measurements);
         files.push_back({options.json, json.dump(2) + "\n"});
     }
     edgesplat::write_files(files);
 }
 
-void run(const RenderOptions& options, const std::string& command_line) {
+void run(RenderOptions options, const std::string& command_line) {
     check_outputs(options);
     check_cpu_request(options.renderer, options.volume_path, options.scene, options.aovs, !options.compare.empty());
     edgesplat::validate(options.settings);
@@ -99,6 +103,7 @@ void run(const RenderOptions& options, const std::string& command_line) {
 
     const RunDescription description{command_line, volume.get(), &scene, camera};
     if (on_processor(options.renderer.kind)) {
+        if (options.max_error.rms) edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
         const CpuRequest request{options.renderer,         options.settings,      options.camera.size,
                                  !options.compare.empty(), wants(options, "tau"), options.quiet};
         const CpuFrames done = render_on_processor(request, *volume, scene, camera);
@@ -111,8 +116,10 @@ void run(const RenderOptions& options, const std::string& command_line) {
     }
     edgesplat::Renderer renderer(options.device);
     renderer.set_volume(volume);
+    const auto choice = apply_max_error(options.max_error, renderer, *volume, scene, camera, options.camera.size,
+                                        options.settings, options.quiet);
     const std::vector<RenderedFrame> frames = render_frames(options, renderer, scene, camera);
-    write(options, description, frames, {});
+    write(options, description, frames, {}, choice);
 
     const edgesplat::RenderStats& stats = frames.back().result.stats;
     if (!options.quiet)
@@ -204,6 +211,7 @@ void add_render_command(CLI::App& app, const std::string& command_line) {
     add_camera_options(command, options->camera);
     add_scene_options(command, options->scene);
     add_renderer_options(command, options->renderer);
+    add_max_error_option(command, options->max_error);
     add_settings_options(command, options->settings);
     add_volume_options(command, options->volume);
     add_device_options(command, *options);

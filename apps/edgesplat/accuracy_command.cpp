@@ -1,0 +1,204 @@
+#include "apps/edgesplat/accuracy_command.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "apps/edgesplat/option_values.h"
+#include "apps/edgesplat/progress_bar.h"
+#include "apps/edgesplat/scene_options.h"
+#include "apps/edgesplat/volume_options.h"
+#include "engine/accuracy/analytic_truth.h"
+#include "engine/accuracy/downsample.h"
+#include "engine/accuracy/measure.h"
+#include "engine/accuracy/report_files.h"
+#include "engine/accuracy/report_text.h"
+#include "engine/error.h"
+
+namespace {
+
+using edgesplat::accuracy::ReportInput;
+using edgesplat::accuracy::ReportOptions;
+
+constexpr int kFullOrbit = 360;
+constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
+
+/// Everything the command line said.
+struct AccuracyCommand {
+    std::string volume_path;
+    VolumeOptions volume;
+    SceneOptions scene;
+    std::string folder;
+    ReportOptions report;
+    double orbit = 36, repeats = 5;
+    bool full = false, quiet = false;
+    std::vector<int> downsample;
+    std::optional<std::array<glm::ivec3, 2>> crop;
+    edgesplat::DeviceChoice device;
+};
+
+ReportInput input_of(const AccuracyCommand& command, const std::string& command_line) {
+    edgesplat::Volume volume = load_from_options(command.volume_path, command.volume, command.quiet);
+    preprocess(command.scene, volume);
+    if (command.crop) volume = edgesplat::accuracy::cropped(volume, (*command.crop)[0], (*command.crop)[1]);
+    ReportInput input;
+    input.volume = std::make_shared<const edgesplat::Volume>(std::move(volume));
+    input.scene = scene_from_options(command.scene, *input.volume);
+    if (!command.scene.threshold && !command.scene.box_filter && !command.crop)
+        input.analytic = edgesplat::accuracy::analytic_scene_of(command.volume_path);
+    input.program = "edgesplat " EDGESPLAT_VERSION;
+    input.command = command_line;
+    return input;
+}
+
+/// Six integers with commas between: the first and the last voxel.
+std::optional<std::array<glm::ivec3, 2>> parse_box(const std::string& text) {
+    std::array<int, 6> values{};
+    const char* at = text.data();
+    const char* const end = at + text.size();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        if (i > 0 && (at == end || *at++ != ',')) return {};
+        const auto [next, error] = std::from_chars(at, end, values[i]);
+        if (error != std::errc()) return {};
+        at = next;
+    }
+    if (at != end) return {};
+    return std::array{glm::ivec3(values[0], values[1], values[2]), glm::ivec3(values[3], values[4], values[5])};
+}
+
+void run_resolution(const AccuracyCommand& command, const ReportInput& input, const ReportOptions& options,
+                    int& exit_status) {
+    const edgesplat::accuracy::ResolutionRequest request{.volume = input.volume,
+                                                         .scene = input.scene,
+                                                         .factors = command.downsample,
+                                                         .size = options.size,
+                                                         .settings = options.base,
+                                                         .program = input.program,
+                                                         .command = input.command};
+    edgesplat::Renderer renderer(command.device);
+    const StopRequest stop;
+    edgesplat::accuracy::ResolutionReport report;
+    try {
+        ProgressBar bar(command.quiet);
+        report = measure_resolution(renderer, request, [&](const edgesplat::accuracy::Progress& p) {
+            bar.update(p.done, p.seconds_left, p.what);
+            return !stop.asked();
+        });
+    } catch (const edgesplat::accuracy::Interrupted& interrupted) {
+        fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
+        exit_status = kStoppedStatus;
+        return;
+    }
+    write_resolution(report, options.folder);
+    if (!command.quiet) fmt::print("{}{}\n", resolution_table(report), (options.folder / "resolution.html").string());
+}
+
+void run(const AccuracyCommand& command, const std::string& command_line, int& exit_status) {
+    ReportOptions options = command.report;
+    options.folder = command.folder;
+    options.repeats = static_cast<int>(command.repeats);
+    options.orbit_frames = command.full ? kFullOrbit : static_cast<int>(command.orbit);
+    edgesplat::validate(options.base);
+    edgesplat::accuracy::check_report_folder(options.folder);
+    const ReportInput input = input_of(command, command_line);
+    if (!command.downsample.empty()) return run_resolution(command, input, options, exit_status);
+
+    edgesplat::Renderer renderer(command.device);
+    renderer.set_volume(input.volume);
+    const StopRequest stop;
+    edgesplat::accuracy::Measured measured;
+    try {
+        ProgressBar bar(command.quiet);
+        measured = measure_accuracy(renderer, input, options, [&](const edgesplat::accuracy::Progress& p) {
+            bar.update(p.done, p.seconds_left, p.what);
+            return !stop.asked();
+        });
+    } catch (const edgesplat::accuracy::Interrupted& interrupted) {
+        fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
+        exit_status = kStoppedStatus;
+        return;
+    }
+    edgesplat::accuracy::write_report(measured);
+    if (command.quiet) return;
+    fmt::print("{}", edgesplat::accuracy::steps_table(measured.report));
+    for (const std::string& note : measured.report.notes)
+        fmt::print("{}\n", note);
+    fmt::print("{}\n", (options.folder / "index.html").string());
+}
+
+void add_report_options(CLI::App& app, AccuracyCommand& command) {
+    constexpr const char* kGroup = "Report";
+    app.add_option("--report", command.folder,
+                   "Folder for index.html, report.json, steps.csv and what is needed to go on after Ctrl-C")
+        ->required()
+        ->type_name("DIR")
+        ->group(kGroup);
+    app.add_option_function<std::string>(
+           "--size",
+           [&command](const std::string& text) {
+               const auto size = parse_size(text);
+               if (!size) throw CLI::ValidationError("--size", fmt::format("'{}' is not WxH, such as 192x192", text));
+               command.report.size = *size;
+           },
+           "Pixels of the pictures that are measured")
+        ->type_name("WxH")
+        ->default_str("192x192")
+        ->group(kGroup);
+    add_number(app, "--tolerance", command.report.tolerance, {1e-7, 0.01},
+               "Largest error of a pixel of the references, full scale = 1")
+        ->group(kGroup);
+    add_number(app, "--repeats", command.repeats, {1, 1000}, "Rounds in which times are taken")->group(kGroup);
+    add_number(app, "--orbit", command.orbit, {0, 3600}, "Frame pairs, one degree apart, for popping; 0: none")
+        ->group(kGroup);
+    app.add_flag("--full", command.full, "A whole turn of 360 frames")->group(kGroup);
+    app.add_flag("--restart", command.report.restart, "Throw away what an earlier run left in the folder")
+        ->group(kGroup);
+    app.add_option("--downsample", command.downsample,
+                   "Instead: what copies of the volume that are coarser by these factors lose and win back")
+        ->type_name("2,4")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::Range(2, 64).description(""))
+        ->group(kGroup);
+    app.add_option_function<std::string>(
+           "--crop",
+           [&command](const std::string& text) {
+               command.crop = parse_box(text);
+               if (!command.crop)
+                   throw CLI::ValidationError(
+                       "--crop", fmt::format("'{}' is not the first and the last voxel, X,Y,Z,X,Y,Z", text));
+           },
+           "Look at this part of the volume only")
+        ->type_name("X,Y,Z,X,Y,Z")
+        ->group(kGroup);
+    app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
+    app.add_option("--device", command.device.device,
+                   "A Vulkan device: its number in --list-devices, or a part of its name")
+        ->type_name("DEVICE")
+        ->group("Device");
+}
+
+}  // namespace
+
+void add_accuracy_command(CLI::App& app, const std::string& command_line, int& exit_status) {
+    CLI::App& sub = *app.add_subcommand("accuracy", "Measure what each step of accuracy costs in time");
+    const auto command = std::make_shared<AccuracyCommand>();
+    sub.add_option("VOLUME", command->volume_path, "A volume, or builtin:NAME, of which the truth is known")
+        ->required()
+        ->type_name("");
+    add_report_options(sub, *command);
+    add_scene_options(sub, command->scene);
+    add_settings_options(sub, command->report.base);
+    add_volume_options(sub, command->volume);
+    sub.footer(
+        "Examples:\n"
+        "  edgesplat accuracy builtin:sphere --report sphere\n"
+        "  edgesplat accuracy head.nrrd --iso -400 --report head --size 128x128\n"
+        "  edgesplat accuracy head.nrrd --iso -400 --report coarse --downsample 2,4");
+    sub.callback([command, command_line, &exit_status] { run(*command, command_line, exit_status); });
+}

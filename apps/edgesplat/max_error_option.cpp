@@ -1,0 +1,63 @@
+#include "apps/edgesplat/max_error_option.h"
+
+#include <fmt/format.h>
+
+#include "engine/scene/ladder.h"
+
+namespace {
+
+using edgesplat::accuracy::ChosenSettings;
+
+std::string difference_text(const ChosenSettings& choice) {
+    const std::string text = edgesplat::difference(choice.chosen.settings);
+    return text.empty() ? "the default settings" : text;
+}
+
+}  // namespace
+
+void add_max_error_option(CLI::App& command, MaxErrorOption& option) {
+    command
+        .add_option_function<std::string>(
+            "--max-error",
+            [&option](const std::string& text) {
+                try {
+                    option.rms = edgesplat::accuracy::error_share(text);
+                } catch (const std::exception& error) {
+                    throw CLI::ValidationError("--max-error", error.what());
+                }
+            },
+            "Choose the cheapest method whose RMS error against the converged picture of its model stays below this "
+            "share of full scale (0.005 or 0.5%), measured on a small picture of the view; the options below say the "
+            "model")
+        ->type_name("SHARE")
+        ->group("Accuracy and cost (steps from cheap to accurate)");
+}
+
+std::optional<ChosenSettings> apply_max_error(const MaxErrorOption& option, edgesplat::Renderer& renderer,
+                                              const edgesplat::Volume& volume, const edgesplat::Scene& scene,
+                                              const edgesplat::Camera& camera, glm::ivec2 size,
+                                              edgesplat::Settings& settings, bool quiet) {
+    if (!option.rms) return {};
+    const ChosenSettings choice =
+        edgesplat::accuracy::choose_settings(renderer, volume, scene, camera, size.x, size.y, {*option.rms, settings});
+    settings = choice.chosen.settings;
+    if (!quiet)
+        fmt::print(
+            "--max-error {:.3g} %: {}; expected {:.3g} % RMS; {:.1f} ms against {:.1f} ms at {}x{} pixels (x "
+            "{:.2f})\n",
+            100 * *option.rms, difference_text(choice), 100 * choice.expected_error, choice.chosen.milliseconds,
+            choice.default_milliseconds, choice.size.x, choice.size.y,
+            choice.chosen.milliseconds / choice.default_milliseconds);
+    return choice;
+}
+
+void add_error_estimate(const std::optional<ChosenSettings>& choice, const MaxErrorOption& option,
+                        edgesplat::ImageMetadata& metadata, nlohmann::ordered_json& json) {
+    if (!choice) return;
+    metadata.emplace_back("edgesplat:error", fmt::format("{:.3g} RMS of full scale expected, limit {:g}",
+                                                         choice->expected_error, option.rms.value_or(0)));
+    json["error"] = {{"limit_rms", option.rms.value_or(0)},     {"expected_rms", choice->expected_error},
+                     {"measured_rms", choice->chosen.error},    {"reference_error", choice->reference_error},
+                     {"chosen", difference_text(*choice)},      {"measured_at", {choice->size.x, choice->size.y}},
+                     {"frame_ms", choice->chosen.milliseconds}, {"default_frame_ms", choice->default_milliseconds}};
+}

@@ -1,0 +1,59 @@
+#include "apps/edgesplat/progress_bar.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+
+namespace {
+
+volatile std::sig_atomic_t stop_asked = 0;
+
+void note_stop(int signal) {
+    stop_asked = 1;
+    std::signal(signal, SIG_DFL);
+}
+
+std::string duration_text(double seconds) {
+    const auto s = static_cast<long>(seconds + 0.5);
+    if (s < 60) return fmt::format("{} s", s);
+    if (s < 3600) return fmt::format("{}:{:02} min", s / 60, s % 60);
+    return fmt::format("{}:{:02} h", s / 3600, s / 60 % 60);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+    if (shown_) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressBar::update(double done, double seconds_left, const std::string& what) {
+    const auto now = std::chrono::steady_clock::now();
+    if (!visible_ || (shown_ && now - last_ < std::chrono::milliseconds(100))) return;
+    last_ = now;
+    shown_ = true;
+    constexpr int kWidth = 24;
+    const int filled = std::clamp(static_cast<int>(done * kWidth), 0, kWidth);
+    fmt::print(stderr, "\r\033[K[{:#<{}}{:.<{}}] {:3.0f} %  {} left  {:.40}", "", filled, "", kWidth - filled,
+               100 * done, duration_text(seconds_left), what);
+    std::fflush(stderr);
+}
+
+StopRequest::StopRequest() {
+    stop_asked = 0;
+    std::signal(SIGINT, note_stop);
+    std::signal(SIGTERM, note_stop);
+}
+
+StopRequest::~StopRequest() {
+    std::signal(SIGINT, SIG_DFL);
+    std::signal(SIGTERM, SIG_DFL);
+}
+
+bool StopRequest::asked() const {
+    return stop_asked != 0;
+}
