@@ -71,9 +71,12 @@ std::vector<RenderedFrame> render_frames(const RenderOptions& options, edgesplat
     frames.push_back({edges ? "edges" : "plain", options.settings, {}});
     const edgesplat::AovRequest aovs{wants(options, "tau"), wants(options, "depth"), wants(options, "normal"),
                                      wants(options, "distance")};
+    const glm::ivec2& size = options.camera.size;
     for (RenderedFrame& frame : frames)
         frame.result =
-            renderer.render(scene, camera, frame.settings, options.camera.size.x, options.camera.size.y, aovs);
+            casts_rays(options.renderer.kind)
+                ? renderer.raycast(scene, camera, frame.settings, raycast_settings(options.renderer), size.x, size.y)
+                : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
     return frames;
 }
 
@@ -95,6 +98,8 @@ void write(const RenderOptions& options, const RunDescription& description, cons
 
 void run(RenderOptions options, const std::string& command_line) {
     check_outputs(options);
+    if (casts_rays(options.renderer.kind) && !options.aovs.empty())
+        edgesplat::fail("--renderer {} has no extra outputs", name_of(options.renderer.kind));
     check_cpu_request(options.renderer, options.volume_path, options.scene, options.aovs, !options.compare.empty());
     edgesplat::validate(options.settings);
     const auto volume = std::make_shared<const edgesplat::Volume>(load(options));
@@ -102,8 +107,9 @@ void run(RenderOptions options, const std::string& command_line) {
     const edgesplat::Camera camera = camera_from_options(options.camera, *volume, scene);
 
     const RunDescription description{command_line, volume.get(), &scene, camera};
+    if (options.max_error.rms && options.renderer.kind != RendererKind::Splat)
+        edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
     if (on_processor(options.renderer.kind)) {
-        if (options.max_error.rms) edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
         const CpuRequest request{options.renderer,         options.settings,      options.camera.size,
                                  !options.compare.empty(), wants(options, "tau"), options.quiet};
         const CpuFrames done = render_on_processor(request, *volume, scene, camera);
@@ -122,7 +128,10 @@ void run(RenderOptions options, const std::string& command_line) {
     write(options, description, frames, {}, choice);
 
     const edgesplat::RenderStats& stats = frames.back().result.stats;
-    if (!options.quiet)
+    if (!options.quiet && casts_rays(options.renderer.kind))
+        fmt::print("{}: {}, {:.1f} ms on {}\n", options.output, name_of(options.renderer.kind),
+                   stats.frame_milliseconds, stats.device.name);
+    else if (!options.quiet)
         fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}\n", options.output, stats.splats_drawn, stats.sheets,
                    stats.frame_milliseconds, stats.device.name);
     if (renderer.validation_messages() > 0)
