@@ -6,6 +6,7 @@
 #include "engine/error.h"
 #include "engine/renderer_state.h"
 #include "engine/volume/filters.h"
+#include "footprints/kernel.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {
@@ -29,6 +30,18 @@ void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Pla
 bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
     return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) &&
            image.shape().layers >= layers;
+}
+
+FootprintTableSize table_size_of(TableSize size) {
+    switch (size) {
+        case TableSize::Coarse:
+            return {.width = 32, .height = 16, .distances = 29, .directions = 18};
+        case TableSize::Fine:
+            return {.width = 128, .height = 40, .distances = 57, .directions = 35};
+        case TableSize::Medium:
+            break;
+    }
+    return {};
 }
 
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
@@ -89,11 +102,13 @@ double RendererState::collect(const Scene& scene, const Settings& settings, bool
 
 void RendererState::provide_footprints(const Settings& settings) {
     const EdgeBand band{settings.edge_half_width, settings.edge_strength};
+    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     const bool table = settings.warp == WarpFamily::Edge && draws_warped(settings) &&
                        (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp);
-    if (table && table_band != band) {
+    const FootprintTableSize table_size = table_size_of(settings.table_size);
+    if (table && (table_band != band || table_texels != table_size)) {
         table_band.reset();
-        const auto loaded = load_footprint_table(band);
+        const auto loaded = load_footprint_table(band, table_size);
         if (!loaded.warning.empty()) fmt::print(stderr, "edgesplat: {}\n", loaded.warning);
         const auto& size = loaded.table.size();
         auto& out = footprint_resources;
@@ -111,13 +126,22 @@ void RendererState::provide_footprints(const Settings& settings) {
         out.params.table_distances = static_cast<float>(size.distances);
         out.params.table_directions = static_cast<float>(size.directions);
         table_band = band;
+        table_texels = table_size;
     }
-    if (draws_warped(settings) && band_in_use != band) {
-        const auto supports = covering_supports(band, shader::SUPPORT_STEPS);
+    if (draws_warped(settings) && (band_in_use != band || curved_in_use != curved)) {
+        const auto supports = curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
+                                     : covering_supports(band, shader::SUPPORT_STEPS);
         std::ranges::transform(supports, footprint_resources.supports.begin(),
                                [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-        footprint_resources.wall_support = static_cast<float>(largest_support_radius(band));
+        const double wall = largest_support_radius(band);
+        footprint_resources.wall_support = static_cast<float>(wall);
+        footprint_resources.farthest_reach = wall;
+        for (const Support& s : supports) {
+            footprint_resources.farthest_reach =
+                std::max(footprint_resources.farthest_reach, std::abs(s.shift) + s.radius);
+        }
         band_in_use = band;
+        curved_in_use = curved;
     }
     const PaperShape paper;
     footprint_resources.params.half_width = static_cast<float>(band.half_width);
@@ -137,7 +161,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
     if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
         !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
-        !has_shape(targets.accumulated, vk::Format::eR32G32B32A32Sfloat, p.size, 1)) {
+        !has_shape(targets.accumulated, plan_in_use.accumulated_format, p.size, 1)) {
         targets.sheets = {};
         targets.depth = {};
         targets.accumulated = {};
@@ -158,7 +182,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
                                       "sheet depth");
         targets.accumulated = gpu::GpuImage(
             device,
-            {.format = vk::Format::eR32G32B32A32Sfloat,
+            {.format = plan_in_use.accumulated_format,
              .size = size,
              .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
             "accumulated picture");
@@ -166,7 +190,8 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     }
     const auto words = sizeof(std::uint32_t);
     grow(device, targets.sheet_of, p.splat_count * words, Place::Device, "sheets of splats");
-    grow(device, targets.order, p.splat_count * words, Place::Device, "splat order");
+    grow(device, targets.order, std::size_t{p.splat_count} * plan_in_use.sheets_per_splat * words, Place::Device,
+         "splat order");
     grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * words, Place::Device,
          "sort counters");
     grow(device, targets.groups, p.group_count * sizeof(shader::SheetGroup), Place::Host, "sheet groups");
@@ -174,6 +199,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
 
     p.splats = volume_resources.splats.address();
+    p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
     p.sheets = targets.sheet_of.address();
     p.order = targets.order.address();
     p.counters = targets.counters.address();
@@ -193,7 +219,8 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
 void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
                          std::uint32_t payload) {
     plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
-                      volume_resources.box_low, volume_resources.box_high);
+                      volume_resources.box_low, volume_resources.box_high,
+                      draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
     provide_targets(plan);
     run_frame(commands, plan, targets);
 }
@@ -231,7 +258,7 @@ void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
     }
 }
 
-RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
+RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
                               const AovRequest& aovs) {
     auto& self = *state_;
     if (!self.volume) fail("render: no volume has been set");
@@ -239,7 +266,8 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     }
     validate(scene);
-    validate(settings);
+    validate(wanted);
+    const Settings settings = drawn_as(wanted);
     const glm::ivec2 size(width, height);
     RenderResult result;
     try {

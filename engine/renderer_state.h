@@ -36,8 +36,10 @@ struct RendererState {
 
     std::optional<CollectionPlan> collected;  ///< what the splat list was made with
     std::optional<EdgeBand> table_band;       ///< what the footprint table was made for
-    std::optional<EdgeBand> band_in_use;      ///< what the support spheres were made for
-    FramePlan plan;                           ///< of the last draw
+    FootprintTableSize table_texels;
+    bool curved_in_use = false;
+    std::optional<EdgeBand> band_in_use;  ///< what the support spheres were made for
+    FramePlan plan;                       ///< of the last draw
     std::vector<PassTime> collection_times;
 };
 
