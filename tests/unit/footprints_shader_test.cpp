@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <random>
 
 #include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
@@ -68,7 +70,23 @@ inline Texel textureLod(sampler2DArray table, const vec3& at, double) {
 // GLSL's literals are float, C++'s are double: results are rounded to float wherever they are stored.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
+// The including shader says how many nodes a piece of a footprint gets: one copy each.
+namespace nodes4 {
+const uint NODES = 4;
 #include "shaders/lib/footprint.glsl"
+}  // namespace nodes4
+#undef EDGESPLAT_FOOTPRINT_GLSL
+#undef EDGESPLAT_KERNEL_GLSL
+namespace nodes10 {
+const uint NODES = 10;
+#include "shaders/lib/footprint.glsl"
+}  // namespace nodes10
+#undef EDGESPLAT_FOOTPRINT_GLSL
+#undef EDGESPLAT_KERNEL_GLSL
+namespace nodes16 {
+const uint NODES = 16;
+#include "shaders/lib/footprint.glsl"
+}  // namespace nodes16
 #pragma GCC diagnostic pop
 
 }  // namespace glsl
@@ -78,6 +96,10 @@ namespace {
 
 using samples::Errors;
 using samples::rays;
+namespace ten = glsl::nodes10;
+
+const ten::Slice kWhole{-1e9F, 1e9F};
+constexpr float kNoFace = 100;  // D2 of an edge without a second face
 
 struct Float {
     float rho2, pn, un, d;
@@ -87,6 +109,11 @@ struct Float {
           un(static_cast<float>(ray.un)),
           d(static_cast<float>(distance)) {}
 };
+
+/// Every second ray the other way round.
+Ray turned(const Ray& ray, std::size_t i) {
+    return {ray.rho2, ray.pn, i % 2 == 0 ? ray.un : -ray.un};
+}
 
 glsl::FootprintParams params_of(const FootprintTable& table, const PaperShape& shape = {}) {
     glsl::FootprintParams p{};
@@ -114,11 +141,11 @@ TEST(FootprintShader, MirrorsTheTable) {
     int jumps = 0;
     for (const auto& [d, ray] : rays(20000, -3.2, 3.2, 20)) {
         const Float f(ray, d);
-        lerp.add(static_cast<double>(glsl::footprint_table_lerp(&table(), f.rho2, f.pn, f.un, f.d, params)),
+        lerp.add(static_cast<double>(ten::footprint_table_lerp(&table(), f.rho2, f.pn, f.un, f.d, params)),
                  table().lerp(ray, d));
         // Rounding may pick the neighbouring layer where two are equally near.
         const double error =
-            std::abs(static_cast<double>(glsl::footprint_table_nearest(&table(), f.rho2, f.pn, f.un, f.d, params)) -
+            std::abs(static_cast<double>(ten::footprint_table_nearest(&table(), f.rho2, f.pn, f.un, f.d, params)) -
                      table().nearest(ray, d));
         if (error > 1e-4) ++jumps;
     }
@@ -132,18 +159,20 @@ TEST(FootprintShader, MirrorsTheQuadratureAndTheShortCut) {
     for (const auto& [d, ray] : rays(20000, -3.2, 3.2, 21)) {
         const Float f(ray, d);
         const Edge edge = {d, {1.3, 12}};
-        const int faces = glsl::footprint_faces(f.d, 100.0f, params);
+        const int faces = ten::footprint_faces(f.d, kNoFace, params);
         EXPECT_EQ(faces, std::abs(d) < 2.9 ? 1 : 0);
-        single.add(static_cast<double>(glsl::footprint_procedural(f.rho2, f.pn, f.un, f.d, 100.0f, faces, params)),
-                   procedural_footprint(ray, edge));
-        warp2d.add(static_cast<double>(glsl::footprint_warp2d(f.rho2, f.pn, f.un, f.d, params)),
+        single.add(
+            static_cast<double>(ten::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, faces, kWhole, params)),
+            procedural_footprint(ray, edge));
+        warp2d.add(static_cast<double>(ten::footprint_warp2d(f.rho2, f.pn, f.un, f.d, kWhole, params)),
                    warp2d_footprint(ray, edge));
         if (d < 0 || d > 2.8) continue;
         const float second = f.pn * f.pn + 0.2f;
         const Edge two = wall_edge(d, static_cast<double>(second), {1.3, 12});
-        wall.add(static_cast<double>(glsl::footprint_procedural(f.rho2, f.pn, f.un, f.d, second,
-                                                                glsl::footprint_faces(f.d, second, params), params)),
-                 procedural_footprint(ray, two));
+        const int two_faces = ten::footprint_faces(f.d, second, params);
+        wall.add(
+            static_cast<double>(ten::footprint_procedural(f.rho2, f.pn, f.un, f.d, second, two_faces, kWhole, params)),
+            procedural_footprint(ray, two));
     }
     EXPECT_LE(single.largest(), 1e-4);
     EXPECT_LE(wall.largest(), 1e-4);
@@ -158,9 +187,10 @@ TEST(FootprintShader, MirrorsThePapersWarp) {
         for (const auto& [d, ray] : rays(20000, -0.5, 1.8, 22)) {
             const Float f(ray, d);
             const PaperEdge edge = {d, shape};
-            procedural.add(static_cast<double>(glsl::footprint_paper_procedural(f.rho2, f.pn, f.un, f.d, params)),
-                           procedural_footprint(ray, edge));
-            warp2d.add(static_cast<double>(glsl::footprint_paper_warp2d(f.rho2, f.pn, f.un, f.d, params)),
+            procedural.add(
+                static_cast<double>(ten::footprint_paper_procedural(f.rho2, f.pn, f.un, f.d, kWhole, params)),
+                procedural_footprint(ray, edge));
+            warp2d.add(static_cast<double>(ten::footprint_paper_warp2d(f.rho2, f.pn, f.un, f.d, kWhole, params)),
                        warp2d_footprint(ray, edge));
         }
         EXPECT_LE(procedural.largest(), 5e-4);
@@ -168,24 +198,95 @@ TEST(FootprintShader, MirrorsThePapersWarp) {
     }
 }
 
+TEST(FootprintShader, MirrorsCurvedEdges) {
+    const auto params = params_of(table());
+    std::mt19937 random(23);
+    std::uniform_real_distribution<> bend(-0.5, 0.5);
+    Errors curved;
+    std::size_t i = 0;
+    for (const auto& [d, plain_ray] : rays(20000, -2.9, 2.9, 23)) {
+        const Ray ray = turned(plain_ray, i++);
+        const Float f(ray, d);
+        const float c = static_cast<float>(bend(random));
+        const Edge edge = {d, {1.3, 12}, std::numeric_limits<double>::infinity(), static_cast<double>(c)};
+        curved.add(static_cast<double>(glsl::nodes16::footprint_curved(f.rho2, f.pn, f.un, f.d, c,
+                                                                       glsl::nodes16::Slice{-1e9F, 1e9F}, params)),
+                   procedural_footprint(ray, edge, 16));
+    }
+    EXPECT_LE(curved.largest(), 1e-4);
+}
+
+TEST(FootprintShader, MirrorsSlicesOfEveryFootprint) {
+    namespace four = glsl::nodes4;
+    const auto params = params_of(table(), {0.3, 0.05, PaperCurve::Smooth});
+    std::mt19937 random(24);
+    std::uniform_real_distribution<> bend(-0.5, 0.5), place(-3, 2.75);
+    Errors plain, plane, wall, curved, warp2d, paper;
+    std::size_t i = 0;
+    for (const auto& [d, plain_ray] : rays(20000, -2.9, 2.9, 24)) {
+        const Ray ray = turned(plain_ray, i++);
+        const Float f(ray, d);
+        const float c = static_cast<float>(bend(random)), low = static_cast<float>(place(random));
+        const four::Slice s{low, low + 0.25F};
+        const Slice slice = {static_cast<double>(s.low), static_cast<double>(s.high)};
+        const EdgeBand band = {1.3, 12};
+        const Edge bent = {d, band, std::numeric_limits<double>::infinity(), static_cast<double>(c)};
+        const auto value = [](float v) { return static_cast<double>(v); };
+        plain.add(value(four::footprint_isotropic(f.rho2, s)), sliced_kernel_footprint(ray.rho2, slice));
+        plane.add(value(four::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, 1, s, params)),
+                  procedural_footprint(ray, Edge{d, band}, 4, slice));
+        warp2d.add(value(four::footprint_warp2d(f.rho2, f.pn, f.un, f.d, s, params)),
+                   warp2d_footprint(ray, Edge{d, band}, slice));
+        curved.add(value(four::footprint_curved(f.rho2, f.pn, f.un, f.d, c, s, params)),
+                   procedural_footprint(ray, bent, 4, slice));
+        if (d < 1.8) {
+            paper.add(value(four::footprint_paper_procedural(f.rho2, f.pn, f.un, f.d, s, params)),
+                      procedural_footprint(ray, PaperEdge{d, {0.3, 0.05, PaperCurve::Smooth}}, 4, slice));
+        }
+        if (d < 0 || d > 2.8) continue;
+        const float second = f.pn * f.pn + 0.2f;
+        wall.add(value(four::footprint_procedural(f.rho2, f.pn, f.un, f.d, second,
+                                                  four::footprint_faces(f.d, second, params), s, params)),
+                 procedural_footprint(ray, wall_edge(d, value(second), band), 4, slice));
+    }
+    std::printf(
+        "slices, float32 against double, %% of the peak: plain %.4f, plane %.4f, wall %.4f, curved %.4f, "
+        "warp2d %.4f, paper %.4f\n",
+        100 * plain.largest(), 100 * plane.largest(), 100 * wall.largest(), 100 * curved.largest(),
+        100 * warp2d.largest(), 100 * paper.largest());
+    EXPECT_LE(plain.largest(), 1e-5);
+    EXPECT_LE(plane.largest(), 1e-4);
+    EXPECT_LE(wall.largest(), 1e-4);
+    EXPECT_LE(curved.largest(), 1e-4);
+    EXPECT_LE(warp2d.largest(), 1e-4);
+    EXPECT_LE(paper.largest(), 5e-4);
+}
+
 TEST(FootprintShader, GivesNumbersForEveryInput) {
     const auto params = params_of(table());
     for (float rho2 : {0.0f, 1e-12f, 2.56f, 9.0f})
         for (float pn : {-3.0f, 0.0f, 1e-9f, 1.6f})  // also beyond what rho allows
             for (float un : {-1.0f, -1e-8f, 0.0f, 1.0f, 1.0000001f})
-                for (float d : {-2.9f, -0.5f, 0.0f, 1.0f, 2.9f, 4.0f}) {
-                    const auto check = [&](float f) {
-                        EXPECT_TRUE(f >= 0 && f < 4) << f << " at " << rho2 << " " << pn << " " << un << " " << d;
-                    };
-                    for (float second : {0.0f, 0.6f, 1.5f, 100.0f})
-                        check(glsl::footprint_procedural(rho2, pn, un, d, second,
-                                                         glsl::footprint_faces(d, second, params), params));
-                    check(glsl::footprint_warp2d(rho2, pn, un, d, params));
-                    check(glsl::footprint_table_nearest(&table(), rho2, pn, un, d, params));
-                    check(glsl::footprint_table_lerp(&table(), rho2, pn, un, d, params));
-                    check(glsl::footprint_paper_warp2d(rho2, pn, un, d, params));
-                    check(glsl::footprint_paper_procedural(rho2, pn, un, d, params));
-                }
+                for (float d : {-2.9f, -0.5f, 0.0f, 1.0f, 2.9f, 4.0f})
+                    for (const ten::Slice s : {kWhole, ten::Slice{-0.1f, 0.15f}, ten::Slice{0.0f, 0.0f},
+                                               ten::Slice{5.0f, 5.25f}, ten::Slice{-1e9f, 0.0f}}) {
+                        const auto check = [&](float f) {
+                            EXPECT_TRUE(f >= 0 && f < 4) << f << " at " << rho2 << " " << pn << " " << un << " " << d
+                                                         << " slice " << s.low << " " << s.high;
+                        };
+                        for (float second : {0.0f, 0.6f, 1.5f, kNoFace})
+                            check(ten::footprint_procedural(rho2, pn, un, d, second,
+                                                            ten::footprint_faces(d, second, params), s, params));
+                        // -1e-5 and less is where curved edges are taken for planes; 2 / R is more than is ever drawn.
+                        for (float c : {0.0f, -0.0f, 1e-9f, 9e-6f, -9e-6f, 0.1f, -0.1f, 0.5f, -0.5f, 1.25f})
+                            check(ten::footprint_curved(rho2, pn, un, d, c, s, params));
+                        check(ten::footprint_isotropic(rho2, s));
+                        check(ten::footprint_warp2d(rho2, pn, un, d, s, params));
+                        check(ten::footprint_table_nearest(&table(), rho2, pn, un, d, params));
+                        check(ten::footprint_table_lerp(&table(), rho2, pn, un, d, params));
+                        check(ten::footprint_paper_warp2d(rho2, pn, un, d, s, params));
+                        check(ten::footprint_paper_procedural(rho2, pn, un, d, s, params));
+                    }
 }
 
 }  // namespace
