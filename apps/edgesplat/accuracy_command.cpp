@@ -156,6 +156,12 @@ void add_report_options(CLI::App& app, AccuracyCommand& command) {
     add_number(app, "--orbit", command.orbit, {0, 3600}, "Frame pairs, one degree apart, for popping; 0: none")
         ->group(kGroup);
     app.add_flag("--full", command.full, "A whole turn of 360 frames")->group(kGroup);
+    const auto add_names = [&](const char* option, std::vector<std::string>& names, const char* type,
+                               const char* help) {
+        app.add_option(option, names, help)->type_name(type)->delimiter(',')->allow_extra_args(false)->group(kGroup);
+    };
+    add_names("--knobs", command.report.knobs, "NAME,...", "Only the steps of these, and no combinations");
+    add_names("--cameras", command.report.cameras, "far,near,grazing,inside", "Only these");
     app.add_flag("--restart", command.report.restart, "Throw away what an earlier run left in the folder")
         ->group(kGroup);
     app.add_option("--downsample", command.downsample,

@@ -17,7 +17,7 @@ struct ErrorLimit {
 struct TriedSettings {
     Settings settings;
     double error = 0;         ///< RMS on the small picture
-    double milliseconds = 0;  ///< of a frame of the small picture, fastest of three
+    double milliseconds = 0;  ///< of a frame of the small picture, fastest of six; infinite where it was not timed
 };
 
 struct ChosenSettings {
@@ -26,7 +26,7 @@ struct ChosenSettings {
     double reference_error = 0;        ///< worst pixel of what it was measured against
     double default_milliseconds = 0;   ///< a frame of the small picture with the base's own method
     glm::ivec2 size{0};                ///< of the small picture, pixels
-    std::vector<TriedSettings> tried;  ///< cheapest first
+    std::vector<TriedSettings> tried;  ///< cheapest first, those that are not good enough last
 };
 
 /// What is expected of a large picture is the small one's error times this (docs/accuracy_report.md says from what).

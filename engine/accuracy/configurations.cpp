@@ -49,23 +49,7 @@ class Combinations {
     std::set<std::string> seen_;
 };
 
-}  // namespace
-
-std::string_view name_of(ConfigurationKind kind) {
-    return kKindNames[static_cast<std::size_t>(kind)];
-}
-
-std::vector<Configuration> configurations(const Settings& base) {
-    std::vector<Configuration> rows{{ConfigurationKind::Base, "base", "", "", base}};
-    for (const Knob& knob : ladder()) {
-        if (!knob.used(base)) continue;
-        for (const std::string_view step : knob.steps) {
-            Configuration row{ConfigurationKind::Step, std::string(knob.name) + "=" + std::string(step),
-                              std::string(knob.name), std::string(step), base};
-            knob.set(row.settings, step);
-            rows.push_back(std::move(row));
-        }
-    }
+void add_combinations(const Settings& base, std::vector<Configuration>& rows) {
     // Sliced sheets are integrated in every table mode, so one stands for all there.
     Combinations combinations(base, rows);
     combinations.add({"warp2d", "table", "table-lerp", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"float"},
@@ -74,6 +58,29 @@ std::vector<Configuration> configurations(const Settings& base) {
     combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"half"}, {"0.98"});
     combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"float"}, {"0.98"});
     combinations.add({"procedural"}, {"sliced"}, {"1", "0.5"}, {"float"}, {"0.98", "0.9999"});
+}
+
+}  // namespace
+
+std::string_view name_of(ConfigurationKind kind) {
+    return kKindNames[static_cast<std::size_t>(kind)];
+}
+
+std::vector<Configuration> configurations(const Settings& base, std::span<const std::string> knobs) {
+    for (const std::string& name : knobs)
+        knob_named(name);
+    std::vector<Configuration> rows{{ConfigurationKind::Base, "base", "", "", base}};
+    for (const Knob& knob : ladder()) {
+        const bool asked = knobs.empty() || std::find(knobs.begin(), knobs.end(), knob.name) != knobs.end();
+        if (!asked || !knob.used(base)) continue;
+        for (const std::string_view step : knob.steps) {
+            Configuration row{ConfigurationKind::Step, std::string(knob.name) + "=" + std::string(step),
+                              std::string(knob.name), std::string(step), base};
+            knob.set(row.settings, step);
+            rows.push_back(std::move(row));
+        }
+    }
+    if (knobs.empty()) add_combinations(base, rows);
     for (const Preset& preset : presets())
         rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings});
     return rows;

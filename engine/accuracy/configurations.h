@@ -1,6 +1,7 @@
 // What the report measures: each step of each knob on its own, combinations of method knobs, and the presets.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,9 @@ struct Configuration {
     Settings settings;
 };
 
-/// Steps of every knob that is used in `base`, in the ladder's order; then combinations (at most 40) and presets.
-std::vector<Configuration> configurations(const Settings& base);
+/// Steps of every knob that is used in `base`, in the ladder's order; then combinations (at most 40) and presets. With
+/// `knobs` only the steps of those, and no combinations. Throws Error for a name that is no knob's.
+std::vector<Configuration> configurations(const Settings& base, std::span<const std::string> knobs = {});
 
 /// The same pictures are made: knobs that are of no use there are at their defaults.
 Settings canonical(const Settings& settings);

@@ -6,6 +6,7 @@
 
 #include "engine/accuracy/model_references.h"
 #include "engine/accuracy/report_json.h"
+#include "engine/reference/pixel_rows.h"
 #include "engine/scene/ladder.h"
 
 namespace edgesplat::accuracy {
@@ -36,6 +37,8 @@ ordered_json identity_of(const ReportInput& input, const ReportOptions& options,
             {"repeats", options.repeats},
             {"orbit", fmt::format("{} frames of {} pixels", options.orbit_frames, options.orbit_size)},
             {"surface_points", options.surface_points},
+            {"knobs", options.knobs},
+            {"cameras", options.cameras},
             {"device", device.name},
             {"driver", device.driver + " " + device.driver_version}};
 }
@@ -62,12 +65,14 @@ class Measurement {
           journal_(journal),
           work_(journal, progress),
           references_(input, options.tolerance, options.folder / "cache", journal,
-                      [this](double share) { work_.check(share); }) {
+                      [this](double share) { return work_.go_on(share); }) {
         report_.input = input;
         report_.options = options;
         report_.device = renderer.device();
         report_.cameras = report_cameras(*input.volume, input.scene, options.size.x, options.size.y);
-        report_.rows = configurations(options.base);
+        far_ = report_.cameras.front().camera;
+        report_.rows = configurations(options.base, options.knobs);
+        choose_cameras();
         collect_settings();
         if (input.analytic && input.analytic->signed_distance && !input.analytic->iso_values.empty() &&
             input.scene.iso_values == input.analytic->iso_values)
@@ -78,12 +83,27 @@ class Measurement {
         add_errors();
         add_orbit();
         add_times();
-        work_.run();
+        try {
+            work_.run();
+        } catch (const reference::Cancelled&) {
+            work_.stop();
+        }
         assemble();
         return {report_, pictures()};
     }
 
   private:
+    void choose_cameras() {
+        if (options_.cameras.empty()) return;
+        for (const std::string& name : options_.cameras)
+            if (std::none_of(report_.cameras.begin(), report_.cameras.end(),
+                             [&](const ReportCamera& c) { return c.name == name; }))
+                fail("this volume has no camera '{}'", name);
+        std::erase_if(report_.cameras, [&](const ReportCamera& c) {
+            return std::find(options_.cameras.begin(), options_.cameras.end(), c.name) == options_.cameras.end();
+        });
+    }
+
     void collect_settings() {
         std::map<std::string, std::size_t> known;
         for (const Configuration& row : report_.rows) {
@@ -176,9 +196,7 @@ class Measurement {
         return list;
     }
 
-    Camera orbit_camera(int frame) const {
-        return orbited(report_.cameras.front().camera, input_.volume->geometry, frame);
-    }
+    Camera orbit_camera(int frame) const { return orbited(far_, input_.volume->geometry, frame); }
 
     void add_orbit() {
         if (options_.orbit_frames < 1) return;
@@ -317,8 +335,8 @@ class Measurement {
         if (smallest < 10 * report_.largest_reference_error)
             report_.notes.push_back("That is less than 10 times: a smaller --tolerance would tell more of it.");
         for (const std::string_view name : {"near", "grazing", "inside"})
-            if (std::none_of(report_.cameras.begin(), report_.cameras.end(),
-                             [&](const ReportCamera& c) { return c.name == name; }))
+            if (options_.cameras.empty() && std::none_of(report_.cameras.begin(), report_.cameras.end(),
+                                                         [&](const ReportCamera& c) { return c.name == name; }))
                 report_.notes.push_back(fmt::format("No camera `{}`: no such place was found in this volume.", name));
         if (report_.surface)
             report_.notes.push_back(fmt::format(
@@ -361,6 +379,7 @@ class Measurement {
     WorkList work_;
     ModelReferences references_;
     Report report_;
+    Camera far_;
     std::vector<std::string> keys_;    ///< settings_key of each result
     std::vector<std::string> models_;  ///< model_key of each model, in order of appearance
 };

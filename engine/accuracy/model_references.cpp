@@ -6,8 +6,8 @@
 namespace edgesplat::accuracy {
 
 ModelReferences::ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder,
-                                 Journal& journal, std::function<void(double)> check)
-    : input_(input), tolerance_(tolerance), store_(std::move(folder), journal), check_(std::move(check)) {}
+                                 Journal& journal, std::function<bool(double)> progress)
+    : input_(input), tolerance_(tolerance), store_(std::move(folder), journal), progress_(std::move(progress)) {}
 
 std::string ModelReferences::key(const Settings& model, const std::string& camera) const {
     return "reference|" + camera + "|" + settings_key(model);
@@ -26,20 +26,15 @@ const reference::PreparedVolume& ModelReferences::prepared(const Settings& model
     return *prepared_;
 }
 
-bool ModelReferences::go_on(double share) const {
-    check_(share);
-    return true;
-}
-
 ReferencePicture ModelReferences::evaluate(const Settings& model, const Camera& camera, glm::ivec2 size) {
-    const reference::DirectOptions options{tolerance_, [this](double share) { return go_on(share); }};
+    const reference::DirectOptions options{tolerance_, progress_};
     auto result =
         reference::direct_evaluation(prepared(model), camera, size.x, size.y, reference::Output::Color, options);
     return {std::move(result.image), result.error_estimate};
 }
 
 ReferencePicture ModelReferences::evaluate_truth(const Camera& camera, glm::ivec2 size) {
-    const reference::DirectOptions options{tolerance_, [this](double share) { return go_on(share); }};
+    const reference::DirectOptions options{tolerance_, progress_};
     auto result =
         reference::truth(*input_.analytic, input_.volume->geometry, input_.scene, camera, size.x, size.y, options);
     return {std::move(result.image), result.error_estimate};

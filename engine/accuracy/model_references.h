@@ -15,9 +15,10 @@ namespace edgesplat::accuracy {
 /// Computes and keeps them. Names tell cameras apart; one name must always stand for one camera and size.
 class ModelReferences {
   public:
-    /// `check` is called now and then with the share done of a picture and stops it by throwing.
+    /// `progress` is called now and then with the share done of a picture; where it returns false, reference::Cancelled
+    /// is thrown.
     ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder, Journal& journal,
-                    std::function<void(double)> check);
+                    std::function<bool(double)> progress);
 
     bool has_truth() const { return input_.analytic.has_value(); }
 
@@ -35,12 +36,11 @@ class ModelReferences {
   private:
     ReferencePicture evaluate(const Settings& model, const Camera& camera, glm::ivec2 size);
     ReferencePicture evaluate_truth(const Camera& camera, glm::ivec2 size);
-    bool go_on(double share) const;
 
     const ReportInput& input_;
     double tolerance_;
     PictureStore store_;
-    std::function<void(double)> check_;
+    std::function<bool(double)> progress_;
     std::string prepared_key_;
     std::optional<reference::PreparedVolume> prepared_;
 };

@@ -32,6 +32,8 @@ struct ReportOptions {
     int orbit_frames = 36;    ///< frame pairs, one degree apart; 0: popping is not measured
     int orbit_size = 96;      ///< pixels, both ways
     int surface_points = 200;
+    std::vector<std::string> knobs;    ///< whose steps are measured; empty: all, and combinations
+    std::vector<std::string> cameras;  ///< that are used; empty: all there are
     std::filesystem::path folder;
     bool restart = false;  ///< throw away what an earlier run left
 };
@@ -55,7 +57,7 @@ struct SettingsResult {
     std::optional<Popping> popping;
     double frame_ms = 0;             ///< mean of the cameras' medians
     Spread ratio;                    ///< to the ray caster: geometric mean over cameras, of medians, of p10, of p90
-    double setup_ms = 0;             ///< edge estimation and collection, median
+    double setup_ms = 0;             ///< edge estimation and collection, median; NaN where switching to it needed none
     std::uint64_t device_bytes = 0;  ///< largest of the cameras
 };
 

@@ -14,6 +14,7 @@ using nlohmann::ordered_json;
 
 /// JSON has no infinity.
 ordered_json number(double value) {
+    if (std::isnan(value)) return {};
     return std::isfinite(value) ? ordered_json(value) : ordered_json("infinite");
 }
 
@@ -74,7 +75,9 @@ ordered_json row_json(const Report& report, std::size_t row) {
     json["edges_voxels"] = optional_json(r.edges);
     json["popping"] = optional_json(r.popping);
     json["device_bytes"] = r.device_bytes;
-    json["time"] = {{"frame_ms", r.frame_ms}, {"times_raycast", to_json(r.ratio)}, {"setup_ms", r.setup_ms}};
+    json["time"] = {{"frame_ms", r.frame_ms},
+                    {"times_raycast", to_json(r.ratio)},
+                    {"setup_ms", std::isnan(r.setup_ms) ? ordered_json() : ordered_json(r.setup_ms)}};
     ordered_json cameras = ordered_json::array();
     for (std::size_t i = 0; i < r.cameras.size(); ++i)
         cameras.push_back(camera_result_json(report.cameras[i], r.cameras[i]));

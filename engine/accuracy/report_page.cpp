@@ -93,7 +93,7 @@ std::vector<std::string> cells_of(const Report& report, std::size_t row) {
             fmt::format("{:.1f}", r.frame_ms),
             fmt::format("{:.2f}", r.ratio.median),
             fmt::format("{:.2f}\u2013{:.2f}", r.ratio.low, r.ratio.high),
-            fmt::format("{:.1f}", r.setup_ms),
+            optional_cell(!std::isnan(r.setup_ms), fmt::format("{:.1f}", r.setup_ms)),
             fmt::format("{:.1f}", static_cast<double>(r.device_bytes) / 1e6)};
 }
 
@@ -119,7 +119,10 @@ std::string steps_section(const Report& report) {
            "reconstruction. <b>popping</b>: RMS change between frames one degree apart that the model does not have; "
            "<b>excess</b>: RMS change minus the model's own. <b>\u00d7 ray</b>: time over the ray caster's, measured "
            "in "
-           "turns; geometric mean over the cameras. Bold: no other is both faster and better. Grey: the base itself."
+           "turns; geometric mean over the cameras. <b>setup</b>: finding the edges, once per volume; a dash where "
+           "that is "
+           "the same work as another step's. Presets are measured against the model of their own settings. Bold: no "
+           "other is both faster and better. Grey: the base itself."
            "</p>\n";
 }
 

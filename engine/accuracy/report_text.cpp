@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace edgesplat::accuracy {
 namespace {
@@ -67,7 +68,8 @@ std::string steps_csv(const Report& report) {
         add(edges.measured > 0, {edges.rise_mean, edges.rise_max, edges.location_mean, edges.location_max});
         add(r.popping.has_value(),
             {popping.mean_excess, popping.max_excess, popping.mean_difference, popping.max_difference});
-        add(true, {r.frame_ms, r.ratio.median, r.ratio.low, r.ratio.high, r.setup_ms});
+        add(true, {r.frame_ms, r.ratio.median, r.ratio.low, r.ratio.high});
+        add(!std::isnan(r.setup_ms), {r.setup_ms});
         cells.push_back(fmt::format("{}", r.device_bytes));
         for (const CameraResult& camera : r.cameras)
             add(true, {camera.method.rms, camera.method.max, camera.times.frame.median, camera.times.ratio.median});

@@ -17,8 +17,8 @@ void WorkList::add(Piece piece, double expected_seconds) {
     pieces_.push_back(std::move(piece));
 }
 
-void WorkList::check(double share_of_piece) {
-    if (!progress_ || current_ >= pieces_.size()) return;
+bool WorkList::go_on(double share_of_piece) {
+    if (!progress_ || current_ >= pieces_.size()) return true;
     double left = 0;
     for (const auto& [name, k] : kinds_)
         left += static_cast<double>(k.left) * k.each();
@@ -27,9 +27,16 @@ void WorkList::check(double share_of_piece) {
     const double done = spent_ + of_this;
     const Progress state{done + left > 0 ? done / (done + left) : 1, left, current_, pieces_.size(),
                          pieces_[current_].what};
-    if (!progress_(state))
-        throw Interrupted(fmt::format("stopped after {} of {} measurements; the same command goes on from there",
-                                      current_, pieces_.size()));
+    return progress_(state);
+}
+
+void WorkList::check(double share_of_piece) {
+    if (!go_on(share_of_piece)) stop();
+}
+
+void WorkList::stop() const {
+    throw Interrupted(fmt::format("stopped after {} of {} measurements; the same command goes on from there", current_,
+                                  pieces_.size()));
 }
 
 void WorkList::run() {

@@ -46,8 +46,14 @@ class WorkList {
     /// Runs all pieces in order. Throws Interrupted, or what a piece throws.
     void run();
 
-    /// From within a piece: whether to go on. Throws Interrupted if not.
+    /// From within a piece: whether to go on.
+    bool go_on(double share_of_piece = 0);
+
+    /// The same, throwing Interrupted if not.
     void check(double share_of_piece = 0);
+
+    /// Throws Interrupted.
+    [[noreturn]] void stop() const;
 
   private:
     struct Kind {

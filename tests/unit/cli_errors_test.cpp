@@ -91,6 +91,22 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{
             "ColorCount", "render builtin:sphere:16 -o a.png --color 1,1,1 --color 1,0,0", 1, {"--color", "2 times"}},
         Misuse{"UnknownDevice", "render builtin:sphere:16 -o a.png --device nosuchcard", 1, {"nosuchcard"}},
+        Misuse{"MaxError", "render builtin:sphere -o a.png --max-error 0", 2, {"--max-error", "'0'", "0.5%"}},
+        Misuse{"MaxErrorReference",
+               "render builtin:sphere:16 -o a.png --max-error 1% --renderer reference",
+               1,
+               {"--max-error", "--renderer splat"}},
+        Misuse{"AccuracyNoReport", "accuracy builtin:sphere", 2, {"--report", "required"}},
+        Misuse{"AccuracySize", "accuracy builtin:sphere --report r --size 0x4", 2, {"--size", "'0x4'"}},
+        Misuse{"AccuracyTolerance", "accuracy builtin:sphere --report r --tolerance 1", 2, {"--tolerance", "'1'"}},
+        Misuse{"AccuracyRepeats", "accuracy builtin:sphere --report r --repeats 0", 2, {"--repeats", "'0'"}},
+        Misuse{"AccuracyFolder", "accuracy builtin:sphere --report none/r", 1, {"none", "does not exist"}},
+        Misuse{"AccuracyFactor", "accuracy builtin:sphere --report r --downsample 1", 2, {"--downsample", "1"}},
+        Misuse{"AccuracyCrop", "accuracy builtin:sphere --report r --crop 1,2,3", 2, {"--crop", "'1,2,3'"}},
+        Misuse{"AccuracyCropOutside",
+               "accuracy builtin:sphere:16 --report r --crop 0,0,0,16,3,3",
+               1,
+               {"crop", "16 x 16 x 16"}},
         Misuse{"CompareNoFile", "compare a.png b.png", 2, {"a.png", "no such file"}}),
     [](const ::testing::TestParamInfo<Misuse>& parameter) { return std::string(parameter.param.name); });
 
