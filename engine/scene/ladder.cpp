@@ -47,6 +47,10 @@ bool warps(const Settings& s) {
 bool edge_family(const Settings& s) {
     return warps(s) && s.warp == WarpFamily::Edge;
 }
+/// The two-dimensional short cut knows planes only.
+bool may_curve(const Settings& s) {
+    return edge_family(s) && s.footprints != FootprintMode::Warp2d;
+}
 bool tables(const Settings& s) {
     return edge_family(s) && s.sheets == SheetCut::Whole && s.edge_shape == EdgeShape::Plane &&
            (s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp);
@@ -99,7 +103,7 @@ std::vector<Knob> make_ladder() {
                      .others = {},
                      .get = get_name<&Settings::edge_shape>,
                      .assign = [](Settings& s, const Knob&, View v) { s.edge_shape = edge_shape_named(v); },
-                     .matters = edge_family});
+                     .matters = may_curve});
     knobs.push_back(
         {.name = "normalise",
          .help = "Whether kernels are weighted so that those around a voxel sum to one, also at curved edges",
@@ -108,7 +112,8 @@ std::vector<Knob> make_ladder() {
          .others = {},
          .get = get_name<&Settings::normalisation>,
          .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
-         .matters = [](const Settings& s) { return edge_family(s) && s.edge_shape == EdgeShape::Plane; }});
+         .matters =
+             [](const Settings& s) { return edge_family(s) && (s.edge_shape == EdgeShape::Plane || !may_curve(s)); }});
     knobs.push_back({.name = "footprints",
                      .help = "How a warped kernel's footprint is evaluated (the paper family, walls, curved edges and "
                              "sliced sheets are integrated in the table modes)",

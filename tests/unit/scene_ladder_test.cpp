@@ -1,0 +1,289 @@
+// The ladder: every knob's every step, what is refused and in which words, presets, and what settings come down to.
+#include "engine/scene/ladder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <random>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+std::string refusal(const std::function<void()>& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+/// Steps and others.
+std::vector<std::string_view> values_of(const Knob& knob) {
+    std::vector<std::string_view> values = knob.steps;
+    values.insert(values.end(), knob.others.begin(), knob.others.end());
+    return values;
+}
+
+/// Settings with every knob at any of its values.
+Settings random_settings(std::mt19937& random) {
+    Settings settings;
+    for (const Knob& knob : ladder()) {
+        const auto values = values_of(knob);
+        knob.set(settings, values[random() % values.size()]);
+    }
+    settings.cull_buried = random() % 2 == 0;
+    return settings;
+}
+
+TEST(Ladder, EveryValueIsSetAndReadBackAndValid) {
+    for (const Knob& knob : ladder()) {
+        EXPECT_GE(knob.steps.size(), 2U) << knob.name;
+        EXPECT_FALSE(knob.help.empty()) << knob.name;
+        const auto values = values_of(knob);
+        EXPECT_EQ(std::set(values.begin(), values.end()).size(), values.size()) << knob.name;
+        for (const std::string_view value : values) {
+            Settings settings;
+            knob.set(settings, value);
+            EXPECT_EQ(knob.get(settings), value) << knob.name;
+            EXPECT_NO_THROW(validate(settings)) << knob.name << " " << value;
+            // Nothing else is touched: what differs from the defaults is this knob.
+            const Settings usual;
+            EXPECT_EQ(difference(settings),
+                      value == knob.get(usual) ? "" : std::string(knob.name) + "=" + std::string(value));
+        }
+    }
+}
+
+TEST(Ladder, EnumsHaveAllTheirNames) {
+    const auto expect_names = [](std::string_view knob, std::span<const std::string_view> names) {
+        const auto values = values_of(knob_named(knob));
+        EXPECT_EQ(std::set<std::string_view>(values.begin(), values.end()),
+                  std::set<std::string_view>(names.begin(), names.end()))
+            << knob;
+    };
+    expect_names("edges", edge_estimator_names());
+    expect_names("footprints", footprint_mode_names());
+    expect_names("warp", warp_family_names());
+    expect_names("edge-shape", edge_shape_names());
+    expect_names("normalise", normalisation_names());
+    expect_names("table-size", table_size_names());
+    expect_names("sheets", sheet_cut_names());
+    expect_names("sheet-format", sheet_format_names());
+    expect_names("accumulation", sheet_format_names());
+}
+
+TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
+    for (const Knob& knob : ladder()) {
+        Settings settings;
+        const std::string message = refusal([&] { knob.set(settings, "sideways"); });
+        EXPECT_THAT(message, HasSubstr("'sideways'")) << knob.name;
+        EXPECT_EQ(settings, Settings{}) << knob.name << ": a refusal changes nothing";
+        if (knob.number) {
+            EXPECT_THAT(message, HasSubstr(knob.above_low ? "above" : "from")) << knob.name;
+            continue;
+        }
+        for (const std::string_view value : values_of(knob))
+            EXPECT_THAT(message, HasSubstr(std::string(value))) << knob.name;
+        for (const std::string_view bad : {"", " ", "Off", "WHOLE", "march "})
+            EXPECT_NE(refusal([&] { knob.set(settings, bad); }), "") << knob.name << " '" << bad << "'";
+    }
+}
+
+TEST(Ladder, NumbersAreWholeAndInRange) {
+    for (const Knob& knob : ladder()) {
+        if (!knob.number) continue;
+        Settings settings;
+        const auto refused = [&](const std::string& text) { return refusal([&] { knob.set(settings, text); }); };
+        const auto text = [](double v) { return std::to_string(v); };
+        for (const std::string& bad :
+             {std::string(""), std::string("nan"), std::string("inf"), std::string("-inf"), std::string("1x"),
+              std::string("1 "), std::string(" 1"), std::string("0x1"), std::string("1,5"), std::string("++1"),
+              std::string("+"), std::string("1e999"), text(knob.low - 0.01), text(knob.high + 0.01)})
+            EXPECT_THAT(refused(bad), AllOf(HasSubstr("'" + bad + "'"), HasSubstr("number"))) << knob.name;
+        EXPECT_EQ(refused(text(knob.low)).empty(), !knob.above_low) << knob.name;
+        EXPECT_EQ(refused(text(knob.high)), "") << knob.name;
+        EXPECT_EQ(refused("+1"), "") << knob.name;
+        EXPECT_EQ(knob.get(settings), "1");
+        EXPECT_NO_THROW(validate(settings));
+        // The knob's range is the one that settings are checked against.
+        knob.set(settings, text(knob.high));
+        EXPECT_NO_THROW(validate(settings)) << knob.name;
+        if (!knob.above_low) {
+            knob.set(settings, text(knob.low));
+            EXPECT_NO_THROW(validate(settings)) << knob.name;
+        }
+    }
+}
+
+TEST(Ladder, StepsGoUpAndNamesAreUnique) {
+    std::set<std::string_view> names;
+    for (const Knob& knob : ladder()) {
+        EXPECT_TRUE(names.insert(knob.name).second) << knob.name;
+        EXPECT_EQ(&knob_named(knob.name), &knob);
+        if (!knob.number) continue;
+        // Numbers rise or fall from step to step; which way is the better one differs.
+        std::vector<double> steps;
+        for (const std::string_view step : knob.steps)
+            steps.push_back(std::stod(std::string(step)));
+        const bool falls = steps.front() > steps.back();
+        for (std::size_t i = 1; i < steps.size(); ++i)
+            EXPECT_EQ(falls, steps[i - 1] > steps[i]) << knob.name;
+    }
+    EXPECT_THAT(refusal([] { knob_named("colour"); }),
+                AllOf(HasSubstr("'colour'"), HasSubstr("edges"), HasSubstr("saturation")));
+}
+
+TEST(Ladder, EveryCombinationOfStepsIsValid) {
+    std::mt19937 random(1);
+    for (int i = 0; i < 2000; ++i) {
+        const Settings settings = random_settings(random);
+        ASSERT_NO_THROW(validate(settings)) << difference(settings);
+        ASSERT_NO_THROW(validate(drawn_as(settings))) << difference(settings);
+    }
+}
+
+TEST(Presets, AreValidOrderedAndFoundByName) {
+    ASSERT_EQ(presets().size(), 3U);
+    std::vector<std::string_view> names;
+    for (const Preset& preset : presets()) {
+        names.push_back(preset.name);
+        EXPECT_NO_THROW(validate(preset.settings));
+        EXPECT_FALSE(preset.help.empty());
+        EXPECT_EQ(&preset_named(preset.name), &preset);
+    }
+    EXPECT_THAT(names, testing::ElementsAre("draft", "balanced", "accurate"));
+    EXPECT_EQ(preset_named("balanced").settings, Settings{});
+    EXPECT_THAT(refusal([] { preset_named("best"); }), AllOf(HasSubstr("'best'"), HasSubstr("balanced")));
+    // Cheapest first: no knob of a later preset stands on a cheaper step than that of an earlier one.
+    for (std::size_t i = 1; i < presets().size(); ++i) {
+        EXPECT_NE(difference(presets()[i].settings, presets()[i - 1].settings), "");
+        for (const Knob& knob : ladder()) {
+            const auto step = [&](const Preset& preset) {
+                return std::find(knob.steps.begin(), knob.steps.end(), knob.get(preset.settings)) - knob.steps.begin();
+            };
+            EXPECT_LE(step(presets()[i - 1]), step(presets()[i])) << knob.name;
+        }
+    }
+}
+
+TEST(Difference, NamesWhatDiffersAndNothingElse) {
+    EXPECT_EQ(difference({}), "");
+    Settings settings;
+    settings.edges = EdgeEstimator::Cubic;
+    settings.sheet_spacing = 0.5;
+    EXPECT_EQ(difference(settings), "edges=cubic sheet-spacing=0.5");
+    EXPECT_EQ(difference(settings, settings), "");
+    EXPECT_EQ(difference({}, settings), "edges=march sheet-spacing=0.25");
+    // What it says is enough to set it.
+    std::mt19937 random(2);
+    for (int i = 0; i < 200; ++i) {
+        const Settings wanted = random_settings(random);
+        Settings made;
+        made.cull_buried = wanted.cull_buried;
+        std::istringstream words(difference(wanted));
+        for (std::string word; words >> word;) {
+            const auto equals = word.find('=');
+            knob_named(word.substr(0, equals)).set(made, word.substr(equals + 1));
+        }
+        ASSERT_EQ(made, wanted) << difference(wanted);
+    }
+}
+
+TEST(DrawnAs, OnceIsEnough) {
+    std::mt19937 random(3);
+    for (int i = 0; i < 5000; ++i) {
+        const Settings settings = random_settings(random), drawn = drawn_as(settings);
+        ASSERT_EQ(drawn_as(drawn), drawn) << difference(settings) << " -> " << difference(drawn);
+    }
+    EXPECT_EQ(drawn_as({}), Settings{});
+}
+
+TEST(DrawnAs, TablesHoldOnlyWholeFootprintsOfPlaneEdges) {
+    for (const FootprintMode mode : {FootprintMode::Table, FootprintMode::TableLerp}) {
+        Settings settings;
+        settings.footprints = mode;
+        settings.table_size = TableSize::Fine;
+        EXPECT_EQ(drawn_as(settings), settings);
+        const auto drawn_with = [&](const std::function<void(Settings&)>& change) {
+            Settings changed = settings;
+            change(changed);
+            const Settings drawn = drawn_as(changed);
+            EXPECT_EQ(drawn.table_size, TableSize::Medium) << "a table that is not looked up has no size";
+            return drawn.footprints;
+        };
+        EXPECT_EQ(drawn_with([](Settings& s) { s.sheets = SheetCut::Sliced; }), FootprintMode::Procedural);
+        EXPECT_EQ(drawn_with([](Settings& s) { s.edge_shape = EdgeShape::Curved; }), FootprintMode::Procedural);
+        EXPECT_EQ(drawn_with([](Settings& s) { s.warp = WarpFamily::Paper; }), FootprintMode::Procedural);
+        EXPECT_EQ(drawn_with([](Settings& s) { s.edges = EdgeEstimator::Off; }), FootprintMode::Isotropic);
+    }
+    Settings flat;
+    flat.footprints = FootprintMode::Warp2d;
+    flat.sheets = SheetCut::Sliced;
+    EXPECT_EQ(drawn_as(flat), flat) << "the short cut is sliced as it is";
+}
+
+TEST(DrawnAs, KnobsWithoutASayAreDropped) {
+    Settings settings;
+    settings.edges = EdgeEstimator::Off;
+    settings.footprints = FootprintMode::Warp2d;
+    settings.warp = WarpFamily::Paper;
+    settings.edge_half_width = 0.8;
+    settings.edge_strength = 4;
+    settings.edge_shape = EdgeShape::Curved;
+    settings.normalisation = Normalisation::Voxel;
+    settings.sheet_spacing = 2;
+    settings.accumulation = SheetFormat::Half;
+    Settings plain;
+    plain.edges = EdgeEstimator::Off;
+    plain.footprints = FootprintMode::Isotropic;
+    plain.sheet_spacing = 2;
+    plain.accumulation = SheetFormat::Half;
+    EXPECT_EQ(drawn_as(settings), plain) << difference(drawn_as(settings));
+    // Isotropic footprints of whatever edges are the same picture.
+    settings.edges = EdgeEstimator::Cubic;
+    settings.footprints = FootprintMode::Isotropic;
+    EXPECT_EQ(drawn_as(settings), plain);
+    // The paper's family knows neither band nor shape.
+    settings.footprints = FootprintMode::Procedural;
+    const Settings paper = drawn_as(settings);
+    EXPECT_EQ(paper.warp, WarpFamily::Paper);
+    EXPECT_EQ(paper.edge_strength, Settings{}.edge_strength);
+    EXPECT_EQ(paper.edge_shape, EdgeShape::Plane);
+    EXPECT_EQ(paper.normalisation, Normalisation::Off);
+    // Curved kernels sum to one as they are; the short cut knows planes only, and those are weighted.
+    settings.warp = WarpFamily::Edge;
+    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Off);
+    EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Curved);
+    settings.footprints = FootprintMode::Warp2d;
+    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Voxel);
+    EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Plane);
+}
+
+TEST(DrawnAs, AKnobThatMattersNotChangesNothing) {
+    std::mt19937 random(4);
+    for (int i = 0; i < 2000; ++i) {
+        const Settings settings = random_settings(random);
+        for (const Knob& knob : ladder()) {
+            if (knob.used(settings)) continue;
+            for (const std::string_view value : values_of(knob)) {
+                Settings other = settings;
+                knob.set(other, value);
+                ASSERT_EQ(drawn_as(other), drawn_as(settings)) << knob.name << " of " << difference(settings);
+            }
+        }
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat
