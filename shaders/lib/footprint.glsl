@@ -213,8 +213,7 @@ float footprint_curved(float rho2, float pn, float un, float D, float curvature,
         float len = abs(y - x);
         float start = min(x, y);
         float part = 0.0;
-        int nodes = len > 0.0 ? FOOTPRINT_NODES : 0;
-        for (int i = 0; i < nodes; ++i) {
+        for (int i = 0; i < FOOTPRINT_NODES; ++i) {
             float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
             part += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] *
                     kernel(curved_distance2(rho2 + z * z, pn + z * un, D, p.A, a, k));
