@@ -119,7 +119,6 @@ void add_settings_options(CLI::App& command, edgesplat::Settings& s) {
             },
             "A row of the ladder; the options below change single steps of it")
         ->type_name(rows)
-        ->default_str("balanced")
         ->group(kGroup);
     for (const edgesplat::Knob& knob : edgesplat::ladder()) {
         const std::string option = "--" + std::string(knob.name);

@@ -200,18 +200,21 @@ const Knob& knob_named(View name) {
 std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
-        draft.footprints = FootprintMode::Warp2d;
-        draft.sheet_spacing = 1;
-        draft.sheet_format = SheetFormat::Half;
-        Settings accurate;
+        draft.sheet_spacing = 0.5;
+        draft.sheet_format = draft.accumulation = SheetFormat::Half;
+        Settings balanced;
+        balanced.footprints = FootprintMode::Procedural;
+        balanced.sheets = SheetCut::Sliced;
+        balanced.sheet_spacing = 0.5;
+        Settings accurate = balanced;
         accurate.edges = EdgeEstimator::Cubic;
-        accurate.footprints = FootprintMode::Procedural;
+        accurate.edge_strength = 20;
         accurate.edge_shape = EdgeShape::Curved;
-        accurate.sheets = SheetCut::Sliced;
+        accurate.sheet_spacing = 0.125;
         accurate.saturation = 0.9999;
-        return std::vector<Preset>{{"draft", "while moving", draft},
-                                   {"balanced", "the default", Settings{}},
-                                   {"accurate", "for pictures that are to be trusted", accurate}};
+        return std::vector<Preset>{{"draft", "while moving: whole kernels in half-precision sheets", draft},
+                                   {"balanced", "kernels cut into slices of half a voxel", balanced},
+                                   {"accurate", "curved edges from a cubic spline, thin slices", accurate}};
     }();
     return rows;
 }

@@ -50,7 +50,8 @@ struct Preset {
     Settings settings;
 };
 
-/// draft, balanced, accurate: cheapest first. Chosen from measurements (docs/accuracy.md).
+/// draft, balanced, accurate: cheapest first. Chosen from measurements (docs/accuracy.md). The default settings are
+/// none of them: whole kernels as in draft, in single precision.
 std::span<const Preset> presets();
 
 /// The preset of that name; throws Error listing the names.
