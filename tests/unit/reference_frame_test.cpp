@@ -46,7 +46,7 @@ TEST(SortSheets, IsAStablePermutation) {
     std::vector<Selected> selected(5000);
     for (Selected& s : selected) {
         s.kept = random() % 3 != 0;
-        s.sheet = static_cast<int>(random() % 40);
+        s.sheet = s.last_sheet = static_cast<int>(random() % 40);
     }
     const SortedSheets sorted = sort_sheets(selected);
     EXPECT_EQ(std::set(sorted.order.begin(), sorted.order.end()).size(), sorted.order.size());
@@ -59,6 +59,30 @@ TEST(SortSheets, IsAStablePermutation) {
             EXPECT_EQ(selected[i].sheet, static_cast<int>(sheet));
     }
     EXPECT_EQ(sort_sheets({}).sheets(), 0U);
+}
+
+TEST(SortSheets, SplatsOfSeveralSheetsAreInEachOfThemOnce) {
+    std::mt19937 random(4);
+    std::vector<Selected> selected(3000);
+    std::size_t places = 0;
+    for (Selected& s : selected) {
+        s.kept = random() % 3 != 0;
+        s.sheet = static_cast<int>(random() % 40);
+        s.last_sheet = s.sheet + static_cast<int>(random() % 12);
+        places += s.kept ? static_cast<std::size_t>(s.last_sheet - s.sheet + 1) : 0U;
+    }
+    const SortedSheets sorted = sort_sheets(selected);
+    EXPECT_EQ(sorted.order.size(), places);
+    for (std::size_t sheet = 0; sheet < sorted.sheets(); ++sheet) {
+        const auto members = sorted.sheet(sheet);
+        EXPECT_TRUE(std::is_sorted(members.begin(), members.end()));
+        EXPECT_EQ(std::adjacent_find(members.begin(), members.end()), members.end()) << "twice in one sheet";
+        for (const auto i : members) {
+            EXPECT_TRUE(selected[i].kept);
+            EXPECT_LE(selected[i].sheet, static_cast<int>(sheet));
+            EXPECT_GE(selected[i].last_sheet, static_cast<int>(sheet));
+        }
+    }
 }
 
 TEST(ScreenBox, HoldsExactlyThePixelsThatSeeTheSphere) {
