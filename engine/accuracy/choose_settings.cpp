@@ -17,8 +17,10 @@ namespace {
 constexpr double kProxyPixels = 112;  ///< longer side of the small picture
 constexpr int kRounds = 3;
 
-/// Methods that were on or near the front of measured volumes; the base's own is always among them.
-std::vector<Settings> candidates(const Settings& base) {
+enum class Tier { Cheap, Dear };
+
+/// Methods that were on or near the front of measured volumes; the base's own is always the first of the cheap ones.
+std::vector<Settings> candidates(const Settings& base, Tier tier) {
     struct Row {
         FootprintMode footprints;
         SheetCut sheets;
@@ -27,22 +29,23 @@ std::vector<Settings> candidates(const Settings& base) {
     };
     using F = FootprintMode;
     using S = SheetCut;
-    const Row rows[] = {{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Half},
-                        {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Half},
-                        {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Float},
-                        {F::TableLerp, S::Whole, 1, 0.98, SheetFormat::Float},
-                        {F::TableLerp, S::Whole, 0.5, 0.99, SheetFormat::Float},
-                        {F::TableLerp, S::Whole, 0.25, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Float},
-                        {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Float}};
-    std::vector<Settings> list{base};
+    const std::vector<Row> cheap{{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Half},
+                                 {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Half},
+                                 {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Float},
+                                 {F::TableLerp, S::Whole, 1, 0.98, SheetFormat::Float},
+                                 {F::TableLerp, S::Whole, 0.5, 0.99, SheetFormat::Float},
+                                 {F::TableLerp, S::Whole, 0.25, 0.999, SheetFormat::Float},
+                                 {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Float}};
+    const std::vector<Row> dear{{F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Float},
+                                {F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Float},
+                                {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Float},
+                                {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Float},
+                                {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Float},
+                                {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Float}};
+    std::vector<Settings> list;
+    if (tier == Tier::Cheap) list.push_back(base);
     std::vector<std::string> known{settings_key(base)};
-    for (const Row& row : rows) {
+    for (const Row& row : tier == Tier::Cheap ? cheap : dear) {
         Settings s = base;
         s.footprints = row.footprints;
         s.sheets = row.sheets;
@@ -90,15 +93,19 @@ ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const S
         reference::direct_evaluation(model, camera, result.size.x, result.size.y, reference::Output::Color, options);
     result.reference_error = expected.error_estimate;
 
-    for (const Settings& settings : candidates(limit.base)) {
-        const RenderResult picture = renderer.render(scene, camera, settings, result.size.x, result.size.y);
-        result.tried.push_back(
-            {settings, image_error(picture.color, expected.image).rms, std::numeric_limits<double>::infinity()});
+    const auto good_enough = [&](const TriedSettings& t) { return kErrorMargin * t.error <= limit.rms; };
+    for (const Tier tier : {Tier::Cheap, Tier::Dear}) {
+        if (std::any_of(result.tried.begin(), result.tried.end(), good_enough)) break;
+        for (const Settings& settings : candidates(limit.base, tier)) {
+            const RenderResult picture = renderer.render(scene, camera, settings, result.size.x, result.size.y);
+            result.tried.push_back(
+                {settings, image_error(picture.color, expected.image).rms, std::numeric_limits<double>::infinity()});
+        }
     }
     // Only those that are good enough are timed, in turns, so that what else the machine does disturbs all alike.
     for (int round = 0; round < kRounds; ++round)
         for (TriedSettings& tried : result.tried) {
-            if (kErrorMargin * tried.error > limit.rms && tried.settings != limit.base) continue;
+            if (!good_enough(tried) && tried.settings != limit.base) continue;
             renderer.render(scene, camera, tried.settings, result.size.x, result.size.y);  // tables, formats
             for (int frame = 0; frame < 2; ++frame)
                 tried.milliseconds = std::min(

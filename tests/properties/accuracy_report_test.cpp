@@ -1,0 +1,102 @@
+// A whole accuracy report on a tiny scene: stopped by Ctrl-C, resumed, and made a second time: every error is the same.
+#include <gmock/gmock.h>
+#include <spawn.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/unit/cli_program.h"
+
+extern char** environ;  // NOLINT: the system's
+
+namespace edgesplat {
+namespace {
+
+using nlohmann::ordered_json;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+constexpr const char* kArguments =
+    "builtin:sphere:24 --size 48x48 --repeats 1 --orbit 1 --tolerance 1e-3 --knobs sheets,sheet-spacing --cameras "
+    "far --edge-strength 8 -q";
+
+class AccuracyReport : public CliTest {
+  protected:
+    ProgramRun report(const std::string& folder, const std::string& more = "") const {
+        return run("accuracy " + std::string(kArguments) + " --report " + folder + " " + more);
+    }
+
+    std::string journal(const std::string& folder) const { return text_of(folder_ / folder / "journal.jsonl"); }
+
+    /// Starts it, waits for a few finished measurements, and presses Ctrl-C. The exit status.
+    int interrupted(const std::string& folder) const {
+        const std::string command = "cd '" + folder_.string() + "' && exec '" EDGESPLAT_PROGRAM "' accuracy " +
+                                    kArguments + " --report " + folder + " 2>/dev/null";
+        std::string shell = "/bin/sh", flag = "-c", text = command;
+        char* arguments[] = {shell.data(), flag.data(), text.data(), nullptr};
+        pid_t child = 0;
+        EXPECT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
+        for (int i = 0; i < 3000; ++i) {
+            const std::string lines = journal(folder);
+            if (std::count(lines.begin(), lines.end(), '\n') >= 4) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        }
+        kill(child, SIGINT);
+        int status = 0;
+        waitpid(child, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    }
+
+    /// The report without what may differ between two runs.
+    ordered_json errors_of(const std::string& folder) const {
+        ordered_json json = ordered_json::parse(text_of(folder_ / folder / "report.json"));
+        json.erase("command");
+        json.erase("raycast_ms");
+        json.erase("front");
+        for (ordered_json& row : json["rows"]) {
+            row.erase("time");
+            row.erase("on_front");
+            for (ordered_json& camera : row["cameras"])
+                camera.erase("time");
+        }
+        return json;
+    }
+};
+
+TEST_F(AccuracyReport, GoesOnAfterCtrlCAndRepeatsItsErrorsExactly) {
+    EXPECT_EQ(interrupted("r"), 130);
+    const std::string before = journal("r");
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r" / "report.json"));
+
+    const ProgramRun resumed = report("r");
+    ASSERT_EQ(resumed.status, 0) << resumed.err;
+    EXPECT_THAT(journal("r"), StartsWith(before)) << "something finished was done again";
+    for (const char* file : {"index.html", "report.json", "steps.csv"})
+        EXPECT_TRUE(std::filesystem::exists(folder_ / "r" / file)) << file;
+
+    const ProgramRun other = report("r", "--edge-shape curved");
+    EXPECT_EQ(other.status, 1);
+    EXPECT_THAT(other.err, HasSubstr("--restart"));
+
+    ASSERT_EQ(report("again").status, 0);
+    EXPECT_EQ(errors_of("r"), errors_of("again"));
+
+    const ordered_json json = errors_of("r");
+    for (const char* key : {"schema", "program", "volume", "device", "options", "largest_reference_error", "surface",
+                            "cameras", "rows", "notes"})
+        EXPECT_TRUE(json.contains(key)) << key;
+    for (const char* key : {"kind", "name", "knob", "step", "settings", "method_error", "model_error", "edges_voxels",
+                            "popping", "device_bytes", "cameras"})
+        EXPECT_TRUE(json["rows"][0].contains(key)) << key;
+    EXPECT_THAT(text_of(folder_ / "r" / "steps.csv"),
+                StartsWith("kind,name,knob,step,on_front,method_rms,method_max,model_rms,model_max,rise_mean_voxels,"));
+    const std::string page = text_of(folder_ / "r" / "index.html");
+    EXPECT_THAT(page, HasSubstr("<svg"));
+    EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
+    EXPECT_THAT(page, ::testing::Not(HasSubstr("http")));
+}
+
+}  // namespace
+}  // namespace edgesplat
