@@ -44,15 +44,21 @@ TEST(CollectSplats, BuriedVoxelsAreDroppedAndOnlyThey) {
     EXPECT_EQ(kept, outer);
 }
 
+/// What pass 1 left for every voxel.
+std::vector<reference::VoxelEdge> device_field(RendererState& state) {
+    std::vector<reference::VoxelEdge> edges;
+    for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges)) {
+        edges.push_back(decode_edge(words.x, words.y));
+        edges.back().adopted = (words.y & shader::EDGE_ADOPTED) != 0;
+    }
+    return edges;
+}
+
 TEST(CollectSplats, RecordsHoldTheEdgesSmoothedAlongTheSurface) {
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         RendererState& state = prepared(s);
-        std::vector<reference::VoxelEdge> field_edges;
-        for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges)) {
-            field_edges.push_back(decode_edge(words.x, words.y));
-            field_edges.back().adopted = (words.y & shader::EDGE_ADOPTED) != 0;
-        }
+        const std::vector<reference::VoxelEdge> field_edges = device_field(state);
         const auto values = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, values, {}};
         const auto want = reference::smooth_edges(field, s.scaled(), s.settings, field_edges);
@@ -69,6 +75,71 @@ TEST(CollectSplats, RecordsHoldTheEdgesSmoothedAlongTheSurface) {
         EXPECT_GT(edges, 500U);
         EXPECT_GT(moved, edges / 10) << "nothing was smoothed";
     }
+}
+
+TEST(CollectSplats, TraitsHoldTheCurvature) {
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        s.settings.footprints = FootprintMode::Procedural;
+        s.settings.edge_shape = EdgeShape::Curved;
+        RendererState& state = prepared(s);
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        const auto want = reference::smooth_edges(field, s.scaled(), s.settings, device_field(state));
+        const double most = reference::most_curved(s.settings);
+        double largest = 0;
+        std::size_t differ = 0;
+        const auto records = device_records(state);
+        for (const auto& record : records) {
+            if (!record.edge.has_edge) continue;
+            largest = std::max(largest, std::abs(record.edge.curvature));
+            EXPECT_EQ(record.edge.weight, 1);
+            EXPECT_LE(std::abs(record.edge.curvature), most + 1e-6);
+            // 16 bits of the largest curvature, and float32 sums of a few dozen terms. Foot points at the limit of 1.5
+            // voxels, or normals at that of 37 degrees, may be counted on one side and not on the other.
+            differ += std::abs(record.edge.curvature - want[record.voxel].curvature) > 1e-4 ? 1U : 0U;
+        }
+        EXPECT_GT(largest, s.name == "wall from inside" ? 0.001 : 0.1) << "nothing is curved";
+        EXPECT_LE(differ, records.size() / 500);
+    }
+}
+
+TEST(CollectSplats, TraitsHoldTheWeights) {
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        s.settings.normalisation = Normalisation::Voxel;
+        RendererState& state = prepared(s);
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        std::vector<reference::VoxelEdge> want = device_field(state);
+        reference::weigh_kernels(field, s.settings, want);
+        double low = 1, high = 1, worst = 0;
+        for (const auto& record : device_records(state)) {
+            EXPECT_EQ(record.edge.curvature, 0);
+            const double weight = record.edge.weight;
+            EXPECT_GE(weight, 0.25 - 1e-4);
+            EXPECT_LE(weight, 4);
+            low = std::min(low, weight);
+            high = std::max(high, weight);
+            worst = std::max(worst, std::abs(weight - want[record.voxel].weight));
+        }
+        EXPECT_TRUE(low < 0.9 || high > 1.1) << "every weight is 1";
+        // 16 bits of 4 are 6e-5; float32 sums of kernels are good to 1e-5, and 1 / sum is at most 4.
+        EXPECT_LE(worst, 5e-4);
+    }
+}
+
+TEST(CollectSplats, EdgesOnBothSidesAreEstimatedForWeightsAndOnlyThen) {
+    PassScene s = pass_scenes()[0];
+    const auto with_edges = [&] {
+        std::size_t count = 0;
+        for (const auto& edge : device_field(prepared(s)))
+            count += edge.has_edge ? 1U : 0U;
+        return count;
+    };
+    const std::size_t visible = with_edges();
+    s.settings.normalisation = Normalisation::Voxel;
+    EXPECT_GT(with_edges(), visible + visible / 2);
 }
 
 TEST(CollectSplats, AVolumeWithoutVisibleVoxelsGivesAnEmptyListAndTheBackground) {

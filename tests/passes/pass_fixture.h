@@ -124,12 +124,21 @@ inline RendererState& prepared(const PassScene& s) {
     return state;
 }
 
-/// The device's splat list as the reference writes it.
+/// The device's splat list as the reference writes it, with curvature and weight where the device has them.
 inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat :
          download<shader::Splat>(state, state.volume_resources.splats, state.volume_resources.splat_count)) {
         records.push_back({splat.voxel, splat.edge >> 28U, decode_edge(splat.normal, splat.edge)});
+    }
+    if (!state.volume_resources.traits) return records;
+    const auto traits = download<std::uint32_t>(state, state.volume_resources.traits, records.size());
+    const auto curvature_unit = static_cast<double>(state.collected->params.curvature_unit);
+    for (std::size_t i = 0; i < records.size(); ++i) {
+        records[i].edge.curvature = std::max(static_cast<std::int16_t>(traits[i] & 0xffffU) / 32767.0, -1.0) *
+                                    curvature_unit * (state.collected->curved ? 1 : 0);
+        records[i].edge.weight =
+            state.collected->weighted ? (traits[i] >> 16U) / 65535.0 * static_cast<double>(shader::WEIGHT_UNIT) : 1;
     }
     return records;
 }

@@ -1,0 +1,174 @@
+// Passes 3 and 4 with sliced sheets: every splat in exactly the sheets that its support touches.
+#include <algorithm>
+
+#include "engine/reference/footprints.h"
+#include "footprints/kernel.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr glm::ivec2 kSize{48, 40};
+
+struct SheetRange {
+    bool drawn = false;
+    int first = 0, last = 0;
+};
+
+struct Drawn {
+    std::vector<SheetRange> ranges;
+    std::vector<std::uint32_t> order;
+    std::vector<shader::SheetGroup> groups;
+};
+
+Drawn drawn(RendererState& state, const PassScene& s) {
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    Drawn result;
+    for (const std::uint32_t code :
+         download<std::uint32_t>(state, state.targets.sheet_of, state.volume_resources.splat_count)) {
+        const auto first = static_cast<int>(code & ((1U << shader::SHEET_BITS) - 1U));
+        result.ranges.push_back(
+            {code != shader::SHEET_NONE, first, first + static_cast<int>(code >> shader::SHEET_BITS)});
+    }
+    result.order = download<std::uint32_t>(state, state.targets.order, state.targets.drawn.mapped<std::uint32_t>(1)[0]);
+    const auto groups = state.targets.groups.mapped<shader::SheetGroup>(state.plan.params.group_count);
+    result.groups.assign(groups.begin(), groups.end());
+    return result;
+}
+
+struct Variant {
+    const char* name;
+    FootprintMode mode;
+    EdgeShape shape;
+    double spacing;
+};
+
+class SlicedSheets : public testing::TestWithParam<Variant> {
+  protected:
+    static PassScene with(PassScene s) {
+        s.settings.sheets = SheetCut::Sliced;
+        s.settings.footprints = GetParam().mode;
+        s.settings.edge_shape = GetParam().shape;
+        s.settings.sheet_spacing = GetParam().spacing;
+        if (GetParam().mode == FootprintMode::Isotropic) s.settings.edges = EdgeEstimator::Off;
+        return s;
+    }
+};
+
+TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
+    for (const PassScene& plain : pass_scenes()) {
+        const PassScene s = with(plain);
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        const auto records = device_records(state);
+        const Drawn got = drawn(state, s);
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+        const reference::Footprints footprints(s.settings);
+        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
+        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
+        const double thickness = reference::sheet_thickness(view, s.settings);
+        const int base = state.plan.params.sheet_base, count = static_cast<int>(state.plan.params.sheet_count);
+        // The device's box of splats holds whole rows: it may begin earlier.
+        EXPECT_LE(base, reference::first_sheet(records, field, view, s.settings, footprints));
+
+        // The sphere that holds a kernel, as the frame has it: depth of its centre and half its extent, in sheets.
+        const auto& params = state.plan.params;
+        const double unit = glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * view.frame.forward);
+        const auto extent = [&](const reference::VoxelEdge& edge) {
+            double shift = 0, radius = kKernelRadius;
+            if (params.edge_warped == 1U && edge.has_edge) {
+                const double band = kKernelRadius + s.settings.edge_half_width;
+                const auto cell = std::min(static_cast<std::size_t>(std::abs(edge.D) / band * shader::SUPPORT_STEPS),
+                                           std::size_t{shader::SUPPORT_STEPS - 1});
+                shift = (edge.D < 0 ? -1 : 1) * static_cast<double>(params.support_table[cell].x);
+                radius = static_cast<double>(params.support_table[cell].y);
+                if (edge.D2 < band) {
+                    shift = 0;
+                    radius = static_cast<double>(params.wall_support);
+                }
+            }
+            return std::pair(shift, radius * unit / thickness);
+        };
+        std::size_t kept = 0, looked_at = 0, misplaced = 0;
+        double missed = 0;
+        for (std::size_t i = 0; i < records.size(); ++i) {
+            const SheetRange& range = got.ranges[i];
+            if (!range.drawn) continue;
+            ++kept;
+            ASSERT_LE(range.first, range.last);
+            ASSERT_GE(range.first, 0);
+            ASSERT_LT(range.last, count);
+            ASSERT_LE(range.last - range.first + 1, static_cast<int>(state.plan.sheets_per_splat));
+            const auto [shift, reach] = extent(records[i].edge);
+            const glm::dvec3 x(field.voxel(records[i].voxel));
+            const double middle = view.depth(x + shift * records[i].edge.n) / thickness - base;
+            const auto clamped = [&](double sheet) {
+                return std::clamp(static_cast<int>(std::floor(sheet)), 0, count - 1);
+            };
+            // Within rounding of a plane between sheets either side is right: float32 of some hundred sheets.
+            ASSERT_GE(range.first, clamped(middle - reach - 2e-3));
+            ASSERT_LE(range.first, clamped(middle - reach + 2e-3));
+            ASSERT_GE(range.last, clamped(middle + reach - 2e-3));
+            ASSERT_LE(range.last, clamped(middle + reach + 2e-3));
+            misplaced += range.first != clamped(middle - reach) || range.last != clamped(middle + reach) ? 1U : 0U;
+            // What those sheets leave out shows nowhere. A few splats will do: the reference asks every pixel.
+            if (kept % 60 != 1) continue;
+            ++looked_at;
+            const auto& box = selected[i].box;
+            for (int y = box.y0; y < box.y1; y += 3) {
+                for (int column = box.x0; column < box.x1; column += 3) {
+                    const auto tau = [&](double near, double far) {
+                        return drawer.tau(static_cast<std::uint32_t>(i), column, y, reference::DepthRange{near, far});
+                    };
+                    missed =
+                        std::max({missed, tau(thickness * std::max(base - 100, 0), thickness * (base + range.first)),
+                                  tau(thickness * (base + range.last + 1), thickness * (base + count + 100))});
+                }
+            }
+        }
+        EXPECT_GT(kept, 100U);
+        EXPECT_GT(looked_at, 3U);
+        EXPECT_LE(misplaced, kept / 50);
+        EXPECT_LE(missed, 1e-6);
+    }
+}
+
+TEST_P(SlicedSheets, AreSortedStableAndComplete) {
+    for (const PassScene& plain : pass_scenes()) {
+        const PassScene s = with(plain);
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        const Drawn got = drawn(state, s);
+        std::vector<std::uint32_t> want;
+        std::vector<std::size_t> ends;  // of each sheet, in the order
+        for (int sheet = 0; sheet < static_cast<int>(state.plan.params.sheet_count); ++sheet) {
+            for (std::uint32_t i = 0; i < got.ranges.size(); ++i) {
+                const SheetRange& range = got.ranges[i];
+                if (range.drawn && range.first <= sheet && sheet <= range.last) want.push_back(i);
+            }
+            ends.push_back(want.size());
+        }
+        ASSERT_EQ(got.order.size(), want.size());
+        EXPECT_EQ(got.order, want);
+        const std::size_t per_group = state.plan.params.sheets_per_group;
+        std::size_t first = 0;
+        for (std::size_t g = 0; g < got.groups.size(); ++g) {
+            const std::size_t end = ends[std::min((g + 1) * per_group, ends.size()) - 1];
+            EXPECT_EQ(got.groups[g].first, first) << "group " << g;
+            EXPECT_EQ(got.groups[g].count, end - first) << "group " << g;
+            first = end;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(All, SlicedSheets,
+                         testing::Values(Variant{"plane", FootprintMode::Procedural, EdgeShape::Plane, 0.5},
+                                         Variant{"curved", FootprintMode::Procedural, EdgeShape::Curved, 0.25},
+                                         Variant{"isotropic", FootprintMode::Isotropic, EdgeShape::Plane, 1},
+                                         Variant{"thick", FootprintMode::Procedural, EdgeShape::Plane, 16}),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+}  // namespace
+}  // namespace edgesplat::test
