@@ -67,6 +67,74 @@ Shot with(Shot shot, FootprintMode footprints, EdgeEstimator edges = EdgeEstimat
     return shot;
 }
 
+Shot sliced(Shot shot, double spacing, EdgeShape shape = EdgeShape::Plane) {
+    shot.settings.sheets = SheetCut::Sliced;
+    shot.settings.sheet_spacing = spacing;
+    shot.settings.edge_shape = shape;
+    return shot;
+}
+
+Shot small(Shot shot, int side = 48) {
+    shot.width = shot.height = side;
+    // The device finishes pixels by groups of sheets of its own: up to 1 - saturation.
+    shot.settings.saturation = 1;
+    return shot;
+}
+
+/// Kernels cut at sheets' planes, curved, weighted; coarser and finer tables; a picture accumulated in half precision.
+std::vector<ImageCase> later_cases() {
+    using E = EdgeEstimator;
+    using F = FootprintMode;
+    std::vector<ImageCase> cases;
+    const Shot torus = small(torus_shot());
+    cases.push_back({"torus, sliced", sliced(with(torus, F::Procedural), 0.25)});
+    cases.push_back({"torus, sliced into thick sheets", sliced(with(torus, F::Procedural), 2)});
+    cases.push_back(
+        {"torus, sliced and curved", sliced(with(small(torus_shot(), 32), F::Procedural), 0.25, EdgeShape::Curved)});
+    cases.push_back({"torus, sliced, tables asked for", sliced(with(torus, F::TableLerp), 0.5)});
+    cases.push_back({"torus, sliced, plain", sliced(with(torus, F::Isotropic, E::Off), 0.5)});
+    cases.push_back({"torus, sliced, warp2d", sliced(with(torus, F::Warp2d), 0.5)});
+    Shot curved = with(torus, F::Procedural);
+    curved.settings.edge_shape = EdgeShape::Curved;
+    cases.push_back({"torus, curved, cubic", with(curved, F::Procedural, E::Cubic)});
+    Shot weighted = torus;
+    weighted.settings.normalisation = Normalisation::Voxel;
+    cases.push_back({"torus, weighted", weighted});
+    cases.push_back({"torus, weighted and sliced", sliced(with(weighted, F::Procedural), 0.5)});
+    const Shot oblique = small(oblique_orbital());
+    cases.push_back({"oblique orbital, sliced", sliced(with(oblique, F::Procedural), 0.5)});
+    cases.push_back(
+        {"oblique orbital, sliced and curved", sliced(with(oblique, F::Procedural), 0.5, EdgeShape::Curved)});
+    cases.push_back({"oblique orbital, sliced, depth", sliced(with(oblique, F::Procedural), 0.5), Output::Depth});
+    const Shot wall = small(near_wall());
+    cases.push_back({"near wall, sliced", sliced(with(wall, F::Procedural), 0.25)});
+    Shot inside = small(inside_torus());
+    cases.push_back({"inside the torus, sliced", sliced(with(inside, F::Procedural), 0.5)});
+    inside.width = inside.height = 20;  // near by, every kernel covers many pixels
+    cases.push_back(
+        {"inside the torus, sliced and curved", sliced(with(inside, F::Procedural), 0.5, EdgeShape::Curved)});
+    Shot plane = small(builtin("plane", glm::ivec3(20)));
+    from(plane, "oblique");
+    plane = with(plane, F::Procedural, E::March, WarpFamily::Paper);
+    cases.push_back({"plane, paper family, sliced", sliced(plane, 2)});
+    plane.settings.footprints = F::Warp2d;
+    cases.push_back({"plane, paper warp2d, sliced", sliced(plane, 0.5)});
+    // Float32 of some tens of splats a sheet: what is better than this is not the same sum.
+    for (ImageCase& c : cases)
+        c.smallest_psnr = 95;
+    Shot half = torus;
+    half.settings.accumulation = SheetFormat::Half;
+    // 11 bits of a value near 1 are off by 2.4e-4 a sheet, to either side.
+    cases.push_back({"torus, accumulated in half precision", half, Output::Color, 65});
+    for (const TableSize size : {TableSize::Coarse, TableSize::Fine}) {
+        Shot tabled = torus;
+        tabled.settings.table_size = size;
+        // The reference looks up the medium one. A coarse table is off by some .5 % of a footprint.
+        cases.push_back({"torus, table " + std::string(name_of(size)), tabled, Output::Color, 65});
+    }
+    return cases;
+}
+
 }  // namespace
 
 std::vector<ImageCase> reference_cases() {
@@ -102,6 +170,8 @@ std::vector<ImageCase> reference_cases() {
     cases.push_back({"torus, depth", torus_shot(), Output::Depth});
     cases.push_back({"oblique orbital, normals", oblique_orbital(), Output::Normal});
     cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
+    for (ImageCase& c : later_cases())
+        cases.push_back(std::move(c));
     return cases;
 }
 

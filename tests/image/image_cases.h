@@ -14,6 +14,7 @@ struct ImageCase {
     std::string name;
     Shot shot;
     reference::Output output = reference::Output::Color;
+    double smallest_psnr = 50;  ///< against the reference, dB, of a peak that is the larger of 1 and what there is
 };
 
 /// Held against the double-precision reference.
