@@ -1,7 +1,7 @@
 #include "engine/accuracy/frame_times.h"
 
 #include <algorithm>
-#include <cmath>
+#include <ctime>
 #include <numeric>
 #include <random>
 
@@ -12,6 +12,24 @@ using nlohmann::ordered_json;
 
 constexpr double kVisitMilliseconds = 120;  ///< that frames faster than this are repeated for
 constexpr int kMostTriples = 6;
+
+struct Cost {
+    double wall = 0, processor = 0;  ///< ms
+};
+
+double processor_milliseconds() {
+    timespec now{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+    return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
+}
+
+/// What a frame costs; `stats` gets what it says of itself.
+template <typename Render>
+Cost cost_of(const Render& render, RenderStats& stats) {
+    const double begin = processor_milliseconds();
+    stats = render();
+    return {stats.frame_milliseconds, processor_milliseconds() - begin};
+}
 
 /// Of passes that every frame has; the setup's are left out.
 void keep_fastest(const RenderStats& stats, std::vector<std::pair<std::string, double>>& passes) {
@@ -31,62 +49,80 @@ TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& came
                       int height) {
     TimedVisit visit;
     const auto frame = [&] { return renderer.render(scene, camera, settings, width, height).stats; };
-    const auto ray = [&] {
-        return renderer.raycast(scene, camera, settings, RaycastSettings{}, width, height).stats.frame_milliseconds;
-    };
+    const auto ray = [&] { return renderer.raycast(scene, camera, settings, RaycastSettings{}, width, height).stats; };
     visit.setup_milliseconds = frame().setup_milliseconds;
-    double once = ray();
+    double once = ray().frame_milliseconds;
     for (int i = 0; i < kMostTriples && (i == 0 || (i + 1) * once < kVisitMilliseconds); ++i) {
-        TimedTriple triple;
-        RenderStats stats = frame();
-        triple.before = stats.frame_milliseconds;
+        RenderStats stats;
+        const Cost before = cost_of(frame, stats);
         keep_fastest(stats, visit.passes);
-        triple.ray = ray();
-        stats = frame();
-        triple.after = stats.frame_milliseconds;
+        const Cost between = cost_of(ray, stats);
+        const Cost after = cost_of(frame, stats);
         keep_fastest(stats, visit.passes);
-        visit.triples.push_back(triple);
-        once = triple.before + triple.ray + triple.after;
+        visit.triples.push_back({before.wall, between.wall, after.wall});
+        visit.processor_triples.push_back({before.processor, between.processor, after.processor});
+        once = before.wall + between.wall + after.wall;
     }
     return visit;
 }
 
 ordered_json to_json(const TimedVisit& visit) {
-    ordered_json triples = ordered_json::array(), passes = ordered_json::object();
-    for (const TimedTriple& t : visit.triples)
-        triples.push_back({t.before, t.ray, t.after});
+    const auto list_of = [](const std::vector<TimedTriple>& triples) {
+        ordered_json list = ordered_json::array();
+        for (const TimedTriple& t : triples)
+            list.push_back({t.before, t.ray, t.after});
+        return list;
+    };
+    ordered_json passes = ordered_json::object();
     for (const auto& [name, ms] : visit.passes)
         passes[name] = ms;
-    return {{"triples_ms", triples}, {"passes_ms", passes}, {"setup_ms", visit.setup_milliseconds}};
+    return {{"triples_ms", list_of(visit.triples)},
+            {"processor_triples_ms", list_of(visit.processor_triples)},
+            {"passes_ms", passes},
+            {"setup_ms", visit.setup_milliseconds}};
 }
 
 TimedVisit timed_visit_from(const ordered_json& json) {
     TimedVisit visit;
-    for (const ordered_json& t : json.at("triples_ms"))
-        visit.triples.push_back({t.at(0), t.at(1), t.at(2)});
+    const auto read = [&](const char* key, std::vector<TimedTriple>& triples) {
+        for (const ordered_json& t : json.at(key))
+            triples.push_back({t.at(0), t.at(1), t.at(2)});
+    };
+    read("triples_ms", visit.triples);
+    read("processor_triples_ms", visit.processor_triples);
     for (const auto& [name, ms] : json.at("passes_ms").items())
         visit.passes.emplace_back(name, ms);
     visit.setup_milliseconds = json.at("setup_ms");
     return visit;
 }
 
-FrameTimes summarise(std::span<const TimedVisit> visits) {
-    std::vector<double> frames, ratios, rays;
+RatioClock ratio_clock(const DeviceInfo& device) {
+    return device.type == "Cpu" ? RatioClock::Processor : RatioClock::Wall;
+}
+
+std::string_view name_of(RatioClock clock) {
+    return clock == RatioClock::Processor ? "processor" : "wall";
+}
+
+FrameTimes summarise(std::span<const TimedVisit> visits, RatioClock clock) {
+    std::vector<double> frames, ratios, wall_ratios, rays;
     std::vector<std::pair<std::string, std::vector<double>>> passes;
     for (const TimedVisit& visit : visits) {
         for (const TimedTriple& t : visit.triples) {
             frames.push_back(t.before);
             frames.push_back(t.after);
             rays.push_back(t.ray);
-            ratios.push_back((t.before + t.after) / 2 / t.ray);
+            wall_ratios.push_back(t.ratio());
         }
+        for (const TimedTriple& t : clock == RatioClock::Processor ? visit.processor_triples : visit.triples)
+            ratios.push_back(t.ratio());
         for (const auto& [name, ms] : visit.passes) {
             auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
             if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
             found->second.push_back(ms);
         }
     }
-    FrameTimes times{spread(frames), spread(ratios), quantile(rays, 0.5), {}};
+    FrameTimes times{spread(frames), spread(ratios), spread(wall_ratios), quantile(rays, 0.5), {}};
     for (const auto& [name, values] : passes)
         times.passes.emplace_back(name, quantile(values, 0.5));
     return times;

@@ -15,11 +15,13 @@ namespace edgesplat::accuracy {
 /// A frame, the ray caster, the same frame again: what disturbs the machine disturbs all three alike.
 struct TimedTriple {
     double before = 0, ray = 0, after = 0;  ///< ms
+    double ratio() const { return (before + after) / 2 / ray; }
 };
 
 /// One visit to one configuration and camera.
 struct TimedVisit {
-    std::vector<TimedTriple> triples;
+    std::vector<TimedTriple> triples;            ///< by the wall clock
+    std::vector<TimedTriple> processor_triples;  ///< the same by the processor time of all threads of this process
     std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, fastest of the visit
     double setup_milliseconds = 0;  ///< estimation and collection; 0 where nothing was to be set up
 };
@@ -32,14 +34,21 @@ TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& came
 nlohmann::ordered_json to_json(const TimedVisit& visit);
 TimedVisit timed_visit_from(const nlohmann::ordered_json& json);
 
+/// What frame and ray caster are compared by. A device that is this machine's processor shares it with whatever else
+/// runs, which the wall clock sees and the processor's own time does not.
+enum class RatioClock { Wall, Processor };
+RatioClock ratio_clock(const DeviceInfo& device);
+std::string_view name_of(RatioClock clock);  ///< wall, processor
+
 /// Over all visits of one configuration and camera.
 struct FrameTimes {
     Spread frame;           ///< ms
-    Spread ratio;           ///< of a triple: frame / ray caster; the median is the figure that is reported
+    Spread ratio;           ///< of a triple: frame / ray caster, by the clock that was asked for
+    Spread wall_ratio;      ///< the same by the wall clock
     double ray_median = 0;  ///< ms
     std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, median of the visits
 };
-FrameTimes summarise(std::span<const TimedVisit> visits);
+FrameTimes summarise(std::span<const TimedVisit> visits, RatioClock clock);
 
 /// 0 .. count - 1 in an order of its own for each round, always the same.
 std::vector<std::size_t> order_of_round(std::size_t count, int round);

@@ -21,7 +21,7 @@ ordered_json identity_of(const ReportInput& input, const ReportOptions& options,
         materials.push_back({m.color.x, m.color.y, m.color.z, m.extinction});
     const Light& light = input.scene.light;
     return {{"program", input.program},
-            {"journal", 1},
+            {"journal", 2},
             {"volume", input.volume->name},
             {"checksum", fmt::format("{:016x}", input.volume->checksum)},
             {"iso_values", input.scene.iso_values},
@@ -271,7 +271,7 @@ class Measurement {
                     visits.push_back(timed_visit_from(journal_.find(time_key(i, round))->at(camera.name)));
                     if (visits.back().setup_milliseconds > 0) setups[model].push_back(visits.back().setup_milliseconds);
                 }
-                of_camera.times = summarise(visits);
+                of_camera.times = summarise(visits, ratio_clock(report_.device));
                 rays[c].push_back(of_camera.times.ray_median);
                 report_.largest_reference_error = std::max(report_.largest_reference_error, of_camera.reference_error);
                 result.cameras.push_back(std::move(of_camera));
@@ -292,14 +292,17 @@ class Measurement {
         std::vector<ImageError> method, model;
         const double n = static_cast<double>(result.cameras.size());
         glm::dvec3 logs(0);
+        double wall = 0;
         for (const CameraResult& c : result.cameras) {
             method.push_back(c.method);
             if (c.model) model.push_back(*c.model);
             result.frame_ms += c.times.frame.median / n;
             const Spread& r = c.times.ratio;
             logs += glm::log(glm::dvec3(r.median, r.low, r.high)) / n;
+            wall += std::log(c.times.wall_ratio.median) / n;
             result.device_bytes = std::max(result.device_bytes, c.device_bytes);
         }
+        result.wall_ratio = std::exp(wall);
         result.ratio = {std::exp(logs.x), std::exp(logs.y), std::exp(logs.z)};
         result.method = pooled(method);
         if (!model.empty()) result.model = pooled(model);

@@ -27,7 +27,7 @@ struct ReportInput {
 struct ReportOptions {
     Settings base;            ///< steps are taken one at a time from here
     glm::ivec2 size{192};     ///< pixels
-    double tolerance = 1e-4;  ///< of the references, largest error of a pixel, full scale = 1
+    double tolerance = 3e-5;  ///< of the references, largest error of a pixel, full scale = 1
     int repeats = 5;          ///< rounds in which times are taken
     int orbit_frames = 36;    ///< frame pairs, one degree apart; 0: popping is not measured
     int orbit_size = 96;      ///< pixels, both ways
@@ -56,6 +56,7 @@ struct SettingsResult {
     std::optional<EdgeFigures> edges;
     std::optional<Popping> popping;
     double frame_ms = 0;             ///< mean of the cameras' medians
+    double wall_ratio = 0;           ///< the median by the wall clock
     Spread ratio;                    ///< to the ray caster: geometric mean over cameras, of medians, of p10, of p90
     double setup_ms = 0;             ///< edge estimation and collection, median; NaN where switching to it needed none
     std::uint64_t device_bytes = 0;  ///< largest of the cameras

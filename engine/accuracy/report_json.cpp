@@ -59,6 +59,7 @@ ordered_json camera_result_json(const ReportCamera& camera, const CameraResult& 
              {{"frame_ms", to_json(r.times.frame)},
               {"raycast_ms", r.times.ray_median},
               {"times_raycast", to_json(r.times.ratio)},
+              {"wall_times_raycast", to_json(r.times.wall_ratio)},
               {"passes_ms", passes_json(r.times)}}}};
 }
 
@@ -77,6 +78,7 @@ ordered_json row_json(const Report& report, std::size_t row) {
     json["device_bytes"] = r.device_bytes;
     json["time"] = {{"frame_ms", r.frame_ms},
                     {"times_raycast", to_json(r.ratio)},
+                    {"wall_times_raycast", r.wall_ratio},
                     {"setup_ms", std::isnan(r.setup_ms) ? ordered_json() : ordered_json(r.setup_ms)}};
     ordered_json cameras = ordered_json::array();
     for (std::size_t i = 0; i < r.cameras.size(); ++i)
@@ -183,6 +185,7 @@ ordered_json report_json(const Report& report) {
             {"largest_reference_error", report.largest_reference_error},
             {"surface", surface},
             {"cameras", cameras},
+            {"ratio_clock", std::string(name_of(ratio_clock(report.device)))},
             {"raycast_ms", raycast},
             {"front", front},
             {"rows", rows},

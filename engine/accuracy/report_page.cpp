@@ -48,7 +48,11 @@ std::string tooltip(const Report& report, std::size_t row) {
 
 /// Rows that the plot shows: the base's model only. Model steps have references of their own and are in the table.
 std::string error_against_time(const Report& report) {
-    LogPlot plot{"time, times the ray caster's", "method error, RMS of full scale", {}, {}};
+    LogPlot plot{ratio_clock(report.device) == RatioClock::Processor ? "processor time, times the ray caster's"
+                                                                     : "time, times the ray caster's",
+                 "method error, RMS of full scale",
+                 {},
+                 {}};
     const std::string model = model_key(report.options.base);
     const auto add = [&](std::size_t row, const std::string& kind, const std::string& label) {
         const SettingsResult& r = report.of_row(row);
@@ -93,13 +97,14 @@ std::vector<std::string> cells_of(const Report& report, std::size_t row) {
             fmt::format("{:.1f}", r.frame_ms),
             fmt::format("{:.2f}", r.ratio.median),
             fmt::format("{:.2f}\u2013{:.2f}", r.ratio.low, r.ratio.high),
+            fmt::format("{:.2f}", r.wall_ratio),
             optional_cell(!std::isnan(r.setup_ms), fmt::format("{:.1f}", r.setup_ms)),
             fmt::format("{:.1f}", static_cast<double>(r.device_bytes) / 1e6)};
 }
 
 std::string steps_section(const Report& report) {
     HtmlTable table({"", "error RMS", "max", "model RMS", "rise", "place", "popping", "excess", "ms", "\u00d7 ray",
-                     "p10\u2013p90", "setup ms", "MB"});
+                     "p10\u2013p90", "wall \u00d7", "setup ms", "MB"});
     std::string group;
     for (std::size_t row = 0; row < report.rows.size(); ++row) {
         const Configuration& c = report.rows[row];
@@ -119,7 +124,10 @@ std::string steps_section(const Report& report) {
            "reconstruction. <b>popping</b>: RMS change between frames one degree apart that the model does not have; "
            "<b>excess</b>: RMS change minus the model's own. <b>\u00d7 ray</b>: time over the ray caster's, measured "
            "in "
-           "turns; geometric mean over the cameras. <b>setup</b>: finding the edges, once per volume; a dash where "
+           "turns; geometric mean over the cameras; on a device that is the processor by processor time, which does "
+           "not "
+           "depend on what else runs (<b>wall \u00d7</b>: by the clock on the wall). <b>setup</b>: finding the edges, "
+           "once per volume; a dash where "
            "that is "
            "the same work as another step's. Presets are measured against the model of their own settings. Bold: no "
            "other is both faster and better. Grey: the base itself."

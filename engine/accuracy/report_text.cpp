@@ -45,7 +45,8 @@ std::string steps_csv(const Report& report) {
     std::string text =
         "kind,name,knob,step,on_front,method_rms,method_max,model_rms,model_max,rise_mean_voxels,rise_max_voxels,"
         "location_mean_voxels,location_max_voxels,popping_mean_excess,popping_max_excess,popping_mean_difference,"
-        "popping_max_difference,frame_ms,times_raycast,times_raycast_p10,times_raycast_p90,setup_ms,device_bytes";
+        "popping_max_difference,frame_ms,times_raycast,times_raycast_p10,times_raycast_p90,wall_times_raycast,setup_ms,"
+        "device_bytes";
     for (const ReportCamera& camera : report.cameras)
         for (const char* column : {"method_rms", "method_max", "frame_ms", "times_raycast"})
             text += "," + camera.name + "_" + column;
@@ -68,7 +69,7 @@ std::string steps_csv(const Report& report) {
         add(edges.measured > 0, {edges.rise_mean, edges.rise_max, edges.location_mean, edges.location_max});
         add(r.popping.has_value(),
             {popping.mean_excess, popping.max_excess, popping.mean_difference, popping.max_difference});
-        add(true, {r.frame_ms, r.ratio.median, r.ratio.low, r.ratio.high});
+        add(true, {r.frame_ms, r.ratio.median, r.ratio.low, r.ratio.high, r.wall_ratio});
         add(!std::isnan(r.setup_ms), {r.setup_ms});
         cells.push_back(fmt::format("{}", r.device_bytes));
         for (const CameraResult& camera : r.cameras)
@@ -98,7 +99,7 @@ std::string steps_table(const Report& report) {
            "error, max: against the converged picture of the same model, RMS and largest, full scale = 1, all cameras; "
            "model: RMS\nagainst the exact scene; rise, place: 10-90 % width and displacement of edges, voxels; "
            "popping: RMS change between frames\none degree apart that the model has not; x ray: time over the ray "
-           "caster's.\n";
+           "caster's (processor time, where the device is the processor).\n";
 }
 
 }  // namespace edgesplat::accuracy

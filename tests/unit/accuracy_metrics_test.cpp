@@ -102,14 +102,16 @@ TEST(AccuracyMetrics, ParetoFrontDropsWhatIsBeaten) {
 
 TEST(AccuracyTimes, TheRatioIsTakenFromNeighbours) {
     // The machine is twice as slow in the second half: ratios do not see it.
-    TimedVisit fast{{{10, 5, 10}, {10, 5, 10}}, {{"5_draw_splats", 7}}, 0}, slow = fast;
+    TimedVisit fast{{{10, 5, 10}, {10, 5, 10}}, {{9, 3, 9}, {9, 3, 9}}, {{"5_draw_splats", 7}}, 0}, slow = fast;
     for (TimedTriple& t : slow.triples)
         t = {2 * t.before, 2 * t.ray, 2 * t.after};
     const std::vector<TimedVisit> visits{fast, slow};
-    const FrameTimes times = summarise(visits);
+    const FrameTimes times = summarise(visits, RatioClock::Wall);
     EXPECT_DOUBLE_EQ(times.ratio.median, 2);
     EXPECT_DOUBLE_EQ(times.ratio.high, 2);
     EXPECT_DOUBLE_EQ(times.frame.median, 15);
+    EXPECT_DOUBLE_EQ(summarise(visits, RatioClock::Processor).ratio.median, 3);
+    EXPECT_DOUBLE_EQ(summarise(visits, RatioClock::Processor).wall_ratio.median, 2);
     EXPECT_EQ(times.passes.front().first, "5_draw_splats");
     const TimedVisit again = timed_visit_from(to_json(slow));
     EXPECT_EQ(again.triples.size(), 2U);
