@@ -50,13 +50,11 @@ class Combinations {
 };
 
 void add_combinations(const Settings& base, std::vector<Configuration>& rows) {
-    // Sliced sheets are integrated in every table mode, so one stands for all there.
     Combinations combinations(base, rows);
-    combinations.add({"warp2d", "table", "table-lerp", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"float"},
-                     {"0.999"});
+    combinations.add({"warp2d", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"float"}, {"0.999"});
     combinations.add({"procedural"}, {"sliced"}, {"2", "1", "0.5", "0.25"}, {"float"}, {"0.999"});
-    combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"half"}, {"0.98"});
-    combinations.add({"warp2d", "table-lerp"}, {"whole"}, {"1", "0.5"}, {"float"}, {"0.98"});
+    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"half"}, {"0.98"});
+    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"float"}, {"0.98"});
     combinations.add({"procedural"}, {"sliced"}, {"1", "0.5"}, {"float"}, {"0.98", "0.9999"});
 }
 
@@ -72,10 +70,12 @@ std::vector<Configuration> configurations(const Settings& base, std::span<const 
     std::vector<Configuration> rows{{ConfigurationKind::Base, "base", "", "", base}};
     for (const Knob& knob : ladder()) {
         const bool asked = knobs.empty() || std::find(knobs.begin(), knobs.end(), knob.name) != knobs.end();
-        if (!asked || !knob.used(base)) continue;
+        Settings from = base;
+        if (knob.from != nullptr) knob.from(from);
+        if (!asked || !knob.used(from) || knob.steps.size() < 2) continue;
         for (const std::string_view step : knob.steps) {
             Configuration row{ConfigurationKind::Step, std::string(knob.name) + "=" + std::string(step),
-                              std::string(knob.name), std::string(step), base};
+                              std::string(knob.name), std::string(step), from};
             knob.set(row.settings, step);
             rows.push_back(std::move(row));
         }
@@ -83,6 +83,11 @@ std::vector<Configuration> configurations(const Settings& base, std::span<const 
     if (knobs.empty()) add_combinations(base, rows);
     for (const Preset& preset : presets())
         rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings});
+    Settings paper = base;  // what the paper did, to compare with
+    paper.edges = EdgeEstimator::Taylor;
+    paper.footprints = FootprintMode::Warp2d;
+    paper.warp = WarpFamily::Paper;
+    rows.push_back({ConfigurationKind::Preset, "paper", "", "", paper});
     return rows;
 }
 

@@ -68,8 +68,8 @@ std::vector<Knob> make_ladder() {
     knobs.push_back({.name = "warp",
                      .help = "Shape of the warp: the paper's curve, or one that is defined by the distance to the edge",
                      .kind = KnobKind::Model,
-                     .steps = {"paper", "edge"},
-                     .others = {},
+                     .steps = {"edge"},
+                     .others = {"paper"},
                      .get = get_name<&Settings::warp>,
                      .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },
                      .matters = warps});
@@ -88,7 +88,7 @@ std::vector<Knob> make_ladder() {
     knobs.push_back({.name = "edge-strength",
                      .help = "Slope of the warp at the edge; 1 is no warp",
                      .kind = KnobKind::Model,
-                     .steps = {"2", "4", "8", "16", "24"},
+                     .steps = {"2", "4", "8", "16", "20"},
                      .others = {},
                      .number = true,
                      .low = 1,
@@ -110,24 +110,32 @@ std::vector<Knob> make_ladder() {
          .kind = KnobKind::Model,
          .steps = all(normalisation_names()),
          .others = {},
+         .from = [](Settings& s) { s.edge_shape = EdgeShape::Plane; },
          .get = get_name<&Settings::normalisation>,
          .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
          .matters =
              [](const Settings& s) { return edge_family(s) && (s.edge_shape == EdgeShape::Plane || !may_curve(s)); }});
-    knobs.push_back({.name = "footprints",
-                     .help = "How a warped kernel's footprint is evaluated (the paper family, walls, curved edges and "
-                             "sliced sheets are integrated in the table modes)",
-                     .kind = KnobKind::Method,
-                     .steps = all(footprint_mode_names()),
-                     .others = {},
-                     .get = get_name<&Settings::footprints>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
-                     .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
+    knobs.push_back(
+        {.name = "footprints",
+         .help = "How a warped kernel's footprint is evaluated; tables serve whole kernels at plane edges and were "
+                 "slower than the quadrature they stand for",
+         .kind = KnobKind::Method,
+         .steps = {"isotropic", "warp2d", "procedural"},
+         .others = {"table", "table-lerp"},
+         .get = get_name<&Settings::footprints>,
+         .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
+         .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
     knobs.push_back({.name = "table-size",
                      .help = "Texels and layers of the footprint table",
                      .kind = KnobKind::Method,
                      .steps = all(table_size_names()),
                      .others = {},
+                     .from =
+                         [](Settings& s) {
+                             s.sheets = SheetCut::Whole;
+                             s.edge_shape = EdgeShape::Plane;
+                             s.footprints = FootprintMode::TableLerp;
+                         },
                      .get = get_name<&Settings::table_size>,
                      .assign = [](Settings& s, const Knob&, View v) { s.table_size = table_size_named(v); },
                      .matters = tables});
@@ -138,16 +146,18 @@ std::vector<Knob> make_ladder() {
                      .others = {},
                      .get = get_name<&Settings::sheets>,
                      .assign = [](Settings& s, const Knob&, View v) { s.sheets = sheet_cut_named(v); }});
-    knobs.push_back({.name = "sheet-spacing",
-                     .help = "Voxels between sheets",
-                     .kind = KnobKind::Method,
-                     .steps = {"2", "1", "0.5", "0.25"},
-                     .others = {},
-                     .number = true,
-                     .low = 0.05,
-                     .high = 16,
-                     .get = get_number<&Settings::sheet_spacing>,
-                     .assign = set_number<&Settings::sheet_spacing>});
+    knobs.push_back(
+        {.name = "sheet-spacing",
+         .help = "Voxels between sheets; whole kernels are neither better nor faster with thicker ones than a quarter",
+         .kind = KnobKind::Method,
+         .steps = {"1", "0.5", "0.25", "0.125"},
+         .others = {},
+         .from = [](Settings& s) { s.sheets = SheetCut::Sliced; },
+         .number = true,
+         .low = 0.05,
+         .high = 16,
+         .get = get_number<&Settings::sheet_spacing>,
+         .assign = set_number<&Settings::sheet_spacing>});
     knobs.push_back({.name = "sheet-format",
                      .help = "Precision of a sheet",
                      .kind = KnobKind::Method,
@@ -200,8 +210,8 @@ const Knob& knob_named(View name) {
 std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
-        draft.sheet_spacing = 0.5;
-        draft.sheet_format = draft.accumulation = SheetFormat::Half;
+        draft.sheet_format = SheetFormat::Half;
+        draft.saturation = 0.98;
         Settings balanced;
         balanced.footprints = FootprintMode::Procedural;
         balanced.sheets = SheetCut::Sliced;
@@ -212,9 +222,10 @@ std::span<const Preset> presets() {
         accurate.edge_shape = EdgeShape::Curved;
         accurate.sheet_spacing = 0.125;
         accurate.saturation = 0.9999;
-        return std::vector<Preset>{{"draft", "while moving: whole kernels in half-precision sheets", draft},
-                                   {"balanced", "kernels cut into slices of half a voxel", balanced},
-                                   {"accurate", "curved edges from a cubic spline, thin slices", accurate}};
+        return std::vector<Preset>{
+            {"draft", "while moving: whole kernels in half-precision sheets, pixels closed early", draft},
+            {"balanced", "kernels cut into slices of half a voxel", balanced},
+            {"accurate", "curved edges from a cubic spline, thin slices", accurate}};
     }();
     return rows;
 }

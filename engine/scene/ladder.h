@@ -25,6 +25,8 @@ struct Knob {
     std::vector<std::string_view> steps;  ///< cheapest first
     /// Values that are no steps but can be asked for all the same (what the paper did, where that is no bargain).
     std::vector<std::string_view> others;
+    /// Where the steps are measured from, given the base: a step of a knob that has no say there would be none.
+    void (*from)(Settings&) = nullptr;
     bool number = false;       ///< any number of the setting's range is accepted; `steps` are those that are measured
     double low = 0, high = 0;  ///< range of a number; `low` itself is excluded where `above_low`
     bool above_low = false;

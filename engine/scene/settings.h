@@ -17,7 +17,7 @@ enum class SheetFormat { Half, Float };
 
 struct Settings {
     EdgeEstimator edges = EdgeEstimator::March;
-    FootprintMode footprints = FootprintMode::TableLerp;
+    FootprintMode footprints = FootprintMode::Procedural;
     WarpFamily warp = WarpFamily::Edge;
     double edge_half_width = 1.6;  ///< a, voxels, (0, 3]
     double edge_strength = 16;     ///< k, slope of the warp at the edge, [1, 64]; 1 is no warp

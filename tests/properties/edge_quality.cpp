@@ -6,6 +6,7 @@
 #include <random>
 
 #include "engine/reference/reference_renderer.h"
+#include "engine/scene/ladder.h"
 #include "engine/volume/analytic_volumes.h"
 
 namespace edgesplat::test {
@@ -140,14 +141,23 @@ struct UnityCollector {
 std::vector<Method> compared_methods() {
     using E = EdgeEstimator;
     using F = FootprintMode;
-    return {{"default (march, table-lerp)", Settings{}},
+    Settings curved;
+    curved.edge_shape = EdgeShape::Curved;
+    Settings weighted;
+    weighted.normalisation = Normalisation::Voxel;
+    return {{"default (march, procedural)", Settings{}},
             {"off", with(E::Off, F::Isotropic)},
-            {"procedural", with(E::March, F::Procedural)},
+            {"draft", preset_named("draft").settings},
+            {"balanced", preset_named("balanced").settings},
+            {"accurate", preset_named("accurate").settings},
+            {"curved", curved},
+            {"weighted", weighted},
             {"table", with(E::March, F::Table)},
+            {"table-lerp", with(E::March, F::TableLerp)},
             {"warp2d", with(E::March, F::Warp2d)},
-            {"taylor", with(E::Taylor, F::TableLerp)},
-            {"quadratic", with(E::Quadratic, F::TableLerp)},
-            {"cubic", with(E::Cubic, F::TableLerp)},
+            {"taylor", with(E::Taylor, F::Procedural)},
+            {"quadratic", with(E::Quadratic, F::Procedural)},
+            {"cubic", with(E::Cubic, F::Procedural)},
             {"paper family", with(E::March, F::Procedural, WarpFamily::Paper)},
             {"paper's own (taylor, warp2d)", with(E::Taylor, F::Warp2d, WarpFamily::Paper)}};
 }

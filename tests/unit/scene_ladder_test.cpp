@@ -48,7 +48,7 @@ Settings random_settings(std::mt19937& random) {
 
 TEST(Ladder, EveryValueIsSetAndReadBackAndValid) {
     for (const Knob& knob : ladder()) {
-        EXPECT_GE(knob.steps.size(), 2U) << knob.name;
+        EXPECT_GE(knob.steps.size() + knob.others.size(), 2U) << knob.name;
         EXPECT_FALSE(knob.help.empty()) << knob.name;
         const auto values = values_of(knob);
         EXPECT_EQ(std::set(values.begin(), values.end()).size(), values.size()) << knob.name;
