@@ -168,6 +168,9 @@ TEST(Presets, AreValidOrderedAndFoundByName) {
     for (std::size_t i = 1; i < presets().size(); ++i) {
         EXPECT_NE(difference(presets()[i].settings, presets()[i - 1].settings), "");
         for (const Knob& knob : ladder()) {
+            // Sheets of whole kernels and of slices are no steps of one stair.
+            if (knob.name == "sheet-spacing" && presets()[i - 1].settings.sheets != presets()[i].settings.sheets)
+                continue;
             const auto rank = [&](const Preset& preset) {
                 const std::string value = knob.get(preset.settings);
                 const bool falls = knob.number && std::stod(std::string(knob.steps.front())) >
