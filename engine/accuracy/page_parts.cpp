@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kStyle = R"(
 :root { color-scheme: light; --ink: #1c2430; --soft: #5b6675; --line: #dfe4ea; --accent: #b3421b; --blue: #2b6cb0; }
 * { box-sizing: border-box; }
-body { margin: 0 auto; padding: 2rem clamp(1rem, 4vw, 3rem) 4rem; max-width: 76rem; background: #fff; color: var(--ink);
+body { margin: 0 auto; padding: 2rem clamp(1rem, 4vw, 3rem) 4rem; max-width: 84rem; background: #fff; color: var(--ink);
   font: 16px/1.5 system-ui, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
 h1 { font-size: 1.7rem; line-height: 1.2; margin: 0 0 .3rem; overflow-wrap: anywhere; }
 h2 { font-size: 1.2rem; margin: 2.6rem 0 .8rem; border-bottom: 2px solid var(--line); padding-bottom: .25rem; }
@@ -23,9 +23,9 @@ h3 { font-size: 1rem; margin: 1.4rem 0 .5rem; }
 .lead { font-size: 1.08rem; max-width: 60rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; width: 100%; }
-th, td { padding: .22rem .6rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
+th, td { padding: .22rem .42rem; text-align: right; white-space: nowrap; border-bottom: 1px solid var(--line); }
 th { color: var(--soft); font-weight: 600; position: sticky; top: 0; background: #fff; }
-th:first-child, td:first-child { text-align: left; padding-left: .2rem; white-space: normal; min-width: 11rem; }
+th:first-child, td:first-child { text-align: left; padding-left: .2rem; white-space: normal; min-width: 9rem; }
 tr.group td { font-weight: 650; padding-top: .8rem; background: #f6f8fa; }
 tbody tr:not(.group):hover { background: #f1f6fc; }
 tr.best td { font-weight: 650; }
@@ -42,7 +42,7 @@ tr.base td { color: #98a2ae; }
 .key { font-size: .85rem; color: var(--soft); margin-left: 3.5rem; }
 .front-list { font-size: .85rem; columns: 26rem; padding-left: 1.6rem; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: .7rem; }
-figure { margin: 0; } figure img { width: 100%; display: block; border-radius: 3px; background: #000; }
+figure { margin: 0; } figure img { width: 100%; height: auto; display: block; border-radius: 3px; background: #000; }
 figcaption { font-size: .8rem; color: var(--soft); padding-top: .15rem; }
 .scale { max-width: 30rem; margin-top: 1rem; } .scale .bar { height: .8rem; border-radius: 2px; }
 .scale .ticks { display: flex; justify-content: space-between; font-size: .8rem; color: var(--soft); }

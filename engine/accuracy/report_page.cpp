@@ -27,7 +27,8 @@ std::string summary(const Report& report) {
         "With its base settings the method is {} RMS (at most {:.3f}) from the converged picture of its own model",
         rms_text(base.method.rms), base.method.max);
     if (base.model) text += fmt::format(" and {} RMS from the exact scene", rms_text(base.model->rms));
-    text += fmt::format(", at {:.2f} times the time of the ray caster.", base.ratio.median);
+    text += fmt::format(", at {:.2f} times the {} of the ray caster.", base.ratio.median,
+                        ratio_clock(report.device) == RatioClock::Processor ? "processor time" : "time");
     if (base.edges && base.edges->measured > 0)
         text += fmt::format(" Edges rise over {:.2f} voxel and lie within {:.3f} voxel of their place on average.",
                             base.edges->rise_mean, base.edges->location_mean);
