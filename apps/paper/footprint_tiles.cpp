@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/plots/gnuplot.h"
+#include "engine/gnuplot.h"
 #include "footprints/footprint_integral.h"
 #include "footprints/kernel.h"
 

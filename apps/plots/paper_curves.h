@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "apps/plots/gnuplot.h"
+#include "engine/gnuplot.h"
 #include "footprints/edge_warp.h"
 #include "footprints/paper_warp.h"
 

@@ -30,16 +30,7 @@ tr.group td { font-weight: 650; padding-top: .8rem; background: #f6f8fa; }
 tbody tr:not(.group):hover { background: #f1f6fc; }
 tr.best td { font-weight: 650; }
 tr.base td { color: #98a2ae; }
-.plot { width: 100%; height: auto; max-width: 60rem; display: block; font: 13px system-ui, sans-serif; }
-.plot .grid { stroke: var(--line); } .plot .axis { fill: none; stroke: #9aa5b1; }
-.plot .tick { fill: var(--soft); } .plot .title { fill: var(--ink); } .plot .label { fill: var(--ink); font-weight: 600; }
-.plot .front { fill: none; stroke: var(--accent); stroke-width: 1.5; }
-.plot .step, .dot.step { fill: #8fb8de; background: #8fb8de; } .plot circle { stroke: #fff; }
-.plot .combination, .dot.combination { fill: #c6ccd4; background: #c6ccd4; }
-.plot .best, .dot.best { fill: var(--accent); background: var(--accent); }
-.plot .preset, .dot.preset { fill: var(--blue); background: var(--blue); }
-.dot { display: inline-block; width: .7em; height: .7em; border-radius: 50%; margin: 0 .35em 0 1em; }
-.key { font-size: .85rem; color: var(--soft); margin-left: 3.5rem; }
+.plot { width: 100%; height: auto; max-width: 60rem; display: block; }
 .front-list { font-size: .85rem; columns: 26rem; padding-left: 1.6rem; }
 .pictures { display: grid; grid-template-columns: repeat(auto-fill, minmax(150px, 1fr)); gap: .7rem; }
 figure { margin: 0; } figure img { width: 100%; height: auto; display: block; border-radius: 3px; background: #000; }

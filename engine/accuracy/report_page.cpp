@@ -41,7 +41,7 @@ std::string summary(const Report& report) {
     return text;
 }
 
-std::string tooltip(const Report& report, std::size_t row) {
+std::string cost_and_error(const Report& report, std::size_t row) {
     const SettingsResult& r = report.of_row(row);
     return fmt::format("{}: {} RMS, {:.2f} x ray caster, {:.1f} ms", report.rows[row].name, rms_text(r.method.rms),
                        r.ratio.median, r.frame_ms);
@@ -49,36 +49,36 @@ std::string tooltip(const Report& report, std::size_t row) {
 
 /// Rows that the plot shows: the base's model only. Model steps have references of their own and are in the table.
 std::string error_against_time(const Report& report) {
+    PlotSeries steps{"one step from the base", "pt 7 ps 0.8 lc rgb '#8fb8de'", {}};
+    PlotSeries combinations{"combination", "pt 7 ps 0.6 lc rgb '#c6ccd4'", {}};
+    PlotSeries best{"no other is both faster and better", "pt 7 ps 0.9 lc rgb '#c8501e'", {}};
+    PlotSeries presets{"preset, and the paper's own way", "pt 7 ps 1.0 lc rgb '#1f6fb2'", {}};
     LogPlot plot{ratio_clock(report.device) == RatioClock::Processor ? "processor time, times the ray caster's"
                                                                      : "time, times the ray caster's",
                  "method error, RMS of full scale",
                  {},
                  {}};
     const std::string model = model_key(report.options.base);
-    const auto add = [&](std::size_t row, const std::string& kind, const std::string& label) {
+    const auto add = [&](PlotSeries& series, std::size_t row, const std::string& label) {
         const SettingsResult& r = report.of_row(row);
-        plot.points.push_back({r.ratio.median, r.method.rms, kind, label, tooltip(report, row)});
+        series.points.push_back({r.ratio.median, r.method.rms, label});
     };
     for (std::size_t row = 0; row < report.rows.size(); ++row) {
         const Configuration& c = report.rows[row];
+        if (c.kind == ConfigurationKind::Preset) add(presets, row, c.name);
         if (model_key(c.settings) != model) continue;
-        if (c.kind == ConfigurationKind::Combination) add(row, "combination", "");
-        if (c.kind == ConfigurationKind::Step) add(row, "step", "");
+        if (c.kind == ConfigurationKind::Combination) add(combinations, row, "");
+        if (c.kind == ConfigurationKind::Step) add(steps, row, "");
     }
     for (std::size_t i = 0; i < report.front.size(); ++i) {
+        add(best, report.front[i], fmt::format("{}", i + 1));
         const SettingsResult& r = report.of_row(report.front[i]);
-        add(report.front[i], "best", fmt::format("{}", i + 1));
         plot.line.emplace_back(r.ratio.median, r.method.rms);
     }
-    for (std::size_t row = 0; row < report.rows.size(); ++row)
-        if (report.rows[row].kind == ConfigurationKind::Preset) add(row, "preset", report.rows[row].name);
-    std::string html = log_plot_svg(plot);
-    html +=
-        "<p class=\"key\"><span class=\"dot step\"></span>one step from the base <span class=\"dot "
-        "combination\"></span>combination <span class=\"dot best\"></span>no other is both faster and better "
-        "<span class=\"dot preset\"></span>preset</p>\n<ol class=\"front-list\">\n";
+    plot.series = {combinations, steps, best, presets};
+    std::string html = log_plot_svg(plot) + "<ol class=\"front-list\">\n";
     for (const std::size_t row : report.front)
-        html += "<li>" + escaped(tooltip(report, row)) + "</li>\n";
+        html += "<li>" + escaped(cost_and_error(report, row)) + "</li>\n";
     return html + "</ol>\n";
 }
 

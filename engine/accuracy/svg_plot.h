@@ -1,4 +1,4 @@
-// Plots with logarithmic axes, as SVG that stands in a page.
+// Plots with logarithmic axes, as SVG that stands in a page; drawn by the program gnuplot.
 #pragma once
 
 #include <string>
@@ -7,21 +7,24 @@
 
 namespace edgesplat::accuracy {
 
-struct PlotPoint {
-    double x = 0, y = 0;  ///< > 0; others are not drawn
-    std::string kind;     ///< CSS class
-    std::string label;    ///< beside the point; empty: none
-    std::string tooltip;  ///< seen when the pointer rests on it
+/// Points of one kind: one entry of the legend.
+struct PlotSeries {
+    std::string title;
+    std::string style;  ///< as gnuplot writes it after `with points`
+    struct Point {
+        double x = 0, y = 0;  ///< > 0; others are not drawn
+        std::string label;    ///< beside the point; empty: none
+    };
+    std::vector<Point> points;
 };
 
 struct LogPlot {
     std::string x_title, y_title;
-    std::vector<PlotPoint> points;                ///< later ones lie on top
+    std::vector<PlotSeries> series;               ///< later ones lie on top
     std::vector<std::pair<double, double>> line;  ///< drawn as steps: what is reached at that cost
 };
 
-/// Labels keep clear of each other and of the frame where there is room. Styles come from the page (classes plot, grid,
-/// tick, axis, front, label and the points' own).
+/// The <svg> element. Throws Error where gnuplot is missing or fails.
 std::string log_plot_svg(const LogPlot& plot);
 
 /// Text in which &, <, > and quotes are safe.

@@ -218,8 +218,11 @@ TEST(AccuracyPage, TextIsSafeAndPicturesAreData) {
     EXPECT_EQ(base64("M"), "TQ==");
     EXPECT_THAT(figure(filled(0.5F), "x"), HasSubstr("src=\"data:image/png;base64,iVBOR"));
     const std::string svg =
-        log_plot_svg({"time", "error", {{1, 0.1, "step", "one", "tip"}, {0, 1, "step", "", ""}}, {}});
-    EXPECT_THAT(svg, HasSubstr(">one</text>"));
+        log_plot_svg({"time", "error", {{"steps", "pt 7", {{1, 0.1, "one"}, {2, 0.01, ""}, {0, 1, "none"}}}}, {}});
+    EXPECT_EQ(svg.find("<svg"), 0U);
+    EXPECT_THAT(svg, HasSubstr("one"));
+    EXPECT_THAT(svg, Not(HasSubstr("none<")));
+    EXPECT_THAT(log_plot_svg({"time", "error", {}, {}}), Not(HasSubstr("<svg")));
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
 

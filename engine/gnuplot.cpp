@@ -1,4 +1,4 @@
-#include "apps/plots/gnuplot.h"
+#include "engine/gnuplot.h"
 
 #include <fmt/format.h>
 #include <spawn.h>
