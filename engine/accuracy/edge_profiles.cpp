@@ -10,8 +10,8 @@
 namespace edgesplat::accuracy {
 namespace {
 
-constexpr double kUndisturbed = 3;     ///< voxels
-constexpr double kBorderDistance = 3;  ///< voxels
+constexpr double kRooms[] = {3, 2, 1.5};  ///< voxels, what is asked for first to last
+constexpr double kBorderDistance = 3;     ///< voxels
 
 /// The gradient of the signed distance, numerically; 0 where it has none.
 glm::dvec3 outwards(const AnalyticScene& scene, const glm::dvec3& x) {
@@ -27,8 +27,8 @@ glm::dvec3 outwards(const AnalyticScene& scene, const glm::dvec3& x) {
 }
 
 /// Whether the distance along the normal is the distance to this surface and no other, as far as it matters.
-bool undisturbed(const AnalyticScene& scene, const SurfacePoint& point) {
-    for (double s = -kUndisturbed; s <= kUndisturbed; s += 0.25)
+bool undisturbed(const AnalyticScene& scene, const SurfacePoint& point, double room) {
+    for (double s = -room; s <= room; s += 0.25)
         if (std::abs(scene.signed_distance(point.position + s * point.axis) - s) > 0.02) return false;
     return true;
 }
@@ -71,14 +71,13 @@ std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, 
     return profile;
 }
 
-}  // namespace
-
-SurfacePoints surface_points(const AnalyticScene& scene, int count) {
+SurfacePoints points_with_room(const AnalyticScene& scene, int count, double room) {
     SurfacePoints result;
+    result.room = room;
     std::mt19937 random(20);
     const auto uniform = [&] { return random() / 4294967296.0; };
     const glm::dvec3 top(scene.dims - 1);
-    for (int trial = 0; trial < 1000 * count && static_cast<int>(result.points.size()) < count; ++trial) {
+    for (int trial = 0; trial < 400 * count && static_cast<int>(result.points.size()) < count; ++trial) {
         const double a = uniform(), b = uniform(), c = uniform();  // in an order that the language fixes
         SurfacePoint point{glm::dvec3(a, b, c) * top, {}};
         // Only from nearby, so that the points are spread evenly.
@@ -90,10 +89,21 @@ SurfacePoints surface_points(const AnalyticScene& scene, int count) {
         if (glm::any(glm::lessThan(point.position, glm::dvec3(kBorderDistance))) ||
             glm::any(glm::greaterThan(point.position, top - kBorderDistance)))
             ++result.near_border;
-        else if (!undisturbed(scene, point))
+        else if (!undisturbed(scene, point, room))
             ++result.disturbed;
         else
             result.points.push_back(point);
+    }
+    return result;
+}
+
+}  // namespace
+
+SurfacePoints surface_points(const AnalyticScene& scene, int count) {
+    SurfacePoints result;
+    for (const double room : kRooms) {
+        result = points_with_room(scene, count, room);
+        if (4 * static_cast<int>(result.points.size()) >= count) break;
     }
     return result;
 }

@@ -19,12 +19,13 @@ struct SurfacePoint {
 
 struct SurfacePoints {
     std::vector<SurfacePoint> points;
+    double room = 3;      ///< voxels along the normal to both sides that no corner or other surface is in
     int near_border = 0;  ///< found, but left out: within 3 voxels of the grid's border
-    int disturbed = 0;    ///< left out: an edge, a corner or another surface within 3 voxels along the normal
+    int disturbed = 0;    ///< found, but left out: something else is in that room
 };
 
 /// At most `count` points, spread over the surface at random, always the same ones; axes are unit normals. Needs
-/// `scene.signed_distance`.
+/// `scene.signed_distance`. Where a solid is so thin that few points have 3 voxels of room, 2 or 1.5 must do.
 SurfacePoints surface_points(const AnalyticScene& scene, int count);
 
 /// Where profiles are sampled, in the unit of their axes.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/accuracy/identity.h"
 #include "engine/accuracy/model_references.h"
 #include "engine/accuracy/report_json.h"
 #include "engine/reference/pixel_rows.h"
@@ -13,35 +14,6 @@ namespace edgesplat::accuracy {
 namespace {
 
 using nlohmann::ordered_json;
-
-/// What must be the same for the journal of an earlier run to be of use.
-ordered_json identity_of(const ReportInput& input, const ReportOptions& options, const DeviceInfo& device) {
-    ordered_json materials = ordered_json::array();
-    for (const Material& m : input.scene.materials)
-        materials.push_back({m.color.x, m.color.y, m.color.z, m.extinction});
-    const Light& light = input.scene.light;
-    return {{"program", input.program},
-            {"journal", 2},
-            {"volume", input.volume->name},
-            {"checksum", fmt::format("{:016x}", input.volume->checksum)},
-            {"iso_values", input.scene.iso_values},
-            {"materials", materials},
-            {"light",
-             {static_cast<int>(light.kind), light.direction.x, light.direction.y, light.direction.z, light.ambient,
-              light.diffuse}},
-            {"background", {input.scene.background.x, input.scene.background.y, input.scene.background.z}},
-            {"truth", input.analytic.has_value()},
-            {"base", settings_key(options.base)},
-            {"size", fmt::format("{}x{}", options.size.x, options.size.y)},
-            {"tolerance", options.tolerance},
-            {"repeats", options.repeats},
-            {"orbit", fmt::format("{} frames of {} pixels", options.orbit_frames, options.orbit_size)},
-            {"surface_points", options.surface_points},
-            {"knobs", options.knobs},
-            {"cameras", options.cameras},
-            {"device", device.name},
-            {"driver", device.driver + " " + device.driver_version}};
-}
 
 /// The camera turned around the volume's middle by so many degrees about its own up.
 Camera orbited(const Camera& camera, const VolumeGeometry& geometry, double degrees) {
@@ -81,6 +53,7 @@ class Measurement {
 
     Measured run() {
         add_errors();
+        add_memory();
         add_orbit();
         add_times();
         try {
@@ -128,6 +101,7 @@ class Measurement {
     std::string error_key(std::size_t i, const ReportCamera& camera) const {
         return "error|" + camera.name + "|" + keys_[i];
     }
+    std::string memory_key(std::size_t i) const { return "memory|" + keys_[i]; }
     std::string edges_key(const std::string& model) const { return "edges|" + model; }
     std::string time_key(std::size_t i, int round) const { return fmt::format("time|{}|{}", round, keys_[i]); }
     std::string orbit_key(std::size_t i) const { return "orbit|" + keys_[i]; }
@@ -174,10 +148,25 @@ class Measurement {
         if (references_.has_truth())
             json["model"] =
                 to_json(image_error(result.color, references_.truth(camera.name, camera.camera, options_.size).image));
-        json["device_bytes"] = result.stats.device_bytes;
         json["splats_drawn"] = result.stats.splats_drawn;
         json["sheets"] = result.stats.sheets;
         return json;
+    }
+
+    /// On a renderer of its own: one that has rendered other things keeps what it needed for them.
+    void add_memory() {
+        for (std::size_t i = 0; i < keys_.size(); ++i)
+            work_.add({"memory", memory_key(i), "memory", [this, i] {
+                           Renderer fresh({.device = std::to_string(renderer_.device().index)});
+                           fresh.set_volume(input_.volume);
+                           std::uint64_t bytes = 0;
+                           for (const ReportCamera& camera : report_.cameras)
+                               bytes = fresh
+                                           .render(input_.scene, camera.camera, report_.results[i].settings,
+                                                   options_.size.x, options_.size.y)
+                                           .stats.device_bytes;
+                           return ordered_json(bytes);
+                       }});
     }
 
     /// Rows whose popping is measured: sheets whole and sliced, and presets of the same model.
@@ -263,7 +252,6 @@ class Measurement {
                 of_camera.method = image_error_from(error.at("method"));
                 if (error.contains("model")) of_camera.model = image_error_from(error.at("model"));
                 of_camera.reference_error = error.at("reference_error");
-                of_camera.device_bytes = error.at("device_bytes");
                 of_camera.splats_drawn = error.at("splats_drawn");
                 of_camera.sheets = error.at("sheets");
                 std::vector<TimedVisit> visits;
@@ -276,6 +264,7 @@ class Measurement {
                 report_.largest_reference_error = std::max(report_.largest_reference_error, of_camera.reference_error);
                 result.cameras.push_back(std::move(of_camera));
             }
+            result.device_bytes = *journal_.find(memory_key(i));
             if (const ordered_json* edges = journal_.find(edges_key(model))) result.edges = edge_figures_from(*edges);
             if (const ordered_json* orbit = journal_.find(orbit_key(i))) result.popping = popping_from(*orbit);
             take_together(result);
@@ -300,7 +289,6 @@ class Measurement {
             const Spread& r = c.times.ratio;
             logs += glm::log(glm::dvec3(r.median, r.low, r.high)) / n;
             wall += std::log(c.times.wall_ratio.median) / n;
-            result.device_bytes = std::max(result.device_bytes, c.device_bytes);
         }
         result.wall_ratio = std::exp(wall);
         result.ratio = {std::exp(logs.x), std::exp(logs.y), std::exp(logs.z)};
@@ -344,8 +332,9 @@ class Measurement {
         if (report_.surface)
             report_.notes.push_back(fmt::format(
                 "Edges are measured at {} points of the surface; {} more were left out near the grid's border, {} "
-                "because of a corner or another surface within 3 voxels.",
-                report_.surface->points.size(), report_.surface->near_border, report_.surface->disturbed));
+                "because of a corner or another surface within {} voxels.",
+                report_.surface->points.size(), report_.surface->near_border, report_.surface->disturbed,
+                report_.surface->room));
         else
             report_.notes.push_back("Rise and location of edges are not given: the true surface is not known.");
     }

@@ -44,7 +44,7 @@ struct CameraResult {
     double reference_error = 0;       ///< of the reference's worst pixel
     std::optional<ImageError> model;  ///< against the truth
     FrameTimes times;
-    std::uint64_t device_bytes = 0, splats_drawn = 0, sheets = 0;
+    std::uint64_t splats_drawn = 0, sheets = 0;
 };
 
 /// Everything about one set of settings.
@@ -59,7 +59,7 @@ struct SettingsResult {
     double wall_ratio = 0;           ///< the median by the wall clock
     Spread ratio;                    ///< to the ray caster: geometric mean over cameras, of medians, of p10, of p90
     double setup_ms = 0;             ///< edge estimation and collection, median; NaN where switching to it needed none
-    std::uint64_t device_bytes = 0;  ///< largest of the cameras
+    std::uint64_t device_bytes = 0;  ///< of a renderer that has rendered nothing else, after all cameras
 };
 
 struct Report {

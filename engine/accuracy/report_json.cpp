@@ -54,7 +54,6 @@ ordered_json camera_result_json(const ReportCamera& camera, const CameraResult& 
             {"model_error", optional_json(r.model)},
             {"splats_drawn", r.splats_drawn},
             {"sheets", r.sheets},
-            {"device_bytes", r.device_bytes},
             {"time",
              {{"frame_ms", to_json(r.times.frame)},
               {"raycast_ms", r.times.ray_median},
@@ -155,6 +154,7 @@ ordered_json report_json(const Report& report) {
     ordered_json surface;
     if (report.surface)
         surface = {{"points", report.surface->points.size()},
+                   {"room_voxels", report.surface->room},
                    {"left_out_near_border", report.surface->near_border},
                    {"left_out_disturbed", report.surface->disturbed}};
     const ReportOptions& o = report.options;
