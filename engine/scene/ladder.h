@@ -52,8 +52,8 @@ struct Preset {
     Settings settings;
 };
 
-/// draft, balanced, accurate: cheapest first. Chosen from measurements (docs/accuracy.md). The default settings are
-/// none of them: whole kernels as in draft, in single precision.
+/// draft, balanced, accurate: cheapest first, chosen from measurements (docs/accuracy.md). The default settings are
+/// faster than all of them: whole kernels, with no bound on what their order in depth costs.
 std::span<const Preset> presets();
 
 /// The preset of that name; throws Error listing the names.
