@@ -138,7 +138,11 @@ std::string log_plot_svg(const LogPlot& plot) {
     // What stands before the element is for a file of its own.
     const std::size_t begin = text.find("<svg");
     if (begin == std::string::npos) fail("gnuplot wrote no <svg> element");
-    return "<svg class=\"plot\" role=\"img\"" + text.substr(begin + 4);
+    std::string element = "<svg class=\"plot\" role=\"img\"" + text.substr(begin + 4);
+    // Within a page namespaces are known; without their addresses it is plain that nothing is fetched.
+    for (std::size_t at = element.find(" xmlns"); at < element.find('>'); at = element.find(" xmlns"))
+        element.erase(at, element.find('"', element.find('"', at) + 1) + 1 - at);
+    return element;
 }
 
 }  // namespace edgesplat::accuracy
