@@ -21,7 +21,8 @@ struct VolumeResources {
     gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
     gpu::Buffer run_offsets;     ///< (runs) uint, mapped; 2 <-> host
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
-    gpu::Buffer traits;          ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved or kernels weighted
+    gpu::Buffer
+        traits;  ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved or kernels weighted
     std::uint64_t splat_count = 0, edge_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< voxels that hold splats: inclusive box, whole rows
 };
