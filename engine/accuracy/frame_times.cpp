@@ -117,7 +117,9 @@ FrameTimes summarise(std::span<const TimedVisit> visits, RatioClock clock) {
         for (const TimedTriple& t : clock == RatioClock::Processor ? visit.processor_triples : visit.triples)
             ratios.push_back(t.ratio());
         for (const auto& [name, ms] : visit.passes) {
-            auto found = std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == name; });
+            // Lambdas of C++20 cannot capture a binding by reference in every compiler.
+            auto found = std::find_if(passes.begin(), passes.end(),
+                                      [&pass = name](const auto& known) { return known.first == pass; });
             if (found == passes.end()) found = passes.insert(passes.end(), {name, {}});
             found->second.push_back(ms);
         }
