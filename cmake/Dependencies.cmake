@@ -11,6 +11,9 @@ find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 # OpenImageIO's CMake package on Debian 12 asks for programs its -dev package does not bring; pkg-config works.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
+# Scene files.
+pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
+
 # Components by name: without them ITK loads every module it was built with.
 set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
     ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)

@@ -44,6 +44,19 @@ std::uint64_t scan_runs(const glm::ivec3& dims, VolumeResources& resources) {
 
 }  // namespace
 
+passes::CollectSplats collect_inputs(const CollectionPlan& plan, shader::Address scene) {
+    const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
+    return {.scene = scene,
+            .dims = plan.dims,
+            .edges = plan.edge_field,
+            .buried = plan.buried,
+            .smooth = plan.edge_field && marched,
+            .curved = plan.curved,
+            .weighted = plan.weighted,
+            .clip = plan.clip,
+            .transfer = !plan.transfer.empty()};
+}
+
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
                                      const CollectionPlan& plan, VolumeResources& resources) {
     const auto volume_image = [&](vk::Format format, const char* name) {
@@ -52,9 +65,15 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
             {.format = format, .size = plan.dims, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc},
             name);
     };
+    // What a change of the scene replaces is not held next to its successor.
+    resources.edges = {};
+    resources.buried = {};
+    resources.run_offsets = {};
+    resources.splats = {};
+    resources.traits = {};
+    resources.scene = {};
     resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
     resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
-    resources.splats = {};
     const auto runs = passes::collect_runs(plan.dims);
     resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), gpu::Buffer::Place::Host, "scene parameters");
     resources.run_offsets = gpu::Buffer(device, runs * sizeof(std::uint32_t), gpu::Buffer::Place::Host, "run offsets");
@@ -63,21 +82,21 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     params = plan.params;
     params.run_offsets = resources.run_offsets.address();
+    resources.transfer = {};
+    if (!plan.transfer.empty()) {
+        resources.transfer = gpu::Buffer(device, plan.transfer.size() * sizeof(shader::TransferRow),
+                                         gpu::Buffer::Place::Host, "transfer function");
+        std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
+        params.transfer = resources.transfer.address();
+    }
     const auto scene = resources.scene.address();
-    const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
-    const passes::CollectSplats collect{.scene = scene,
-                                        .dims = plan.dims,
-                                        .edges = plan.edge_field,
-                                        .buried = plan.buried,
-                                        .smooth = plan.edge_field && marched,
-                                        .curved = plan.curved,
-                                        .weighted = plan.weighted};
+    const passes::CollectSplats collect = collect_inputs(plan, scene);
 
     commands.run([&] {
         if (plan.buried) {
             commands.prepare({&resources.buried});
             commands.begin_span("1a_mark_buried");
-            passes::mark_buried(commands, scene, plan.dims);
+            passes::mark_buried(commands, scene, plan.dims, plan.clip);
             commands.end_span();
         }
         if (plan.edge_field) {
@@ -101,11 +120,16 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     resources.splats =
         gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
     params.splats = resources.splats.address();
-    resources.traits = {};
     if (plan.curved || plan.weighted) {
         resources.traits = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t),
                                        gpu::Buffer::Place::Device, "splat traits");
         params.traits = resources.traits.address();
+    }
+    resources.values = {};
+    if (!plan.transfer.empty()) {
+        resources.values =
+            gpu::Buffer(device, resources.splat_count * sizeof(float), gpu::Buffer::Place::Device, "classified values");
+        params.values = resources.values.address();
     }
     commands.run([&] {
         commands.begin_span("2_collect_splats");
@@ -131,15 +155,17 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
     commands.run([&] {
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        timed("3_select_footprints",
-              [&] { passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant.sliced); });
+        timed("3_select_footprints", [&] {
+            passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant.sliced, plan.variant.clip);
+        });
         timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame, plan.variant.sliced); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             timed("6_composite_sheet",
                   [&] { passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group); });
         }
-        timed("7_resolve", [&] { passes::resolve(commands, frame, plan.params.size, plan.variant.payload); });
+        timed("7_resolve",
+              [&] { passes::resolve(commands, frame, plan.params.size, plan.variant.payload, plan.gradient); });
     });
 }
 

@@ -3,8 +3,12 @@
 
 #include "engine/frame_plan.h"
 #include "engine/frame_resources.h"
+#include "engine/passes/2_collect_splats.h"
 
 namespace edgesplat {
+
+/// What pass 2 is given.
+passes::CollectSplats collect_inputs(const CollectionPlan& plan, shader::Address scene);
 
 /// View-independent: volume -> splat list. Allocates what the plan calls for in `resources`, which holds the uploaded
 /// volume (and coefficients), and fills `splats`, `splat_count` and the box. Runs, waits, and returns

@@ -6,6 +6,9 @@
 #include <limits>
 
 #include "engine/error.h"
+#include "engine/frame_reach.h"
+#include "engine/scene/clip_planes.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
 
@@ -22,6 +25,7 @@ constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = 65536;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
 constexpr double kFewNodesSpacing = 0.3;
+constexpr double kFarthestPointLight = 1e12;  // mm
 
 /// Millimetres per voxel along the axis of shortest step.
 double shortest_step(const VolumeGeometry& geometry) {
@@ -29,8 +33,16 @@ double shortest_step(const VolumeGeometry& geometry) {
     return std::min({spacing.x, spacing.y, spacing.z});
 }
 
-bool is_opaque(const Material& material, const VolumeGeometry& geometry) {
-    return material.extinction * shortest_step(geometry) >= kOpaquePerVoxel;
+bool is_opaque(double extinction, const VolumeGeometry& geometry) {
+    return extinction * shortest_step(geometry) >= kOpaquePerVoxel;
+}
+
+std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume& volume) {
+    std::vector<shader::TransferRow> rows;
+    for (const TransferPoint& point : scaled_transfer(scene, volume))
+        rows.push_back({static_cast<float>(point.value), glm::dvec4(point.color, point.extinction)});
+    if (!rows.empty()) rows.resize(shader::TRANSFER_ROWS + 1, {3e38F, rows.back().matter});
+    return rows;
 }
 
 /// Voxels behind a surface of this extinction per voxel where 1/256 of the light is left, beyond the kernel's radius.
@@ -42,14 +54,94 @@ glm::vec3 to_float(const glm::dvec3& v) {
     return {v};
 }
 
-}  // namespace
-
-bool draws_warped(const Settings& settings) {
-    return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
+bool same_row(const shader::TransferRow& a, const shader::TransferRow& b) {
+    return a.value == b.value && a.matter == b.matter;
 }
 
-double most_curved(const Settings& settings) {
-    return std::min(0.5, 0.9 / settings.edge_half_width);
+/// As FrameParams::light_at.
+glm::vec4 place_of(const Light& light, const glm::dvec3& eye) {
+    switch (light.kind) {
+        case Light::Kind::Headlight:
+            break;
+        case Light::Kind::Directional:
+            return {to_float(unit(light.direction)), 0};
+        case Light::Kind::Point: {
+            const glm::dvec3 place = light.position - eye;
+            // From further away its rays are parallel, and float32 holds no squares of such lengths.
+            const bool far = !(glm::length(place) < kFarthestPointLight);
+            return far ? glm::vec4(to_float(unit(place)), 0) : glm::vec4(to_float(place), 1);
+        }
+    }
+    return {0, 0, 0, 1};
+}
+
+bool answers_in_its_own_way(const Material& material) {
+    const LightResponse usual;
+    const LightResponse& r = material.response;
+    return r.ambient != usual.ambient || r.diffuse != usual.diffuse || r.specular != usual.specular;
+}
+
+/// What the picture's colours take beside those of the materials.
+void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3& eye, FramePlan& plan) {
+    auto& variant = plan.variant;
+    auto& p = plan.params;
+    variant.lights = static_cast<std::uint32_t>(scene.lights.size());
+    p.ambient = static_cast<float>(scene.ambient);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const Light& light = scene.lights[l];
+        p.light_at[l] = place_of(light, eye);
+        p.light_color[l] = glm::vec4(to_float(light.color * light.intensity), 0);
+    }
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& material = scene.materials[m];
+        const LightResponse& r = material.response;
+        p.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
+        if (scene.lights.empty() || !(extinctions_of(scene, m).most > 0)) continue;
+        variant.response = variant.response || answers_in_its_own_way(material);
+        variant.gloss = variant.gloss || r.specular > 0;
+    }
+    if (const auto& silhouette = scene.effects.silhouette) {
+        variant.silhouette = true;
+        p.silhouette = glm::dvec4(silhouette->color, silhouette->strength);
+        p.silhouette_sharpness = static_cast<float>(silhouette->sharpness);
+    }
+    if (const auto& fog = scene.effects.fog) {
+        variant.fog = true;
+        p.fog = glm::dvec4(fog->color, fog->density);
+        p.fog_start = static_cast<float>(fog->start);
+    }
+    if (occludes_ambient(scene)) {
+        variant.occlusion = true;
+        p.occlusion_strength = static_cast<float>(scene.effects.occlusion->strength);
+    }
+    variant.shadows = static_cast<std::uint32_t>(shadow_lights(scene).size());
+    p.shadow_channels = shadow_channels(scene);
+    variant.lit_edges = wants_normals(scene) && only_edges_lit(scene, draws_warped(settings));
+}
+
+void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shader::MAX_CLIP_PLANES]) {
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        params[i] = glm::vec4(to_float(planes[i].normal), static_cast<float>(planes[i].offset));
+}
+
+/// The scene's planes as `params` (SceneParams or FrameParams) holds them.
+template <typename Params>
+passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
+                             Params& params) {
+    const IndexClip planes = index_clip(clip, geometry, origin);
+    copy_planes(planes.keep, params.clip_keep);
+    copy_planes(planes.remove, params.clip_remove);
+    return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
+}
+
+}  // namespace
+
+std::uint32_t light_code(const Scene& scene) {
+    return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
+}
+
+bool wants_normals(const Scene& scene) {
+    return !scene.lights.empty() || scene.effects.silhouette;
 }
 
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
@@ -57,17 +149,19 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
            buried == other.buried && skip_buried == other.skip_buried && curved == other.curved &&
-           weighted == other.weighted && a.curvature_unit == b.curvature_unit && a.estimate_mask == b.estimate_mask &&
-           a.strength == b.strength && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
-           a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
-           a.band == b.band;
+           weighted == other.weighted && std::ranges::equal(transfer, other.transfer, same_row) &&
+           a.curvature_unit == b.curvature_unit && a.estimate_mask == b.estimate_mask && a.strength == b.strength &&
+           a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
+           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
+           clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
+           std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
     CollectionPlan plan;
     plan.dims = volume.geometry.dims;
     plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
-    plan.edge_field = plan.estimator != EdgeEstimator::Off || scene.light.kind != Light::Kind::None;
+    plan.edge_field = plan.estimator != EdgeEstimator::Off || wants_normals(scene);
 
     auto& params = plan.params;
     params.dims = plan.dims;
@@ -79,18 +173,20 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
         params.iso[j] = static_cast<float>(
             volume.max_value > volume.min_value ? scaled_value(volume, scene.iso_values[j]) : constant);
     }
+    plan.transfer = transfer_rows(scene, volume);
     int farthest = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        const auto& material = scene.materials[m];
-        if (material.extinction > 0) params.visible_mask |= 1U << m;
-        if (!is_opaque(material, volume.geometry)) continue;
+        const auto [least, most] = extinctions_of(scene, m);
+        if (most > 0) params.visible_mask |= 1U << m;
+        if (!is_opaque(least, volume.geometry)) continue;
         params.opaque_mask |= 1U << m;
-        farthest = std::max(farthest, bury_distance(material.extinction * shortest_step(volume.geometry)));
+        farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry)));
     }
     plan.buried = settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= kMaxBuryDistance;
     plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
+    if (plan.buried) plan.clip = place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params);
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
     plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     plan.weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel;
@@ -103,6 +199,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
 }
 
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera) {
+    if (index_clip(scene.effects.clip, volume.geometry).cuts_away(volume.geometry.to_index(camera.eye))) return false;
     const auto index = glm::round(volume.geometry.to_index(camera.eye));
     const glm::dvec3 last(volume.geometry.dims - 1);
     if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
@@ -110,7 +207,8 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
     const glm::ivec3 voxel(index);
     const auto value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
     const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
-    return is_opaque(scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())], volume.geometry);
+    const auto material = static_cast<std::size_t>(above - scene.iso_values.begin());
+    return is_opaque(extinctions_of(scene, material).least, volume.geometry);
 }
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
@@ -131,7 +229,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     plan.variant = {.footprints = settings.footprints,
                     .warp = settings.warp,
-                    .light = payload == shader::PAYLOAD_COLOR ? scene.light.kind : Light::Kind::None,
                     .payload = payload,
                     .sliced = sliced,
                     .curved = curved,
@@ -139,6 +236,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
                                                                                   : 10U};
+    plan.variant.transfer = !scene.transfer.empty();
+    if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR
                                   ? vk::Format::eR16G16B16A16Sfloat
                                   : vk::Format::eR32G32B32A32Sfloat;
@@ -147,6 +246,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;
+    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p);
     p.anchor = to_float(anchor);
     p.support = static_cast<float>(kKernelRadius);
     p.view_x = to_float(glm::transpose(to_world) * view.right);
@@ -165,10 +265,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.near_depth = static_cast<float>(voxel_along_view);
     p.index_to_world = glm::mat3(to_world);
     p.normal_to_world = glm::mat3(glm::transpose(to_index));
-    if (scene.light.kind == Light::Kind::Directional) p.light = to_float(glm::normalize(scene.light.direction));
-    p.ambient = static_cast<float>(scene.light.ambient);
-    p.diffuse = static_cast<float>(scene.light.diffuse);
     p.background = to_float(scene.background);
+    plan.gradient = payload == shader::PAYLOAD_COLOR && scene.effects.background_top.has_value();
+    if (plan.gradient) p.background_top = to_float(*scene.effects.background_top);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         p.materials[m] =
             glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));

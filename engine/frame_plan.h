@@ -4,14 +4,15 @@
 #include "engine/passes/5_draw_splats.h"
 #include "engine/renderer.h"
 #include "shaders/shared/frame_params.h"
+#include "shaders/shared/transfer_rows.h"
 
 namespace edgesplat {
 
-/// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
-bool draws_warped(const Settings& settings);
+/// Whether splats need normals, whatever becomes of edges.
+bool wants_normals(const Scene& scene);
 
-/// The largest curvature that is drawn, 1/voxel: the band must not reach a sphere's centre.
-double most_curved(const Settings& settings);
+/// The one light that the ray casters know: 0 without light, else 1 + Light::Kind.
+std::uint32_t light_code(const Scene& scene);
 
 /// Passes 1 and 2 for one volume, scene and set of edge settings.
 struct CollectionPlan {
@@ -24,7 +25,11 @@ struct CollectionPlan {
     bool skip_buried = true;
     bool curved = false;    ///< splats carry the curvature of their edge
     bool weighted = false;  ///< splats carry a weight; edges are estimated on both sides, also where nothing is drawn
-    shader::SceneParams params{};  ///< without addresses
+    /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not
+    /// depend on the planes: they move without a new collection.
+    passes::ClipCount clip{};
+    std::vector<shader::TransferRow> transfer;  ///< TRANSFER_ROWS + 1; empty without a transfer function
+    shader::SceneParams params{};               ///< without addresses
 
     /// Whether the same splats come out of it.
     bool operator==(const CollectionPlan& other) const;
@@ -33,7 +38,8 @@ struct CollectionPlan {
 /// `keep_buried`: nothing may be dropped (optical depth is asked for, or the eye is inside opaque matter).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
-/// Whether the voxel nearest to the eye belongs to an opaque material: what is buried from outside is in front of it.
+/// Whether the voxel nearest to the eye belongs to an opaque material and the eye is not in what is cut away: what is
+/// buried from outside is in front of it.
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
 
 /// Passes 3 to 7 for one picture.
@@ -41,6 +47,7 @@ struct FramePlan {
     passes::DrawVariant variant{};
     vk::Format sheet_format{};
     vk::Format accumulated_format{};
+    bool gradient = false;               ///< colour over a background of two colours
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
 };

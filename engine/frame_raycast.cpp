@@ -30,7 +30,7 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 
     RaycastPlan plan;
     plan.size = size;
-    plan.variant = {scene.light.kind, collection.params.iso_count, raycast.warped,
+    plan.variant = {light_code(scene), collection.params.iso_count, raycast.warped,
                     raycast.warped && draws_warped(settings), raycast.skip_empty};
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;
@@ -45,9 +45,11 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
     p.tan_half_y = static_cast<float>(view.tan_half_y);
     p.index_to_world = glm::mat3(to_world);
     p.normal_to_world = glm::mat3(glm::transpose(to_index));
-    if (scene.light.kind == Light::Kind::Directional) p.light = glm::normalize(scene.light.direction);
-    p.ambient = static_cast<float>(scene.light.ambient);
-    p.diffuse = static_cast<float>(scene.light.diffuse);
+    if (!scene.lights.empty()) {
+        p.light = glm::normalize(scene.lights.front().direction);
+        p.ambient = static_cast<float>(scene.ambient);
+        p.diffuse = static_cast<float>(scene.lights.front().intensity);
+    }
     p.background = scene.background;
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         p.materials[m] = glm::dvec4(scene.materials[m].color, scene.materials[m].extinction);

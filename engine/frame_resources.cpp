@@ -69,18 +69,36 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
     device_->handle().updateDescriptorSets(writes, nullptr);
 }
 
+namespace {
+
+/// Rows and slices that go up at once. A slice may be larger than the staging buffer should be; then it goes up in
+/// bands of rows.
+struct Band {
+    std::size_t row = 0;  ///< bytes
+    std::size_t rows = 0, slices = 0;
+};
+
+Band upload_band(const gpu::ImageShape& shape, std::size_t texel_bytes) {
+    const auto row = static_cast<std::size_t>(shape.size.x) * texel_bytes;
+    const auto height = static_cast<std::size_t>(shape.size.y);
+    const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
+    const std::size_t rows = std::clamp<std::size_t>(kStagingBytes / row, 1, height);
+    return {row, rows, rows < height ? 1 : std::clamp<std::size_t>(kStagingBytes / (row * height), 1, slices)};
+}
+
+}  // namespace
+
+std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_bytes) {
+    const Band band = upload_band(shape, texel_bytes);
+    return band.row * band.rows * band.slices;
+}
+
 void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
                   std::size_t texel_bytes) {
     const auto& shape = image.shape();
-    const auto row = static_cast<std::size_t>(shape.size.x) * texel_bytes;
+    const auto [row, rows_at_once, slices_at_once] = upload_band(shape, texel_bytes);
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
-    // A slice may be larger than the staging buffer should be; then it goes up in bands of rows.
-    const std::size_t rows_at_once =
-        std::clamp<std::size_t>(kStagingBytes / row, 1, static_cast<std::size_t>(shape.size.y));
-    const std::size_t slices_at_once = rows_at_once < static_cast<std::size_t>(shape.size.y)
-                                           ? 1
-                                           : std::clamp<std::size_t>(kStagingBytes / slice, 1, slices);
     const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, "staging buffer");
     commands.run([&] { commands.prepare({&image}); });
     for (std::size_t z = 0; z < slices; z += slices_at_once) {

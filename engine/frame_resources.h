@@ -23,6 +23,10 @@ struct VolumeResources {
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
     gpu::Buffer
         traits;  ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved or kernels weighted
+    gpu::Buffer occlusion;  ///< (splat_count) uint: ambient light that reaches it; 2b -> 5; only with occlusion
+    gpu::Buffer shadows;    ///< (splat_count) uint: light that reaches it; 2d -> 5; only with shadow lights
+    gpu::Buffer transfer;   ///< (TRANSFER_ROWS + 1) TransferRow, mapped; host -> 2, 5; only with a transfer function
+    gpu::Buffer values;     ///< (splat_count) float: what each splat is classified by; 2 -> 5; likewise
     std::uint64_t splat_count = 0, edge_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< voxels that hold splats: inclusive box, whole rows
 };
@@ -70,6 +74,9 @@ class Bindings {
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_array_, no_picture_;
 };
+
+/// Size of the staging buffer that upload_image uses for such an image.
+std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_bytes);
 
 /// Copies `bytes` from the host into an image, whole layers or slices at a time, through a staging buffer of at most
 /// 64 MiB. `texel_bytes` is the size of one texel.

@@ -13,7 +13,8 @@
 namespace edgesplat {
 
 /// Text that travels with a picture: PNG text chunks, EXR string attributes. Names the command line tool writes:
-/// "edgesplat:command", "edgesplat:volume", "edgesplat:checksum", "edgesplat:renderer" and "Software".
+/// "edgesplat:command", "edgesplat:volume", "edgesplat:checksum", "edgesplat:renderer", "edgesplat:device",
+/// "edgesplat:scene" (the picture's scene as TOML, with nothing left open) and "Software".
 using ImageMetadata = std::vector<std::pair<std::string, std::string>>;
 
 /// Channels under their names, all of one size; an EXR file may hold several (R,G,B,A, depth.Z, normal.X, ...).

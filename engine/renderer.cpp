@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "engine/error.h"
+#include "engine/overlays.h"
 #include "engine/renderer_state.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
@@ -32,18 +33,6 @@ bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& 
            image.shape().layers >= layers;
 }
 
-FootprintTableSize table_size_of(TableSize size) {
-    switch (size) {
-        case TableSize::Coarse:
-            return {.width = 32, .height = 16, .distances = 29, .directions = 18};
-        case TableSize::Fine:
-            return {.width = 128, .height = 40, .distances = 57, .directions = 35};
-        case TableSize::Medium:
-            break;
-    }
-    return {};
-}
-
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
 Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {
     Image image(size.x, size.y, count);
@@ -57,6 +46,22 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
 }
 
 }  // namespace
+
+FootprintTableSize table_size_of(TableSize size) {
+    switch (size) {
+        case TableSize::Coarse:
+            return {.width = 32, .height = 16, .distances = 29, .directions = 18};
+        case TableSize::Fine:
+            return {.width = 128, .height = 40, .distances = 57, .directions = 35};
+        case TableSize::Medium:
+            break;
+    }
+    return {};
+}
+
+bool uses_table(const Settings& settings) {
+    return settings.warp == WarpFamily::Edge && draws_warped(settings) && asks_for_table(settings);
+}
 
 RendererState::RendererState(const DeviceChoice& choice) : device(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
@@ -81,10 +86,21 @@ void upload_volume(RendererState& state) {
 }
 
 double RendererState::collect(const Scene& scene, const Settings& settings, bool keep_buried) {
-    CollectionPlan wanted = plan_collection(*volume, scene, settings, keep_buried);
-    if (collected && *collected == wanted) return 0;
+    const CollectionPlan wanted = plan_collection(*volume, scene, settings, keep_buried);
     const auto start = Clock::now();
+    collection_times.clear();
+    const bool anew = !collected || *collected != wanted;
+    if (anew) collect_anew(wanted);
+    const bool occluded_anew = occlude(scene), shadowed_anew = cast_shadows(scene, settings);
+    return anew || occluded_anew || shadowed_anew ? milliseconds_since(start) : 0;
+}
+
+void RendererState::collect_anew(const CollectionPlan& wanted) {
     collected.reset();
+    occluded.reset();
+    shadowed.reset();
+    volume_resources.occlusion = {};
+    volume_resources.shadows = {};
     if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic && !volume_resources.coefficients) {
         const auto coefficients = bspline_coefficients(scaled_field(*volume), wanted.dims);
         volume_resources.coefficients = gpu::GpuImage(device,
@@ -97,14 +113,41 @@ double RendererState::collect(const Scene& scene, const Settings& settings, bool
     }
     collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
     collected = wanted;
-    return milliseconds_since(start);
+}
+
+void RendererState::choose_supports(const Settings& settings) {
+    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
+    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
+    if (draws_warped(settings) && (band_in_use != band || curved_in_use != curved)) {
+        const auto supports = curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
+                                     : covering_supports(band, shader::SUPPORT_STEPS);
+        std::ranges::transform(supports, footprint_resources.supports.begin(),
+                               [](const Support& s) { return glm::vec2(s.shift, s.radius); });
+        const double wall = largest_support_radius(band);
+        footprint_resources.wall_support = static_cast<float>(wall);
+        footprint_resources.farthest_reach = wall;
+        for (const Support& s : supports) {
+            footprint_resources.farthest_reach =
+                std::max(footprint_resources.farthest_reach, std::abs(s.shift) + s.radius);
+        }
+        band_in_use = band;
+        curved_in_use = curved;
+    }
+}
+
+void RendererState::release_unused(const Settings& drawn) {
+    if (!uses_table(drawn)) {
+        footprint_resources.table = {};
+        table_band.reset();
+    }
+    if (!draws_warped(drawn) || drawn.edges != EdgeEstimator::Cubic) volume_resources.coefficients = {};
 }
 
 void RendererState::provide_footprints(const Settings& settings) {
+    release_unused(settings);
+    choose_supports(settings);
     const EdgeBand band{settings.edge_half_width, settings.edge_strength};
-    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
-    const bool table = settings.warp == WarpFamily::Edge && draws_warped(settings) &&
-                       (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp);
+    const bool table = uses_table(settings);
     const FootprintTableSize table_size = table_size_of(settings.table_size);
     if (table && (table_band != band || table_texels != table_size)) {
         table_band.reset();
@@ -128,31 +171,11 @@ void RendererState::provide_footprints(const Settings& settings) {
         table_band = band;
         table_texels = table_size;
     }
-    if (draws_warped(settings) && (band_in_use != band || curved_in_use != curved)) {
-        const auto supports = curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
-                                     : covering_supports(band, shader::SUPPORT_STEPS);
-        std::ranges::transform(supports, footprint_resources.supports.begin(),
-                               [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-        const double wall = largest_support_radius(band);
-        footprint_resources.wall_support = static_cast<float>(wall);
-        footprint_resources.farthest_reach = wall;
-        for (const Support& s : supports) {
-            footprint_resources.farthest_reach =
-                std::max(footprint_resources.farthest_reach, std::abs(s.shift) + s.radius);
-        }
-        band_in_use = band;
-        curved_in_use = curved;
-    }
     const PaperShape paper;
     footprint_resources.params.half_width = static_cast<float>(band.half_width);
     footprint_resources.params.strength = static_cast<float>(band.strength);
     footprint_resources.params.paper_inset = static_cast<float>(paper.inset);
     footprint_resources.params.paper_rise = static_cast<float>(paper.rise);
-    // What this picture does not use is not kept.
-    if (!table) {
-        footprint_resources.table = {};
-        table_band.reset();
-    }
 }
 
 void RendererState::provide_targets(FramePlan& plan_in_use) {
@@ -200,6 +223,10 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
 
     p.splats = volume_resources.splats.address();
     p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
+    p.splat_occlusion = volume_resources.occlusion ? volume_resources.occlusion.address() : 0;
+    p.splat_shadows = volume_resources.shadows ? volume_resources.shadows.address() : 0;
+    p.transfer = volume_resources.transfer ? volume_resources.transfer.address() : 0;
+    p.values = volume_resources.values ? volume_resources.values.address() : 0;
     p.sheets = targets.sheet_of.address();
     p.order = targets.order.address();
     p.counters = targets.counters.address();
@@ -250,12 +277,14 @@ void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
     self.collected.reset();
     self.raycast.reset();
     self.volume_resources = {};
+    self.drop_targets();
+    self.checked_fit.clear();
     self.volume = std::move(volume);
-    try {
-        upload_volume(self);
-    } catch (const vk::SystemError& error) {
-        fail("Vulkan: {}", error.what());
-    }
+}
+
+void Renderer::set_memory_budget(std::uint64_t bytes) {
+    state_->memory_budget = bytes;
+    state_->checked_fit.clear();
 }
 
 RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
@@ -267,11 +296,16 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     }
     validate(scene);
     validate(wanted);
-    const Settings settings = drawn_as(wanted);
+    const Settings settings = drawn_as(wanted, scene);
     const glm::ivec2 size(width, height);
     RenderResult result;
     try {
-        const bool keep_buried = aovs.tau || eye_in_opaque(*self.volume, scene, camera);
+        self.release_unused(settings);
+        self.device.forget_peaks();
+        const FrameRequest request{self.volume, scene, camera, wanted, size, aovs};
+        const bool keep_buried = keeps_buried(request);
+        self.check_memory(request);
+        self.provide_volume();
         self.provide_footprints(settings);
         result.stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
         if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
@@ -290,27 +324,35 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         result.stats.sheet_groups = self.plan.params.group_count;
         result.color = take(pixels(), size, 0, 4);
 
+        const auto draw_output = [&](const char* name, std::uint32_t payload) {
+            self.draw(scene, camera, settings, size, payload);
+            for (const PassTime& pass : self.commands.span_times())
+                result.stats.passes.push_back({std::string(name) + ": " + pass.name, pass.milliseconds});
+        };
         if (aovs.tau) {
-            self.draw(scene, camera, settings, size, shader::PAYLOAD_TAU);
+            draw_output("tau", shader::PAYLOAD_TAU);
             result.tau = take(pixels(), size, 3, 1);
         }
         if (aovs.depth || aovs.distance) {
-            self.draw(scene, camera, settings, size, shader::PAYLOAD_DEPTH_DISTANCE);
+            draw_output("depth, distance", shader::PAYLOAD_DEPTH_DISTANCE);
             if (aovs.depth) result.depth = take(pixels(), size, 0, 1);
             if (aovs.distance) result.distance = take(pixels(), size, 1, 1);
         }
         if (aovs.normal) {
-            self.draw(scene, camera, settings, size, shader::PAYLOAD_NORMAL);
+            draw_output("normal", shader::PAYLOAD_NORMAL);
             result.normal = take(pixels(), size, 0, 3);
         }
     } catch (const vk::SystemError& error) {
         fail("Vulkan: {}", error.what());
     }
+    if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
     result.stats.device = self.device.info();
     result.stats.voxels = self.volume->geometry.voxel_count();
     result.stats.splats_collected = self.volume_resources.splat_count;
     result.stats.edge_splats = self.volume_resources.edge_splat_count;
     result.stats.device_bytes = self.device.allocated_bytes();
+    for (const auto& [name, allocation] : self.device.allocations())
+        if (!name.empty()) result.stats.memory.push_back({name, allocation.peak});
     result.stats.validation_messages = self.device.validation_messages();
     return result;
 }

@@ -54,15 +54,23 @@ struct PassTime {
     double milliseconds = 0;
 };
 
+/// Device memory held under one name.
+struct MemoryUse {
+    std::string name;
+    std::uint64_t bytes = 0;  ///< the most during the frame
+};
+
 /// What a frame did and cost.
 struct RenderStats {
     DeviceInfo device;
-    std::vector<PassTime> passes;   ///< in the frame's order
+    /// In the frame's order; those of extra outputs as "tau: 5_draw_splats".
+    std::vector<PassTime> passes;
     double setup_milliseconds = 0;  ///< upload, estimation, collection: 0 when nothing changed since the last frame
     double frame_milliseconds = 0;  ///< wall clock from submit to finish
     std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
     std::uint32_t sheets = 0, sheet_groups = 0;
     std::uint64_t device_bytes = 0;  ///< allocated on the device
+    std::vector<MemoryUse> memory;   ///< by name, what was let go during the frame included
     std::uint64_t validation_messages = 0;
 };
 
@@ -71,6 +79,11 @@ struct RenderResult {
     std::optional<Image> tau, depth, normal, distance;
     RenderStats stats;
 };
+
+struct FrameRequest;     // engine/effect_table.h
+struct FrameForecast;    // engine/frame_forecast.h
+struct PlannedResource;  // engine/frame_forecast.h
+struct FittingChange;    // engine/frame_description.h
 
 /// What a Renderer owns (engine/renderer_state.h); of no use to those who embed it.
 struct RendererState;
@@ -85,8 +98,12 @@ class Renderer {
 
     const DeviceInfo& device() const;
 
-    /// Uploads a volume; what was estimated for the one before is dropped.
+    /// The volume of the pictures to come, which the first of them uploads; what is held for the one before is freed.
     void set_volume(std::shared_ptr<const Volume> volume);
+
+    /// The most that may be held on the device, bytes; 0: as much as it has. A picture that needs more is refused
+    /// before anything is allocated for it, with what is needed for what, and with what would fit.
+    void set_memory_budget(std::uint64_t bytes);
 
     /// Renders one frame of `width` x `height` pixels (1..16384 each). View-independent work is done again only when
     /// the volume, the scene's materials or the edge settings changed.
@@ -97,6 +114,15 @@ class Renderer {
     /// and with `warped` the edges and their band.
     RenderResult raycast(const Scene& scene, const Camera& camera, const Settings& settings,
                          const RaycastSettings& raycast, int width, int height);
+
+    /// What such a request will run and hold. Without a picture of it yet, its splats are counted on the host.
+    FrameForecast forecast(const FrameRequest& request);
+    /// Changes to a request that does not fit into the memory, each of which does.
+    std::vector<FittingChange> what_fits(const FrameRequest& request) const;
+    /// Bytes of device memory held now.
+    std::uint64_t held_bytes() const;
+    /// What a resource takes of this device, as the device rounds it up.
+    std::uint64_t required_bytes(const PlannedResource& resource) const;
 
     /// Validation messages so far; 0 when validation was not asked for.
     std::uint64_t validation_messages() const;

@@ -2,6 +2,7 @@
 #include <chrono>
 
 #include "engine/error.h"
+#include "engine/overlays.h"
 #include "engine/renderer_state.h"
 
 namespace edgesplat {
@@ -23,12 +24,15 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     validate(scene);
+    if (const std::string beyond = beyond_ray_casting(scene); !beyond.empty())
+        fail("raycast: {} cannot be shown, expected a scene without", beyond);
     validate(wanted);
     validate(raycast);
     const Settings settings = drawn_as(wanted);
     RenderResult result;
     auto& stats = result.stats;
     try {
+        self.provide_volume();
         const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
         const auto add_times = [&](const std::vector<PassTime>& times) {
             stats.passes.insert(stats.passes.end(), times.begin(), times.end());
@@ -53,6 +57,7 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
         add_times(self.commands.span_times());
         result.color = Image(width, height, 4);
         std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
+        if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
     } catch (const vk::SystemError& error) {
         fail("Vulkan: {}", error.what());
     }

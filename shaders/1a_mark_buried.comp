@@ -10,12 +10,17 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_AXIS) const uint AXIS = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_BURIED, r8ui) uniform uimage3D buried;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(push_constant) uniform Push { SceneRef params; };
 
 #include "shaders/lib/material.glsl"
+#define CLIP_PARAMS params.scene
+#include "shaders/lib/clip.glsl"
 
 bool opaque(ivec3 p) {
     if (AXIS != 0u) return imageLoad(buried, p).r != 0u;
+    if (is_cut_away(vec3(p), 0.0)) return false;
     return in_mask(params.scene.opaque_mask, material_of(imageLoad(volume, p).r));
 }
 

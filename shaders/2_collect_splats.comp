@@ -13,6 +13,9 @@ layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
 layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
@@ -21,14 +24,20 @@ layout(push_constant) uniform Push {
     uint write;
 };
 
+ivec3 dims;
 #include "shaders/lib/material.glsl"
+#define CLIP_PARAMS params.scene
+#include "shaders/lib/clip.glsl"
+#include "shaders/lib/trilinear.glsl"
+#include "shaders/lib/transfer.glsl"
 
-uint material_at(ivec3 p) { return material_of(imageLoad(volume, p).r); }
+uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/lib/edge_smoothing.glsl"
 #include "shaders/lib/kernel_weight.glsl"
+#include "shaders/lib/classified_value.glsl"
 
 void main() {
-    ivec3 dims = params.scene.dims;
+    dims = params.scene.dims;
     uint voxels = uint(dims.x) * uint(dims.y) * uint(dims.z);
     uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint first = run * COLLECT_RUN;
@@ -44,8 +53,17 @@ void main() {
         uint material = material_at(p);
         bool visible = in_mask(params.scene.visible_mask, material);
         if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
+        // No kernel reaches further than R + a.
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) visible = visible && !is_cut_away(vec3(p), params.scene.band);
+        float value = 0.0;
+        if (TRANSFER == 1u) {
+            uvec2 code = EDGES == 1u && visible ? imageLoad(edges, p).xy : uvec2(0u);
+            value = classified_value(p, voxel(p), material, unpack_edge(code.x, code.y));
+            visible = visible && transfer_at(TransferRef(params.scene.transfer), value).a > 0.0;
+        }
         if (visible) {
             if (write == 1u) {
+                if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
                 uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
                 Edge e = unpack_edge(code.x, code.y);
                 if (WEIGHTED == 1u)

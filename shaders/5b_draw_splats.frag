@@ -9,6 +9,9 @@ layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 10u;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
 const uint EDGE = 0u, PAPER = 1u;
 #include "shaders/lib/footprint.glsl"
@@ -25,7 +28,14 @@ layout(location = 1) flat in vec3 from_eye;
 layout(location = 2) flat in vec4 color_sigma;
 layout(location = 3) flat in vec4 normal_distance;
 layout(location = 4) flat in vec4 shape;
+layout(location = 6) flat in vec3 matter;
+layout(location = 7) flat in uvec2 number_material;
 layout(location = 0) out vec4 sheet;
+
+#define CLIP_PARAMS params.frame
+#include "shaders/lib/clip.glsl"
+#include "shaders/lib/clip_ray.glsl"
+#include "shaders/lib/shading.glsl"
 
 float footprint(float rho2, float pn, float un, Slice slice) {
     if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2, slice);
@@ -57,6 +67,46 @@ float footprint(float rho2, float pn, float un, Slice slice) {
                                : footprint_table_lerp(table, rho2, pn, un, d, params.frame.footprint);
 }
 
+// What a splat carries where a ray enters its matter through a clip plane, z from p.
+vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
+    vec3 world_normal = normalize(params.frame.normal_to_world * face);
+    if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
+    float depth = dot(params.frame.view_z, from_eye + p + z * u);
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
+    vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
+    vec3 to_eye = -normalize(params.frame.index_to_world * u);
+    return shade(Surface(matter, number_material.y, number_material.x, true, world_normal, false, entry, to_eye, depth));
+}
+
+// The splat between `slice`, in the pieces of the ray that clip planes leave: (sum of integrals times payload, their sum).
+vec4 clipped_footprint(vec3 p, vec3 u, Slice slice) {
+    float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
+    Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
+    // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
+    const float FAR = 8.0;
+    int faces = footprint_faces(normal_distance.w, shape.x, params.frame.footprint);
+    faces = FOOTPRINTS == WARP2D ? 1 : faces;
+    vec4 sum = vec4(0.0);
+    bool some = kept.before.low < kept.before.high && kept.before.low < FAR && kept.before.high > -FAR;
+    bool more = CLIP_REMOVE > 0u && kept.behind.low < kept.behind.high && kept.behind.low < FAR && kept.behind.high > -FAR;
+    int first = some ? 0 : 1, last = more ? 2 : 1;
+    for (int i = first; i < last; ++i) {
+        Slice piece = CLIP_REMOVE > 0u && i == 1 ? kept.behind : kept.before;
+        vec3 face = CLIP_REMOVE > 0u && i == 1 ? kept.behind_face : kept.before_face;
+        float t = pn + piece.low * un;
+        bool cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 &&
+                   is_in_matter(rho2 + piece.low * piece.low, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
+                                CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
+        vec3 payload = color_sigma.rgb;
+        for (int run = cap ? 1 : 0; run > 0; --run) payload = cap_payload(face, p, u, piece.low);
+        Slice cut = Slice(piece.low < -FAR ? -1e9 : piece.low, piece.high > FAR ? 1e9 : piece.high);
+        cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
+        float value = cut.low < cut.high ? footprint(rho2, pn, un, cut) : 0.0;
+        sum += value * vec4(payload, 1.0);
+    }
+    return sum;
+}
+
 void main() {
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
@@ -66,9 +116,13 @@ void main() {
         float depth_along = dot(params.frame.view_z, u);
         vec2 z = (shape.zw - dot(params.frame.view_z, p)) / depth_along;
         slice = Slice(z.x, z.y);
-    } else {
+    } else if (CLIP_KEEP + CLIP_REMOVE == 0u) {
         // Only the part of the kernel in front of the eye counts.
         in_front = smoothstep(-params.frame.support, params.frame.support, dot(from_eye, u));
+    }
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        sheet = color_sigma.a * length(params.frame.index_to_world * u) * clipped_footprint(p, u, slice);
+        return;
     }
     float value = footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), slice);
     float tau = color_sigma.a * length(params.frame.index_to_world * u) * value * in_front;

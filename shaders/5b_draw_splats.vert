@@ -6,17 +6,21 @@
 #include "shaders/shared/frame_params.h"
 
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
-layout(constant_id = SPEC_LIGHT) const uint LIGHT = 1u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
 layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
-const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u, LIGHT_DIRECTIONAL = 2u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 
 layout(push_constant) uniform Push {
     FrameRef params;
     uint group;
 };
 #include "shaders/lib/splat_projection.glsl"
+#include "shaders/lib/shading.glsl"
+#include "shaders/lib/transfer.glsl"
 
 layout(location = 0) out vec3 offset;              // a point of the pixel's ray, relative to the voxel, index space
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
@@ -24,12 +28,8 @@ layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
 layout(location = 4) flat out vec4 shape;  // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
 
-vec3 lit(vec3 color, Edge e, vec3 world_normal, vec3 to_eye) {
-    if (LIGHT == LIGHT_NONE) return color;
-    vec3 to_light = LIGHT == LIGHT_HEADLIGHT ? to_eye : params.frame.light;
-    float cosine = e.state == EDGE_NONE ? 0.5 : max(dot(world_normal, to_light), 0.0);
-    return color * (params.frame.ambient + params.frame.diffuse * cosine);
-}
+layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
+layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -67,23 +67,35 @@ void main() {
         : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
     if (!p.at_eye) offset += p.centre;
 
-    vec4 material = params.frame.materials[splat.edge >> 28];
+    vec4 material = vec4(0.0);
+    if (TRANSFER == 1u)
+        material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
+    else
+        material = params.frame.materials[splat.edge >> 28];
     // A surface faces its lower values, whichever side of it the splat is on.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
-    vec3 to_eye = -normalize(params.frame.index_to_world * from_eye);
+    vec3 world_from_eye = params.frame.index_to_world * from_eye;
+    vec3 to_eye = -unit_or_zero(world_from_eye);
     // A wall's kernel reaches both faces, and the one that is seen faces the eye.
-    if (e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0) world_normal = -world_normal;
+    bool turned = e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
+    if (turned) world_normal = -world_normal;
+    float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
     vec3 payload = vec3(0.0);
-    if (PAYLOAD == PAYLOAD_COLOR)
-        payload = lit(material.rgb, e, world_normal, to_eye);
+    if (PAYLOAD == PAYLOAD_COLOR) {
+        bool has_normal = e.state >= (LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
+        payload = shade(Surface(material.rgb, splat.edge >> 28, number, has_normal, world_normal, turned, world_from_eye, to_eye, depth));
+    }
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
         float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
-        float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
         payload = vec3(depth, signed_distance, 0.0);
     }
     if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
     color_sigma = vec4(payload, material.a);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        matter = material.rgb;
+        number_material = uvec2(number, splat.edge >> 28);
+    }
     normal_distance = vec4(e.n, e.d);
     bool warped = params.frame.edge_warped == 1u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
     vec2 traits = vec2(0.0, 1.0);

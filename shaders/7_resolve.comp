@@ -7,6 +7,7 @@
 
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
 layout(push_constant) uniform Push { FrameRef params; };
 
@@ -14,7 +15,14 @@ void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
     if (any(greaterThanEqual(pixel, size))) return;
     vec4 sum = texelFetch(accumulated, pixel, 0);
-    if (PAYLOAD == PAYLOAD_COLOR) sum.rgb += (1.0 - sum.a) * params.frame.background;
+    if (PAYLOAD == PAYLOAD_COLOR) {
+        vec3 behind = params.frame.background;
+        if (GRADIENT == 1u) {
+            float height = float(size.y - 1 - pixel.y) / max(float(size.y - 1), 1.0);
+            behind = mix(behind, params.frame.background_top, height);
+        }
+        sum.rgb += (1.0 - sum.a) * behind;
+    }
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) sum.rgb = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
     if (PAYLOAD == PAYLOAD_NORMAL) {
         float norm = length(sum.rgb);

@@ -32,7 +32,7 @@ constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ct
 struct AccuracyCommand {
     std::string volume_path;
     VolumeOptions volume;
-    SceneOptions scene;
+    DocumentEdits edits;
     std::string folder;
     ReportOptions report;
     double orbit = 36, repeats = 5;
@@ -42,15 +42,27 @@ struct AccuracyCommand {
     edgesplat::DeviceChoice device;
 };
 
-ReportInput input_of(const AccuracyCommand& command, const std::string& command_line) {
-    edgesplat::Volume volume = load_from_options(command.volume_path, command.volume, command.quiet);
-    preprocess(command.scene, volume);
-    if (command.crop) volume = edgesplat::accuracy::cropped(volume, (*command.crop)[0], (*command.crop)[1]);
+/// The scene that the options make, on nothing.
+edgesplat::SceneDocument document_of(const AccuracyCommand& command) {
+    edgesplat::SceneDocument document;
+    document.volume.path = command.volume_path;
+    apply(command.volume, document.volume);
+    command.edits.apply(document);
+    if (command.crop) {
+        document.volume.crop_low = (*command.crop)[0];
+        document.volume.crop_high = (*command.crop)[1];
+    }
+    return document;
+}
+
+ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const std::string& command_line) {
+    const edgesplat::VolumeSource& source = document.volume;
     ReportInput input;
-    input.volume = std::make_shared<const edgesplat::Volume>(std::move(volume));
-    input.scene = scene_from_options(command.scene, *input.volume);
-    if (!command.scene.threshold && !command.scene.box_filter && !command.crop)
-        input.analytic = edgesplat::accuracy::analytic_scene_of(command.volume_path);
+    input.volume =
+        std::make_shared<const edgesplat::Volume>(load_with_progress(source, edgesplat::volume_folders({}), quiet));
+    input.scene = resolve_scene(document, *input.volume);
+    if (!source.threshold && !source.box_filter && !source.crop_low)
+        input.analytic = edgesplat::accuracy::analytic_scene_of(source.path);
     input.program = "edgesplat " EDGESPLAT_VERSION;
     input.command = command_line;
     return input;
@@ -71,8 +83,8 @@ std::optional<std::array<glm::ivec3, 2>> parse_box(const std::string& text) {
     return std::array{glm::ivec3(values[0], values[1], values[2]), glm::ivec3(values[3], values[4], values[5])};
 }
 
-void run_resolution(const AccuracyCommand& command, const ReportInput& input, const ReportOptions& options,
-                    int& exit_status) {
+/// Throws Interrupted on Ctrl-C.
+void run_resolution(const AccuracyCommand& command, const ReportInput& input, const ReportOptions& options) {
     const edgesplat::accuracy::ResolutionRequest request{.volume = input.volume,
                                                          .scene = input.scene,
                                                          .factors = command.downsample,
@@ -83,45 +95,40 @@ void run_resolution(const AccuracyCommand& command, const ReportInput& input, co
     edgesplat::Renderer renderer(command.device);
     const StopRequest stop;
     edgesplat::accuracy::ResolutionReport report;
-    try {
+    {
         ProgressBar bar(command.quiet);
         report = measure_resolution(renderer, request, [&](const edgesplat::accuracy::Progress& p) {
             bar.update(p.done, p.seconds_left, p.what);
             return !stop.asked();
         });
-    } catch (const edgesplat::accuracy::Interrupted& interrupted) {
-        fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
-        exit_status = kStoppedStatus;
-        return;
     }
     write_resolution(report, options.folder);
     if (!command.quiet) fmt::print("{}{}\n", resolution_table(report), (options.folder / "resolution.html").string());
 }
 
-void run(const AccuracyCommand& command, const std::string& command_line, int& exit_status) {
+/// Throws Interrupted on Ctrl-C.
+void run(const AccuracyCommand& command, const std::string& command_line) {
     ReportOptions options = command.report;
     options.folder = command.folder;
     options.repeats = static_cast<int>(command.repeats);
     options.orbit_frames = command.full ? kFullOrbit : static_cast<int>(command.orbit);
+    const edgesplat::SceneDocument document = document_of(command);
+    options.base = document.quality.settings;
     edgesplat::validate(options.base);
     edgesplat::accuracy::check_report_folder(options.folder);
-    const ReportInput input = input_of(command, command_line);
-    if (!command.downsample.empty()) return run_resolution(command, input, options, exit_status);
+    const ReportInput input = input_of(document, command.quiet, command_line);
+    if (!command.downsample.empty()) return run_resolution(command, input, options);
 
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(input.volume);
     const StopRequest stop;
     edgesplat::accuracy::Measured measured;
-    try {
+    {
         ProgressBar bar(command.quiet);
         measured = measure_accuracy(renderer, input, options, [&](const edgesplat::accuracy::Progress& p) {
             bar.update(p.done, p.seconds_left, p.what);
             return !stop.asked();
         });
-    } catch (const edgesplat::accuracy::Interrupted& interrupted) {
-        fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
-        exit_status = kStoppedStatus;
-        return;
     }
     edgesplat::accuracy::write_report(measured);
     if (command.quiet) return;
@@ -198,13 +205,20 @@ void add_accuracy_command(CLI::App& app, const std::string& command_line, int& e
         ->required()
         ->type_name("");
     add_report_options(sub, *command);
-    add_scene_options(sub, command->scene);
-    add_settings_options(sub, command->report.base);
+    add_scene_options(sub, command->edits);
+    add_settings_options(sub, command->edits);
     add_volume_options(sub, command->volume);
     sub.footer(
         "Examples:\n"
         "  edgesplat accuracy builtin:sphere --report sphere\n"
         "  edgesplat accuracy head.nrrd --iso -400 --report head --size 128x128\n"
         "  edgesplat accuracy head.nrrd --iso -400 --report coarse --downsample 2,4");
-    sub.callback([command, command_line, &exit_status] { run(*command, command_line, exit_status); });
+    sub.callback([command, command_line, &exit_status] {
+        try {
+            run(*command, command_line);
+        } catch (const edgesplat::accuracy::Interrupted& interrupted) {
+            fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
+            exit_status = kStoppedStatus;
+        }
+    });
 }

@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "apps/edgesplat/render_output.h"
-#include "apps/edgesplat/renderer_option.h"
-#include "apps/edgesplat/scene_options.h"
+#include "engine/scene/scene_document.h"
 
 /// What such a frame took, and how exact it is.
 struct CpuMeasurements {
@@ -19,11 +18,8 @@ struct CpuMeasurements {
 
 /// What is asked of them, beside the volume.
 struct CpuRequest {
-    RendererOptions renderer;
+    edgesplat::OutputChoice output;  ///< which renderer, its tolerance, the size, what beside colour
     edgesplat::Settings settings;
-    glm::ivec2 size{512, 512};  ///< pixels
-    bool compare_plain = false;
-    bool tau = false;    ///< extra output
     bool quiet = false;  ///< no progress on stderr, which is shown on a terminal only
 };
 
@@ -35,8 +31,7 @@ struct CpuFrames {
 /// Refuses, before anything is read or computed, what these renderers cannot do: extra outputs other than tau of
 /// `reference`, and for `truth` anything but a builtin volume as it is. Does nothing for other renderers. Throws
 /// edgesplat::Error.
-void check_cpu_request(const RendererOptions& renderer, const std::string& volume_path, const SceneOptions& scene,
-                       const std::vector<std::string>& aovs, bool compare_plain);
+void check_cpu_request(const edgesplat::SceneDocument& document);
 
 /// Throws edgesplat::Error.
 CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume& volume, const edgesplat::Scene& scene,
@@ -44,5 +39,5 @@ CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume
 
 /// Puts the renderer, and what `measurements` (empty for others) hold of each frame, into what `statistics` made, and
 /// takes out what only a device has.
-void add_renderer_statistics(nlohmann::ordered_json& statistics, const RendererOptions& renderer,
+void add_renderer_statistics(nlohmann::ordered_json& statistics, const edgesplat::OutputChoice& output,
                              const std::vector<CpuMeasurements>& measurements);

@@ -101,7 +101,9 @@ void print(const nlohmann::json& json) {
 }
 
 void run(const InfoOptions& options) {
-    const Volume volume = load_from_options(options.path, options.volume, false);
+    edgesplat::VolumeSource source{.path = options.path};
+    apply(options.volume, source);
+    const Volume volume = load_with_progress(source, edgesplat::volume_folders({}), false);
     const auto json = description(volume, options.bins);
     if (options.json.empty()) {
         print(json);

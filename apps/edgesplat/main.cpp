@@ -4,19 +4,23 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <numeric>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "apps/edgesplat/accuracy_command.h"
 #include "apps/edgesplat/compare_command.h"
+#include "apps/edgesplat/effects_command.h"
 #include "apps/edgesplat/footprints_command.h"
 #include "apps/edgesplat/help_formatter.h"
 #include "apps/edgesplat/info_command.h"
+#include "apps/edgesplat/movie_command.h"
 #include "apps/edgesplat/render_command.h"
+#include "apps/edgesplat/rerun_command.h"
+#include "apps/edgesplat/scene_command.h"
+#include "engine/scene/nearest_name.h"
 
 namespace {
 
@@ -39,39 +43,16 @@ std::string shell_line(int argc, char** argv) {
     return line;
 }
 
-/// Letters to insert, delete or replace to turn one word into the other.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 1; i <= a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i);
-        for (std::size_t j = 1; j <= b.size(); ++j) {
-            const std::size_t replaced = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-            diagonal = row[j];
-            row[j] = std::min({row[j] + 1, row[j - 1] + 1, replaced});
-        }
-    }
-    return row.back();
-}
-
 /// The option or command of `app` that is spelled most like an unexpected argument; empty if none is near.
 std::string nearest_name(const CLI::App& app, std::string argument) {
     argument = argument.substr(0, argument.find('='));
-    std::string best;
-    std::size_t best_distance = std::max<std::size_t>(argument.size() / 3, 1) + 1;
-    const auto consider = [&](const std::string& name) {
-        const std::size_t distance = edit_distance(argument, name);
-        if (distance < best_distance) {
-            best_distance = distance;
-            best = name;
-        }
-    };
+    std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames())
-            consider("--" + name);
+            names.push_back("--" + name);
     for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
-        consider(command->get_name());
-    return best;
+        names.push_back(command->get_name());
+    return edgesplat::nearest_name(argument, names);
 }
 
 /// Reports what is wrong with the command line. Help and version come this way too, with status 0.
@@ -92,6 +73,13 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return 2;
 }
 
+/// One line for each thing that is wrong.
+void print_error(const std::string& text) {
+    std::istringstream lines(text);
+    for (std::string line; std::getline(lines, line);)
+        fmt::print(stderr, "edgesplat: error: {}\n", line);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -109,9 +97,13 @@ int main(int argc, char** argv) {
             },
             "Print the Vulkan devices and leave");
         add_render_command(app, shell_line(argc, argv));
+        add_rerun_command(app, shell_line(argc, argv));
+        add_scene_command(app, exit_status);
+        add_movie_command(app, exit_status);
         add_info_command(app);
         add_compare_command(app, exit_status);
         add_footprints_command(app);
+        add_effects_command(app);
         add_accuracy_command(app, shell_line(argc, argv), exit_status);
         app.footer(
             "Examples:\n"
@@ -124,7 +116,7 @@ int main(int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return report_usage(app, error);
     } catch (const std::exception& error) {
-        fmt::print(stderr, "edgesplat: error: {}\n", error.what());
+        print_error(error.what());
         return app.got_subcommand("compare") ? 2 : 1;
     }
     return exit_status;

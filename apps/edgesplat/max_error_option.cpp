@@ -15,13 +15,15 @@ std::string difference_text(const ChosenSettings& choice) {
 
 }  // namespace
 
-void add_max_error_option(CLI::App& command, MaxErrorOption& option) {
+void add_max_error_option(CLI::App& command, DocumentEdits& edits) {
     command
         .add_option_function<std::string>(
             "--max-error",
-            [&option](const std::string& text) {
+            [&edits](const std::string& text) {
                 try {
-                    option.rms = edgesplat::accuracy::error_share(text);
+                    edits.add([share = edgesplat::accuracy::error_share(text)](edgesplat::SceneDocument& d) {
+                        d.quality.max_error = share;
+                    });
                 } catch (const std::exception& error) {
                     throw CLI::ValidationError("--max-error", error.what());
                 }
@@ -33,30 +35,30 @@ void add_max_error_option(CLI::App& command, MaxErrorOption& option) {
         ->group("Accuracy and cost (steps from cheap to accurate)");
 }
 
-std::optional<ChosenSettings> apply_max_error(const MaxErrorOption& option, edgesplat::Renderer& renderer,
+std::optional<ChosenSettings> apply_max_error(std::optional<double> max_error, edgesplat::Renderer& renderer,
                                               const edgesplat::Volume& volume, const edgesplat::Scene& scene,
                                               const edgesplat::Camera& camera, glm::ivec2 size,
                                               edgesplat::Settings& settings, bool quiet) {
-    if (!option.rms) return {};
+    if (!max_error) return {};
     const ChosenSettings choice =
-        edgesplat::accuracy::choose_settings(renderer, volume, scene, camera, size.x, size.y, {*option.rms, settings});
+        edgesplat::accuracy::choose_settings(renderer, volume, scene, camera, size.x, size.y, {*max_error, settings});
     settings = choice.chosen.settings;
     if (!quiet)
         fmt::print(
             "--max-error {:.3g} %: {}; expected {:.3g} % RMS; {:.1f} ms against {:.1f} ms at {}x{} pixels (x "
             "{:.2f})\n",
-            100 * *option.rms, difference_text(choice), 100 * choice.expected_error, choice.chosen.milliseconds,
+            100 * *max_error, difference_text(choice), 100 * choice.expected_error, choice.chosen.milliseconds,
             choice.default_milliseconds, choice.size.x, choice.size.y,
             choice.chosen.milliseconds / choice.default_milliseconds);
     return choice;
 }
 
-void add_error_estimate(const std::optional<ChosenSettings>& choice, const MaxErrorOption& option,
+void add_error_estimate(const std::optional<ChosenSettings>& choice, std::optional<double> max_error,
                         edgesplat::ImageMetadata& metadata, nlohmann::ordered_json& json) {
     if (!choice) return;
     metadata.emplace_back("edgesplat:error", fmt::format("{:.3g} RMS of full scale expected, limit {:g}",
-                                                         choice->expected_error, option.rms.value_or(0)));
-    json["error"] = {{"limit_rms", option.rms.value_or(0)},     {"expected_rms", choice->expected_error},
+                                                         choice->expected_error, max_error.value_or(0)));
+    json["error"] = {{"limit_rms", max_error.value_or(0)},      {"expected_rms", choice->expected_error},
                      {"measured_rms", choice->chosen.error},    {"reference_error", choice->reference_error},
                      {"chosen", difference_text(*choice)},      {"measured_at", {choice->size.x, choice->size.y}},
                      {"frame_ms", choice->chosen.milliseconds}, {"default_frame_ms", choice->default_milliseconds}};

@@ -5,19 +5,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "apps/edgesplat/document_edits.h"
 #include "engine/accuracy/choose_settings.h"
 #include "engine/image_file.h"
 
-struct MaxErrorOption {
-    std::optional<double> rms;  ///< of full scale, (0, 1); empty: not given
-};
-
 /// Adds --max-error.
-void add_max_error_option(CLI::App& command, MaxErrorOption& option);
+void add_max_error_option(CLI::App& command, DocumentEdits& edits);
 
 /// Changes the method knobs of `settings` to what keeps the error, and says so unless `quiet`. Nothing happens where
-/// the option was not given. Throws edgesplat::Error where no method is good enough.
-std::optional<edgesplat::accuracy::ChosenSettings> apply_max_error(const MaxErrorOption& option,
+/// the scene names no limit (`max_error`). Throws edgesplat::Error where no method is good enough.
+std::optional<edgesplat::accuracy::ChosenSettings> apply_max_error(std::optional<double> max_error,
                                                                    edgesplat::Renderer& renderer,
                                                                    const edgesplat::Volume& volume,
                                                                    const edgesplat::Scene& scene,
@@ -25,5 +22,6 @@ std::optional<edgesplat::accuracy::ChosenSettings> apply_max_error(const MaxErro
                                                                    edgesplat::Settings& settings, bool quiet);
 
 /// What the picture's metadata ("edgesplat:error") and the statistics ("error") say of it.
-void add_error_estimate(const std::optional<edgesplat::accuracy::ChosenSettings>& choice, const MaxErrorOption& option,
-                        edgesplat::ImageMetadata& metadata, nlohmann::ordered_json& json);
+void add_error_estimate(const std::optional<edgesplat::accuracy::ChosenSettings>& choice,
+                        std::optional<double> max_error, edgesplat::ImageMetadata& metadata,
+                        nlohmann::ordered_json& json);

@@ -26,22 +26,6 @@ std::string expectation(Range range) {
     return "a number";
 }
 
-double read_number(const std::string& names, const std::string& text, Range range) {
-    const std::optional<double> value = parse_number(text);
-    const bool fits = value && (range.above_low ? *value > range.low : *value >= range.low) && *value <= range.high;
-    if (!fits) throw CLI::ValidationError(names, fmt::format("'{}' is not {}", text, expectation(range)));
-    return *value;
-}
-
-glm::dvec3 read_vector(const std::string& names, const std::string& text, const std::string& type_name) {
-    const std::optional<glm::dvec3> value = parse_vector(text);
-    if (!value)
-        throw CLI::ValidationError(
-            names,
-            fmt::format("'{}' is not three numbers {} with commas and no spaces, such as 0,1,0.05", text, type_name));
-    return *value;
-}
-
 }  // namespace
 
 std::optional<double> parse_number(std::string_view text) {
@@ -75,6 +59,22 @@ std::optional<glm::ivec2> parse_size(std::string_view text) {
     return size;
 }
 
+double read_number(const std::string& names, const std::string& text, Range range) {
+    const std::optional<double> value = parse_number(text);
+    const bool fits = value && (range.above_low ? *value > range.low : *value >= range.low) && *value <= range.high;
+    if (!fits) throw CLI::ValidationError(names, fmt::format("'{}' is not {}", text, expectation(range)));
+    return *value;
+}
+
+glm::dvec3 read_vector(const std::string& names, const std::string& text, const std::string& type_name) {
+    const std::optional<glm::dvec3> value = parse_vector(text);
+    if (!value)
+        throw CLI::ValidationError(
+            names,
+            fmt::format("'{}' is not three numbers {} with commas and no spaces, such as 0,1,0.05", text, type_name));
+    return *value;
+}
+
 CLI::Option* add_number(CLI::App& app, const std::string& names, double& value, Range range, const std::string& help) {
     return app
         .add_option_function<std::string>(
@@ -89,37 +89,4 @@ CLI::Option* add_number(CLI::App& app, const std::string& names, std::optional<d
         .add_option_function<std::string>(
             names, [names, range, &value](const std::string& text) { value = read_number(names, text, range); }, help)
         ->type_name("NUMBER");
-}
-
-CLI::Option* add_numbers(CLI::App& app, const std::string& names, std::vector<double>& values, Range range,
-                         const std::string& help) {
-    const auto read = [names, range, &values](const std::vector<std::string>& texts) {
-        values.clear();
-        for (const std::string& text : texts)
-            values.push_back(read_number(names, text, range));
-    };
-    return app.add_option_function<std::vector<std::string>>(names, read, help)
-        ->type_name("NUMBER")
-        ->delimiter(',')
-        ->allow_extra_args(false);
-}
-
-CLI::Option* add_vector(CLI::App& app, const std::string& names, std::optional<glm::dvec3>& value,
-                        const std::string& type_name, const std::string& help) {
-    const auto read = [names, type_name, &value](const std::string& text) {
-        value = read_vector(names, text, type_name);
-    };
-    return app.add_option_function<std::string>(names, read, help)->type_name(type_name);
-}
-
-CLI::Option* add_vectors(CLI::App& app, const std::string& names, std::vector<glm::dvec3>& values,
-                         const std::string& type_name, const std::string& help) {
-    const auto read = [names, type_name, &values](const std::vector<std::string>& texts) {
-        values.clear();
-        for (const std::string& text : texts)
-            values.push_back(read_vector(names, text, type_name));
-    };
-    return app.add_option_function<std::vector<std::string>>(names, read, help)
-        ->type_name(type_name)
-        ->allow_extra_args(false);
 }

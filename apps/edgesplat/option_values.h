@@ -24,17 +24,16 @@ std::optional<glm::dvec3> parse_vector(std::string_view text);
 /// "WxH", each 1..16384.
 std::optional<glm::ivec2> parse_size(std::string_view text);
 
+// The same for an option's value; a text that does not fit throws CLI::ValidationError naming the option, the text and
+// what was expected.
+double read_number(const std::string& option, const std::string& text, Range range);
+glm::dvec3 read_vector(const std::string& option, const std::string& text, const std::string& type_name);
+
 // Each adds an option that is parsed as above; a text that does not fit throws CLI::ValidationError naming the option,
 // the text and what was expected. The referenced value must outlive the parse.
 CLI::Option* add_number(CLI::App& app, const std::string& names, double& value, Range range, const std::string& help);
 CLI::Option* add_number(CLI::App& app, const std::string& names, std::optional<double>& value, Range range,
                         const std::string& help);
-CLI::Option* add_numbers(CLI::App& app, const std::string& names, std::vector<double>& values, Range range,
-                         const std::string& help);
-CLI::Option* add_vector(CLI::App& app, const std::string& names, std::optional<glm::dvec3>& value,
-                        const std::string& type_name, const std::string& help);
-CLI::Option* add_vectors(CLI::App& app, const std::string& names, std::vector<glm::dvec3>& values,
-                         const std::string& type_name, const std::string& help);
 
 /// Adds an option with named steps; `named` turns a name into the value and throws edgesplat::Error for others.
 template <typename Value, typename Named>

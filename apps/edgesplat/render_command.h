@@ -1,11 +1,27 @@
-// `edgesplat render VOLUME -o PICTURE`: one picture of a volume, with everything that can be said about it.
+// `edgesplat render VOLUME|SCENE.toml -o PICTURE`: one picture, with everything that can be said about it.
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
+#include <vector>
+
+#include "apps/edgesplat/document_edits.h"
+#include "engine/renderer.h"
 
 /// Adds the command. `command_line` is recorded in what it writes. Its callback throws edgesplat::Error.
 void add_render_command(CLI::App& app, const std::string& command_line);
+
+/// Adds --device, --list-devices and --validation.
+void add_device_options(CLI::App& app, edgesplat::DeviceChoice& choice);
+
+/// Adds --set KEY=VALUE; add it last, so that it has the last word.
+void add_set_option(CLI::App& app, DocumentEdits& edits);
+
+/// Fills `document` from a scene file, or begins one for a volume, and says where its volume is looked for. Throws
+/// edgesplat::Error.
+void read_source(const std::string& source, edgesplat::SceneDocument& document,
+                 std::vector<std::filesystem::path>& folders);
 
 /// Prints every Vulkan device and why it cannot be used, if so.
 void print_devices();

@@ -119,7 +119,9 @@ edgesplat::ImageMetadata picture_metadata(const RunDescription& run) {
     return {{"Software", "edgesplat " EDGESPLAT_VERSION},
             {"edgesplat:command", run.command_line},
             {"edgesplat:volume", run.volume->name},
-            {"edgesplat:checksum", checksum_text(*run.volume)}};
+            {"edgesplat:checksum", checksum_text(*run.volume)},
+            {"edgesplat:device", run.device},
+            {"edgesplat:scene", run.scene_text}};
 }
 
 ordered_json statistics(const RunDescription& run, const std::vector<RenderedFrame>& frames) {
@@ -131,25 +133,27 @@ ordered_json statistics(const RunDescription& run, const std::vector<RenderedFra
     ordered_json frame_list = ordered_json::array();
     for (const RenderedFrame& frame : frames)
         frame_list.push_back(to_json(frame));
-    return {{"program", "edgesplat"},
-            {"version", EDGESPLAT_VERSION},
-            {"command", run.command_line},
-            {"volume",
-             {{"name", volume.name},
-              {"checksum", checksum_text(volume)},
-              {"dims", {dims.x, dims.y, dims.z}},
-              {"spacing_mm", to_json(volume.geometry.spacing())},
-              {"min", volume.min_value},
-              {"max", volume.max_value}}},
-            {"scene", {{"iso_values", run.scene->iso_values}, {"materials", materials}}},
-            {"camera",
-             {{"eye_mm", to_json(run.camera.eye)},
-              {"direction", to_json(run.camera.direction)},
-              {"up", to_json(run.camera.up)},
-              {"fov_y_degrees", run.camera.fov_y}}},
-            {"device", to_json(frames.back().result.stats.device)},
-            {"frames", frame_list},
-            {"peak_host_bytes", peak_host_bytes()}};
+    ordered_json json = {{"program", "edgesplat"},
+                         {"version", EDGESPLAT_VERSION},
+                         {"command", run.command_line},
+                         {"volume",
+                          {{"name", volume.name},
+                           {"checksum", checksum_text(volume)},
+                           {"dims", {dims.x, dims.y, dims.z}},
+                           {"spacing_mm", to_json(volume.geometry.spacing())},
+                           {"min", volume.min_value},
+                           {"max", volume.max_value}}},
+                         {"scene", {{"iso_values", run.scene->iso_values}, {"materials", materials}}},
+                         {"camera",
+                          {{"eye_mm", to_json(run.camera.eye)},
+                           {"direction", to_json(run.camera.direction)},
+                           {"up", to_json(run.camera.up)},
+                           {"fov_y_degrees", run.camera.fov_y}}},
+                         {"device", to_json(frames.back().result.stats.device)},
+                         {"frames", frame_list},
+                         {"peak_host_bytes", peak_host_bytes()}};
+    if (!run.plan.is_null()) json["plan"] = run.plan;
+    return json;
 }
 
 std::filesystem::path aov_path(const std::filesystem::path& picture, const std::string& aov) {

@@ -23,9 +23,12 @@ struct RunDescription {
     const edgesplat::Volume* volume = nullptr;
     const edgesplat::Scene* scene = nullptr;
     edgesplat::Camera camera;
+    std::string scene_text;       ///< TOML from which the picture can be made again
+    std::string device;           ///< what it was made on
+    nlohmann::ordered_json plan;  ///< of the last frame, where it was asked for
 };
 
-/// Command, program version, volume and its checksum, as they go into every picture.
+/// Command, program version, device, volume and its checksum, and the scene itself, as they go into every picture.
 edgesplat::ImageMetadata picture_metadata(const RunDescription& run);
 
 /// Everything measured, as `--json` writes it: run, volume, scene, camera, device, and per frame the settings, counts,

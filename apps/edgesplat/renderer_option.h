@@ -2,30 +2,12 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
-#include <span>
-#include <string_view>
 
+#include "apps/edgesplat/document_edits.h"
 #include "engine/renderer.h"
 
-enum class RendererKind { Splat, Raycast, RaycastWarped, Reference, Truth };
-
-struct RendererOptions {
-    RendererKind kind = RendererKind::Splat;
-    double raycast_step = 0.5;  ///< raycast, raycast-warped: voxels, (0.01, 4]
-    double tolerance = 1e-4;    ///< reference and truth: largest error of a pixel and channel, (0, 0.1]
-};
-
-/// Whether it computes on the processor alone and needs no Vulkan device.
-bool on_processor(RendererKind kind);
-
-/// Whether it is the ray caster, in either way.
-bool casts_rays(RendererKind kind);
-
 /// How the ray caster is to sample.
-edgesplat::RaycastSettings raycast_settings(const RendererOptions& options);
-
-/// The name as the command line spells it.
-std::string_view name_of(RendererKind kind);
+edgesplat::RaycastSettings raycast_settings(const edgesplat::OutputChoice& output);
 
 /// Adds --renderer, --raycast-step and --tolerance.
-void add_renderer_options(CLI::App& command, RendererOptions& options);
+void add_renderer_options(CLI::App& command, DocumentEdits& edits);

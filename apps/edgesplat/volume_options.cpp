@@ -5,8 +5,6 @@
 #include <chrono>
 #include <cstdio>
 
-#include "engine/volume/load_volume.h"
-
 namespace {
 
 // One line on stderr, begun only when the load turns out to be long: a bar on a terminal, else a few plain lines.
@@ -48,15 +46,19 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
     command.add_option("--spacing", options.spacing, "voxel spacing in mm, instead of the file's")->expected(3);
 }
 
-edgesplat::Volume load_from_options(const std::string& path, const VolumeOptions& options, bool quiet) {
-    edgesplat::LoadOptions load;
-    if (options.component >= 0) load.component = options.component;
-    if (options.frame >= 0) load.frame = options.frame;
-    load.series = options.series;
-    load.raw = options.raw;
+void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
+    if (options.component >= 0) source.component = options.component;
+    if (options.frame >= 0) source.frame = options.frame;
+    if (!options.series.empty()) source.series = options.series;
+    if (!options.raw.empty()) source.raw = options.raw;
     if (options.spacing.size() == 3)
-        load.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
+        source.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
+}
+
+edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
+                                     const std::vector<std::filesystem::path>& folders, bool quiet) {
     ProgressLine line;
-    if (!quiet) load.progress = [&line](double fraction, std::string_view what) { line.update(fraction, what); };
-    return edgesplat::load_volume(path, load);
+    if (quiet) return edgesplat::load_source(source, folders);
+    return edgesplat::load_source(source, folders,
+                                  [&line](double fraction, std::string_view what) { line.update(fraction, what); });
 }

@@ -2,10 +2,11 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
-#include "engine/volume/volume.h"
+#include "engine/scene/scene_document.h"
 
 /// What the command line said about the volume; see `LoadOptions` for the meaning of each.
 struct VolumeOptions {
@@ -19,6 +20,10 @@ struct VolumeOptions {
 /// Adds --raw, --component, --frame, --series and --spacing to a command. `options` must outlive the parse.
 void add_volume_options(CLI::App& command, VolumeOptions& options);
 
-/// Reads a file, a folder, a slice pattern or "builtin:NAME". Unless `quiet`, a load that takes longer than a second
-/// shows its progress on stderr. Throws edgesplat::Error naming the file and the reason.
-edgesplat::Volume load_from_options(const std::string& path, const VolumeOptions& options, bool quiet);
+/// Puts what the command line said into a scene's volume.
+void apply(const VolumeOptions& options, edgesplat::VolumeSource& source);
+
+/// Finds, reads and preprocesses a scene's volume (engine/scene/scene_document.h). Unless `quiet`, a load that takes
+/// longer than a second shows its progress on stderr. Throws edgesplat::Error naming the file and the reason.
+edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
+                                     const std::vector<std::filesystem::path>& folders, bool quiet);

@@ -25,13 +25,10 @@ struct Variant {
 };
 
 std::vector<Variant> variants() {
-    Settings plain, paper;
+    Settings plain;
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
-    paper.edges = EdgeEstimator::Taylor;
-    paper.footprints = FootprintMode::Warp2d;
-    paper.warp = WarpFamily::Paper;
-    return {{"plain splatting", "plain", plain}, {"the paper's own", "paper", paper}, {"ours", "ours", {}}};
+    return {{"plain splatting", "plain", plain}, {"the paper's own", "paper", papers_own()}, {"ours", "ours", {}}};
 }
 
 struct Shot {

@@ -114,8 +114,7 @@ ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const S
     result.default_milliseconds = result.tried.front().milliseconds;
     std::stable_sort(result.tried.begin(), result.tried.end(),
                      [](const TriedSettings& a, const TriedSettings& b) { return a.milliseconds < b.milliseconds; });
-    const auto good = std::find_if(result.tried.begin(), result.tried.end(),
-                                   [&](const TriedSettings& t) { return kErrorMargin * t.error <= limit.rms; });
+    const auto good = std::find_if(result.tried.begin(), result.tried.end(), good_enough);
     if (good == result.tried.end()) {
         const auto best = std::min_element(result.tried.begin(), result.tried.end(),
                                            [](const auto& a, const auto& b) { return a.error < b.error; });

@@ -83,11 +83,7 @@ std::vector<Configuration> configurations(const Settings& base, std::span<const 
     if (knobs.empty()) add_combinations(base, rows);
     for (const Preset& preset : presets())
         rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings});
-    Settings paper = base;  // what the paper did, to compare with
-    paper.edges = EdgeEstimator::Taylor;
-    paper.footprints = FootprintMode::Warp2d;
-    paper.warp = WarpFamily::Paper;
-    rows.push_back({ConfigurationKind::Preset, "paper", "", "", paper});
+    rows.push_back({ConfigurationKind::Preset, "paper", "", "", papers_own(base)});
     return rows;
 }
 

@@ -6,19 +6,16 @@
 
 #include "engine/accuracy/metrics.h"
 #include "engine/error.h"
+#include "engine/reference/direct_evaluation.h"
 #include "engine/reference/field.h"
 
 namespace edgesplat::accuracy {
 namespace {
 
 std::vector<std::pair<std::string, Settings>> variants_of(const Settings& edge) {
-    Settings plain = edge, paper = edge;
+    Settings plain = edge;
     plain.edges = EdgeEstimator::Off;
-    paper.edges = EdgeEstimator::Taylor;
-    paper.warp = WarpFamily::Paper;
-    paper.footprints = FootprintMode::Warp2d;
-    paper.edge_shape = EdgeShape::Plane;
-    return {{"plain", plain}, {"paper", paper}, {"edge", edge}};
+    return {{"plain", plain}, {"paper", papers_own(edge)}, {"edge", edge}};
 }
 
 /// The points as a volume coarser by that factor has them; a unit of the profile stays a fine voxel.
@@ -36,24 +33,6 @@ double smallest_spacing(const VolumeGeometry& geometry) {
 }
 
 }  // namespace
-
-Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
-    const glm::ivec3 dims = volume.geometry.dims;
-    if (glm::any(glm::lessThan(low, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(high, dims)) ||
-        glm::any(glm::lessThan(high - low, glm::ivec3(1))))
-        fail("crop {},{},{} to {},{},{}: expected at least 2 voxels along each axis within {} x {} x {}", low.x, low.y,
-             low.z, high.x, high.y, high.z, dims.x, dims.y, dims.z);
-    Volume result = volume;
-    result.geometry.dims = high - low + 1;
-    result.geometry.origin = volume.geometry.to_world(glm::dvec3(low));
-    result.values.clear();
-    for (int z = low.z; z <= high.z; ++z)
-        for (int y = low.y; y <= high.y; ++y)
-            for (int x = low.x; x <= high.x; ++x)
-                result.values.push_back(volume.at(x, y, z));
-    finish_volume(result);
-    return result;
-}
 
 Volume box_downsampled(const Volume& volume, int factor) {
     const glm::ivec3 dims = volume.geometry.dims / std::max(factor, 1);
@@ -158,7 +137,8 @@ class Experiment {
         full_ = render_all(request_.settings);
         for (const RenderResult& r : full_)
             report_.full.push_back(r.color);
-        const reference::PreparedVolume model(*request_.volume, request_.scene, without_tables(request_.settings));
+        const reference::PreparedVolume model(*request_.volume, request_.scene,
+                                              reference::without_tables(request_.settings));
         for (const int factor : request_.factors)
             report_.factors.push_back(measure(factor, model));
         renderer_.set_volume(request_.volume);
@@ -166,11 +146,6 @@ class Experiment {
     }
 
   private:
-    static Settings without_tables(Settings settings) {
-        settings.footprints = FootprintMode::Procedural;  // profiles need no table
-        return settings;
-    }
-
     void next(const std::string& what) {
         const Progress state{static_cast<double>(done_) / static_cast<double>(pieces_), 0, done_, pieces_, what};
         ++done_;
@@ -216,7 +191,7 @@ class Experiment {
                 variant.pictures.push_back(pictures[c].color);
             }
             variant.rmse = pooled(errors).rms;
-            const reference::PreparedVolume model(*coarse, request_.scene, without_tables(settings));
+            const reference::PreparedVolume model(*coarse, request_.scene, reference::without_tables(settings));
             variant.edges = edge_figures(model, coarser(surface.points, factor), range);
             result.variants.push_back(std::move(variant));
         }

@@ -14,10 +14,6 @@
 
 namespace edgesplat::accuracy {
 
-/// Voxels low to high, both included; positions in the world stay what they were. Throws Error unless it lies in the
-/// volume and has at least 2 voxels along each axis.
-Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high);
-
 /// Each voxel the mean of factor^3; what is left over at the upper ends is dropped. Voxel centres lie in the world
 /// where the middle of those was. Throws Error unless the factor is at least 2 and 2 voxels are left along each axis.
 Volume box_downsampled(const Volume& volume, int factor);

@@ -8,16 +8,19 @@ nlohmann::ordered_json identity_of(const ReportInput& input, const ReportOptions
     nlohmann::ordered_json materials = nlohmann::ordered_json::array();
     for (const Material& m : input.scene.materials)
         materials.push_back({m.color.x, m.color.y, m.color.z, m.extinction});
-    const Light& light = input.scene.light;
+    nlohmann::ordered_json lights = nlohmann::ordered_json::array();
+    for (const Light& light : input.scene.lights) {
+        lights.push_back(
+            {static_cast<int>(light.kind), light.direction.x, light.direction.y, light.direction.z, light.intensity});
+    }
     return {{"program", input.program},
-            {"journal", 3},
+            {"journal", 4},
             {"volume", input.volume->name},
             {"checksum", fmt::format("{:016x}", input.volume->checksum)},
             {"iso_values", input.scene.iso_values},
             {"materials", materials},
-            {"light",
-             {static_cast<int>(light.kind), light.direction.x, light.direction.y, light.direction.z, light.ambient,
-              light.diffuse}},
+            {"ambient", input.scene.ambient},
+            {"lights", lights},
             {"background", {input.scene.background.x, input.scene.background.y, input.scene.background.z}},
             {"truth", input.analytic.has_value()},
             {"base", settings_key(options.base)},

@@ -5,12 +5,28 @@
 
 namespace edgesplat::gpu {
 
-Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name)
-    : device_(&device), bytes_(std::max<std::size_t>(bytes, 16)) {
+namespace {
+
+vk::BufferCreateInfo create_info(std::size_t bytes) {
     using Usage = vk::BufferUsageFlagBits;
-    const auto usage = Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer |
-                       Usage::eIndexBuffer | Usage::eTransferSrc | Usage::eTransferDst;
-    buffer_ = vk::raii::Buffer(device.handle(), vk::BufferCreateInfo({}, bytes_, usage));
+    return {{},
+            std::max<std::size_t>(bytes, 16),
+            Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eIndexBuffer |
+                Usage::eTransferSrc | Usage::eTransferDst};
+}
+
+}  // namespace
+
+std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
+    const vk::BufferCreateInfo info = create_info(bytes);
+    return device.handle()
+        .getBufferMemoryRequirements(vk::DeviceBufferMemoryRequirements(&info))
+        .memoryRequirements.size;
+}
+
+Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name)
+    : device_(&device), name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
+    buffer_ = vk::raii::Buffer(device.handle(), create_info(bytes));
     using Memory = vk::MemoryPropertyFlagBits;
     const auto requirements = buffer_.getMemoryRequirements();
     memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
@@ -20,7 +36,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});
     allocated_ = requirements.size;
-    device.count_bytes(static_cast<std::int64_t>(allocated_));
+    device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
 }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
@@ -29,6 +45,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     device_ = std::exchange(other.device_, nullptr);
     memory_ = std::move(other.memory_);
     buffer_ = std::move(other.buffer_);
+    name_ = std::move(other.name_);
     bytes_ = std::exchange(other.bytes_, 0);
     allocated_ = std::exchange(other.allocated_, 0);
     map_ = std::exchange(other.map_, nullptr);
@@ -38,7 +55,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
-    device_->count_bytes(-static_cast<std::int64_t>(allocated_));
+    device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
     buffer_ = nullptr;
     memory_ = nullptr;
     device_ = nullptr;

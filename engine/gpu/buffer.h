@@ -23,6 +23,9 @@ class Buffer {
     Buffer(const Buffer&) = delete;
     Buffer& operator=(const Buffer&) = delete;
 
+    /// What a buffer of that size takes of the device's memory.
+    static std::uint64_t required_bytes(const Device& device, std::size_t bytes);
+
     vk::Buffer handle() const { return *buffer_; }
     std::size_t bytes() const { return bytes_; }
     shader::Address address() const { return address_; }
@@ -39,6 +42,7 @@ class Buffer {
     const Device* device_ = nullptr;
     vk::raii::DeviceMemory memory_ = nullptr;
     vk::raii::Buffer buffer_ = nullptr;
+    std::string name_;
     std::size_t bytes_ = 0, allocated_ = 0;
     void* map_ = nullptr;
     std::uint64_t address_ = 0;

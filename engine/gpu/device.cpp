@@ -212,21 +212,63 @@ Device::Device(const DeviceChoice& choice) {
     device_ = vk::raii::Device(physical_, device_info);
     queue_ = device_.getQueue(queue_family_, 0);
     memory_ = physical_.getMemoryProperties();
+    const auto extensions = physical_.enumerateDeviceExtensionProperties();
+    has_memory_budget_ = std::ranges::any_of(extensions, [](const vk::ExtensionProperties& e) {
+        return std::string_view(e.extensionName.data()) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
+    });
+}
+
+void Device::count_bytes(const std::string& name, std::int64_t change) const {
+    for (Allocation* counted : {&(*allocations_)[name], &(*allocations_)[kTotal]}) {
+        counted->bytes += static_cast<std::uint64_t>(change);
+        counted->peak = std::max(counted->peak, counted->bytes);
+    }
+}
+
+void Device::forget_peaks() const {
+    std::erase_if(*allocations_, [](const auto& entry) { return entry.second.bytes == 0 && entry.first != kTotal; });
+    for (auto& [name, allocation] : *allocations_)
+        allocation.peak = allocation.bytes;
+}
+
+std::optional<std::uint32_t> Device::memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags wanted,
+                                                 vk::MemoryPropertyFlags needed) const {
+    for (const auto flags : {wanted | needed, needed}) {
+        for (std::uint32_t i = 0; i < memory_.memoryTypeCount; ++i) {
+            if ((allowed >> i & 1U) != 0 && (memory_.memoryTypes[i].propertyFlags & flags) == flags) return i;
+        }
+    }
+    return std::nullopt;
+}
+
+std::uint32_t Device::heap_of(bool host) const {
+    using Memory = vk::MemoryPropertyFlagBits;
+    const auto type = host ? memory_type(~0U, Memory::eHostCached, Memory::eHostVisible | Memory::eHostCoherent)
+                           : memory_type(~0U, Memory::eDeviceLocal, {});
+    return memory_.memoryTypes[type.value_or(0)].heapIndex;
+}
+
+std::uint64_t Device::free_bytes(std::uint32_t heap) const {
+    if (has_memory_budget_) {
+        const auto chain = physical_.getMemoryProperties2<vk::PhysicalDeviceMemoryProperties2,
+                                                          vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
+        const auto& budget = chain.get<vk::PhysicalDeviceMemoryBudgetPropertiesEXT>();
+        return budget.heapBudget[heap] - std::min(budget.heapBudget[heap], budget.heapUsage[heap]);
+    }
+    return memory_.memoryHeaps[heap].size - std::min<std::uint64_t>(memory_.memoryHeaps[heap].size, allocated_bytes());
+}
+
+std::uint64_t Device::largest_allocation() const {
+    const auto limits =
+        physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
+    return limits.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
 }
 
 vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags wanted,
                                         vk::MemoryPropertyFlags needed, bool device_address, const char* name) const {
-    std::optional<std::uint32_t> type;
-    for (const auto flags : {wanted | needed, needed}) {
-        for (std::uint32_t i = 0; i < memory_.memoryTypeCount && !type; ++i) {
-            const bool allowed = (requirements.memoryTypeBits >> i & 1U) != 0;
-            if (allowed && (memory_.memoryTypes[i].propertyFlags & flags) == flags) type = i;
-        }
-    }
+    const auto type = memory_type(requirements.memoryTypeBits, wanted, needed);
     if (!type) fail("{}: the device {} has no memory of the kind it needs", name, info_.name);
-    const auto limits =
-        physical_.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceMaintenance3Properties>();
-    const auto most = limits.get<vk::PhysicalDeviceMaintenance3Properties>().maxMemoryAllocationSize;
+    const auto most = largest_allocation();
     if (requirements.size > most) {
         fail("{} needs {} MiB of device memory in one piece; {} allows {} MiB", name, requirements.size >> 20U,
              info_.name, most >> 20U);

@@ -3,7 +3,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -14,6 +17,12 @@ namespace edgesplat::gpu {
 /// What validation said so far. Lives at a fixed address, since the driver keeps a pointer to it.
 struct ValidationLog {
     std::atomic<std::uint64_t> messages{0};
+};
+
+/// Device memory held under one name, by buffers and images.
+struct Allocation {
+    std::uint64_t bytes = 0;  ///< held now
+    std::uint64_t peak = 0;   ///< most that was held since Device::forget_peaks
 };
 
 /// An instance of Vulkan 1.3, with the Khronos validation layer and synchronization validation on request.
@@ -38,17 +47,36 @@ class Device {
     bool is_software() const { return software_; }
     std::uint64_t validation_messages() const { return log_->messages; }
     /// Bytes of device memory held now by buffers and images.
-    std::uint64_t allocated_bytes() const { return *allocated_; }
+    std::uint64_t allocated_bytes() const { return allocations_->at(kTotal).bytes; }
+    /// The most that was held at once since forget_peaks.
+    std::uint64_t peak_bytes() const { return allocations_->at(kTotal).peak; }
+    /// By the name that buffers and images were made with; the empty name holds the total.
+    const std::map<std::string, Allocation>& allocations() const { return *allocations_; }
+    /// From now on peaks count anew, and names that hold nothing are gone.
+    void forget_peaks() const;
+
+    /// The memory heap that buffers mapped by the host come from, or those that are not and images.
+    std::uint32_t heap_of(bool host) const;
+    /// What can still be allocated from a heap: what the driver says (VK_EXT_memory_budget), else the heap's size less
+    /// what is held here.
+    std::uint64_t free_bytes(std::uint32_t heap) const;
+    /// The most that one allocation may take.
+    std::uint64_t largest_allocation() const;
 
     /// Memory for `requirements` of the first type that has all of `wanted`, else all of `needed`.
     /// Throws Error with the numbers when it is not to be had.
     vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags wanted,
                                     vk::MemoryPropertyFlags needed, bool device_address, const char* name) const;
-    void count_bytes(std::int64_t change) const { *allocated_ += static_cast<std::uint64_t>(change); }
+    void count_bytes(const std::string& name, std::int64_t change) const;
 
   private:
+    std::optional<std::uint32_t> memory_type(std::uint32_t allowed, vk::MemoryPropertyFlags wanted,
+                                             vk::MemoryPropertyFlags needed) const;
     std::unique_ptr<ValidationLog> log_ = std::make_unique<ValidationLog>();
-    std::unique_ptr<std::uint64_t> allocated_ = std::make_unique<std::uint64_t>(0);
+    static constexpr const char* kTotal = "";
+    // At a fixed address, since buffers and images outlive moves of the device.
+    std::unique_ptr<std::map<std::string, Allocation>> allocations_ =
+        std::make_unique<std::map<std::string, Allocation>>(std::map<std::string, Allocation>{{kTotal, {}}});
     vk::raii::Context context_;
     vk::raii::Instance instance_ = nullptr;
     vk::raii::DebugUtilsMessengerEXT messenger_ = nullptr;
@@ -59,7 +87,7 @@ class Device {
     DeviceInfo info_;
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
-    bool software_ = false;
+    bool software_ = false, has_memory_budget_ = false;
 };
 
 }  // namespace edgesplat::gpu

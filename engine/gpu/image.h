@@ -17,6 +17,12 @@ struct ImageShape {
     vk::ImageUsageFlags usage;
 };
 
+/// What such an image takes of the device's memory. It must not be beyond_limits().
+std::uint64_t required_bytes(const Device& device, const ImageShape& shape);
+
+/// Which of the device's limits the shape is beyond, with the numbers; empty: none.
+std::string beyond_limits(const Device& device, const ImageShape& shape);
+
 class GpuImage {
   public:
     GpuImage() = default;
@@ -41,6 +47,7 @@ class GpuImage {
     vk::raii::Image image_ = nullptr;
     vk::raii::ImageView view_ = nullptr;
     ImageShape shape_{};
+    std::string name_;
     std::uint64_t allocated_ = 0;
 };
 

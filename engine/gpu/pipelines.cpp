@@ -67,23 +67,38 @@ vk::raii::ShaderModule Pipelines::load(const char* shader) const {
     return {device_->handle(), vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data())};
 }
 
+vk::Pipeline Pipelines::use(Made& made) {
+    made.used = true;
+    return *made.pipeline;
+}
+
+std::vector<PipelineVariant> Pipelines::used() const {
+    std::vector<PipelineVariant> variants;
+    for (const auto& [key, made] : made_)
+        if (made.used) variants.push_back(made.variant);
+    return variants;
+}
+
+void Pipelines::forget_used() {
+    for (auto& [key, made] : made_)
+        made.used = false;
+}
+
 vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
     const std::string key = key_of(shader, constants);
-    if (const auto found = made_.find(key); found != made_.end()) return *found->second;
+    if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
     const auto module = load(shader);
     const SpecializationData data(constants);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
-    return *made_
-                .emplace(key, vk::raii::Pipeline(device_->handle(), nullptr,
-                                                 vk::ComputePipelineCreateInfo({}, stage, *layout_)))
-                .first->second;
+    vk::raii::Pipeline made(device_->handle(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    return use(made_.emplace(key, Made{std::move(made), {{shader}, constants}}).first->second);
 }
 
 vk::Pipeline Pipelines::draw(const DrawState& state) {
     const std::string key = key_of(state.fragment, state.constants) +
                             fmt::format(" {} {} {} {}", state.vertex, vk::to_string(state.color),
                                         vk::to_string(state.depth), static_cast<int>(state.blend));
-    if (const auto found = made_.find(key); found != made_.end()) return *found->second;
+    if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
 
     const auto vertex = load(state.vertex), fragment = load(state.fragment);
     const SpecializationData data(state.constants);
@@ -114,7 +129,8 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
     vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples,
                                         &depth, &blend, &dynamic, *layout_);
     info.pNext = &rendering;
-    return *made_.emplace(key, vk::raii::Pipeline(device_->handle(), nullptr, info)).first->second;
+    Made made{vk::raii::Pipeline(device_->handle(), nullptr, info), {{state.vertex, state.fragment}, state.constants}};
+    return use(made_.emplace(key, std::move(made)).first->second);
 }
 
 }  // namespace edgesplat::gpu

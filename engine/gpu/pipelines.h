@@ -26,12 +26,22 @@ struct DrawState {
     enum class Depth { Write, TestLess } depth_use = Depth::Write;
 };
 
+/// A pipeline by what it is made of.
+struct PipelineVariant {
+    std::vector<const char*> shaders;  ///< names, one a stage
+    Specialization constants;          ///< of all of them
+};
+
 class Pipelines {
   public:
     explicit Pipelines(const Device& device);
 
     vk::Pipeline compute(const char* shader, const Specialization& constants);
     vk::Pipeline draw(const DrawState& state);
+    /// Every variant that was asked for since forget_used.
+    std::vector<PipelineVariant> used() const;
+    void forget_used();
+
     vk::PipelineLayout layout() const { return *layout_; }
     vk::DescriptorSetLayout set_layout() const { return *set_layout_; }
 
@@ -40,7 +50,13 @@ class Pipelines {
     const Device* device_;
     vk::raii::DescriptorSetLayout set_layout_ = nullptr;
     vk::raii::PipelineLayout layout_ = nullptr;
-    std::map<std::string, vk::raii::Pipeline> made_;
+    struct Made {
+        vk::raii::Pipeline pipeline;
+        PipelineVariant variant;
+        bool used = true;
+    };
+    static vk::Pipeline use(Made& made);
+    std::map<std::string, Made> made_;
 };
 
 }  // namespace edgesplat::gpu

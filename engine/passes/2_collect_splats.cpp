@@ -4,17 +4,19 @@ namespace edgesplat::passes {
 namespace {
 
 void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool write) {
-    const gpu::Specialization constants{{shader::SPEC_EDGES, in.edges ? 1 : 0},
-                                        {shader::SPEC_BURIED, in.buried ? 1 : 0},
-                                        {shader::SPEC_SMOOTH, in.smooth ? 1 : 0},
-                                        {shader::SPEC_CURVED, in.curved ? 1 : 0},
-                                        {shader::SPEC_WEIGHTED, in.weighted ? 1 : 0}};
-    commands.dispatch("2_collect_splats.comp", constants, {in.scene, write ? 1U : 0U, 0},
+    commands.dispatch("2_collect_splats.comp", collect_constants(in), {in.scene, write ? 1U : 0U, 0},
                       gpu::groups_for(collect_runs(in.dims), 64));
     commands.barrier();
 }
 
 }  // namespace
+
+gpu::Specialization collect_constants(const CollectSplats& in) {
+    return {{shader::SPEC_EDGES, in.edges ? 1 : 0},       {shader::SPEC_BURIED, in.buried ? 1 : 0},
+            {shader::SPEC_SMOOTH, in.smooth ? 1 : 0},     {shader::SPEC_CURVED, in.curved ? 1 : 0},
+            {shader::SPEC_WEIGHTED, in.weighted ? 1 : 0}, {shader::SPEC_CLIP_KEEP, in.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, in.clip.remove},   {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
+}
 
 std::uint64_t collect_runs(const glm::ivec3& dims) {
     const glm::u64vec3 n(dims);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
+#include "engine/passes/clip_count.h"
 
 namespace edgesplat::passes {
 
@@ -13,7 +14,12 @@ struct CollectSplats {
     bool smooth = true;     ///< edge distances are smoothed along the surface (`march`, `cubic`)
     bool curved = false;    ///< the curvature of each splat's edge is wanted
     bool weighted = false;  ///< the weight of each splat's kernel is wanted
+    ClipCount clip{};       ///< voxels whose kernels are cut away whole are dropped
+    bool transfer = false;  ///< splats are classified by a transfer function
 };
+
+/// Specialization of 2_collect_splats.comp.
+gpu::Specialization collect_constants(const CollectSplats& in);
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
 std::uint64_t collect_runs(const glm::ivec3& dims);

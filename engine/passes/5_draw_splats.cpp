@@ -11,6 +11,27 @@ std::vector<std::uint32_t> quad_indices() {
     return indices;
 }
 
+gpu::Specialization draw_constants(const DrawVariant& variant) {
+    return {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
+            {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
+            {shader::SPEC_LIGHT, variant.lights},
+            {shader::SPEC_PAYLOAD, variant.payload},
+            {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
+            {shader::SPEC_CURVED, variant.curved ? 1U : 0U},
+            {shader::SPEC_WEIGHTED, variant.weighted ? 1U : 0U},
+            {shader::SPEC_NODES, variant.nodes},
+            {shader::SPEC_TRANSFER, variant.transfer ? 1U : 0U},
+            {shader::SPEC_RESPONSE, variant.response ? 1U : 0U},
+            {shader::SPEC_GLOSS, variant.gloss ? 1U : 0U},
+            {shader::SPEC_LIT_EDGES, variant.lit_edges ? 1U : 0U},
+            {shader::SPEC_SILHOUETTE, variant.silhouette ? 1U : 0U},
+            {shader::SPEC_FOG, variant.fog ? 1U : 0U},
+            {shader::SPEC_OCCLUSION, variant.occlusion ? 1U : 0U},
+            {shader::SPEC_SHADOWS, variant.shadows},
+            {shader::SPEC_CLIP_KEEP, variant.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, variant.clip.remove}};
+}
+
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group) {
     const auto& target = in.sheets.shape();
     const vk::Rect2D area({0, 0},
@@ -35,14 +56,7 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
     raw.draw(4, layers, 0, 0);
     commands.bind_draw({.vertex = "5b_draw_splats.vert",
                         .fragment = "5b_draw_splats.frag",
-                        .constants = {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(in.variant.footprints)},
-                                      {shader::SPEC_WARP, static_cast<std::uint32_t>(in.variant.warp)},
-                                      {shader::SPEC_LIGHT, static_cast<std::uint32_t>(in.variant.light)},
-                                      {shader::SPEC_PAYLOAD, in.variant.payload},
-                                      {shader::SPEC_SLICED, in.variant.sliced ? 1U : 0U},
-                                      {shader::SPEC_CURVED, in.variant.curved ? 1U : 0U},
-                                      {shader::SPEC_WEIGHTED, in.variant.weighted ? 1U : 0U},
-                                      {shader::SPEC_NODES, in.variant.nodes}},
+                        .constants = draw_constants(in.variant),
                         .color = target.format,
                         .depth = in.depth.shape().format,
                         .blend = gpu::DrawState::Blend::Add,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
+#include "engine/passes/clip_count.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
 
@@ -11,13 +12,25 @@ namespace edgesplat::passes {
 struct DrawVariant {
     FootprintMode footprints;
     WarpFamily warp;
-    Light::Kind light;
+    std::uint32_t lights = 0;   ///< how many
     std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
     bool sliced = false;        ///< kernels are cut at the sheets' planes
     bool curved = false;        ///< edges are spheres of their curvature
     bool weighted = false;      ///< kernels are normalised
+    bool occlusion = false;     ///< ambient light is what 2b_occlude_ambient left of it
+    std::uint32_t shadows = 0;  ///< lights with shadows
     std::uint32_t nodes = 10;   ///< quadrature nodes of a piece of a footprint: 4, 10 or 16
+    bool transfer = false;      ///< colour and extinction by a transfer function
+    bool response = false;      ///< materials answer to light each in its own way
+    bool gloss = false;         ///< some have highlights
+    bool lit_edges = false;     ///< splats without an edge count as without normal
+    bool silhouette = false;
+    bool fog = false;
+    ClipCount clip{};  ///< kernels are cut at planes
 };
+
+/// Specialization of 5b_draw_splats.vert and .frag.
+gpu::Specialization draw_constants(const DrawVariant& variant);
 
 struct DrawSplats {
     shader::Address frame;

@@ -21,7 +21,7 @@ void classify_bricks(gpu::Commands& commands, shader::Address block, const glm::
 }
 
 void cast_rays(gpu::Commands& commands, shader::Address block, const RaycastVariant& variant, const glm::ivec2& size) {
-    const gpu::Specialization constants{{shader::SPEC_LIGHT, static_cast<std::uint32_t>(variant.light)},
+    const gpu::Specialization constants{{shader::SPEC_RAY_LIGHT, variant.light},
                                         {shader::SPEC_ISO_COUNT, variant.iso_count},
                                         {shader::SPEC_SKIP, variant.skip_empty ? 1 : 0},
                                         {shader::SPEC_EDGES, variant.edges ? 1 : 0}};

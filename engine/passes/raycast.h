@@ -15,7 +15,7 @@ void classify_bricks(gpu::Commands& commands, shader::Address block, const glm::
 
 /// Pipeline variant of the ray caster: every member is a specialization constant.
 struct RaycastVariant {
-    Light::Kind light = Light::Kind::Headlight;
+    std::uint32_t light = 1;  ///< light_code()
     std::uint32_t iso_count = 1;
     bool warped = false;     ///< materials are looked up at warped positions
     bool edges = false;      ///< the edge field exists

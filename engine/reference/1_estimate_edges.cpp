@@ -323,10 +323,6 @@ std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& sce
     return edges;
 }
 
-double most_curved(const Settings& settings) {
-    return std::min(0.5, 0.9 / settings.edge_half_width);
-}
-
 VoxelEdge quantise(const VoxelEdge& edge) {
     VoxelEdge stored = edge;
     if (edge.has_normal) stored.n = through_octahedron(edge.n);

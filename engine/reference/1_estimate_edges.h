@@ -47,9 +47,6 @@ std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene
 std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                       bool quantised = false);
 
-/// The largest curvature that is drawn: the band must not reach a sphere's centre.
-double most_curved(const Settings& settings);
-
 /// The edge after its way through the 64 stored bits.
 VoxelEdge quantise(const VoxelEdge& edge);
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/reference/1_estimate_edges.h"
@@ -13,6 +14,14 @@ struct SplatRecord {
     std::uint32_t voxel = 0;     ///< linear index, x fastest
     std::uint32_t material = 0;  ///< index into Scene::materials
     VoxelEdge edge;
+    std::optional<TransferPoint>
+        classified{};  ///< with a transfer function: what it has there, in place of the material
+    double extinction(const Scene& scene) const {
+        return classified ? classified->extinction : scene.materials[material].extinction;
+    }
+    glm::dvec3 color(const Scene& scene) const {
+        return classified ? classified->color : scene.materials[material].color;
+    }
 };
 
 /// How far around a voxel everything must be opaque for it to be buried, per scene and grid; nothing where no voxel
@@ -23,11 +32,17 @@ struct BuryRule {
 };
 std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geometry, const Settings& settings);
 
-/// The visible voxels in ascending linear order. `edges` has one entry per voxel; `eye` is in world mm; with `for_tau`
-/// nothing is buried.
+/// What each voxel is classified by (two-sided classification): its sample, or where an edge is nearer than a voxel the
+/// value a voxel further on its own side. Edges as estimated, before step 5.
+std::vector<double> classified_values(const Field& field, const ScaledScene& scaled,
+                                      const std::vector<VoxelEdge>& edges);
+
+/// The visible voxels in ascending linear order. `edges` has one entry per voxel, `values` likewise with a transfer
+/// function (classified_values); `eye` is in world mm; with `for_tau` nothing is buried. What the scene's clip planes
+/// cut away hides nothing; where something may be buried, it is left out.
 std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& scaled,
                                         const std::vector<VoxelEdge>& edges, const Scene& scene,
                                         const VolumeGeometry& geometry, const Settings& settings, const glm::dvec3& eye,
-                                        bool for_tau = false);
+                                        bool for_tau = false, std::span<const double> values = {});
 
 }  // namespace edgesplat::reference

@@ -102,7 +102,7 @@ int first_sheet(std::span<const SplatRecord> records, const Field& field, const 
 }
 
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
-                                        const Settings& settings, const Footprints& footprints) {
+                                        const Settings& settings, const Footprints& footprints, const IndexClip& clip) {
     std::vector<Selected> selected(records.size());
     if (records.empty()) return selected;
     const double thickness = sheet_thickness(view, settings);
@@ -120,7 +120,7 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const bool sliced = settings.sheets == SheetCut::Sliced;
         s.sheet = sliced ? std::max(sheet_of(middle - extent), 0) : sheet_of(s.z);
         s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
-        s.kept = middle > -extent && !s.box.empty();
+        s.kept = middle > -extent && !s.box.empty() && !clip.cuts_away(s.support.center, s.support.radius);
     }
     return selected;
 }

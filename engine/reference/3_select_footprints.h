@@ -7,6 +7,7 @@
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/footprints.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/clip_planes.h"
 
 namespace edgesplat::reference {
 
@@ -58,8 +59,9 @@ double sheet_thickness(const View& view, const Settings& settings);
 int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
                 const Footprints& footprints);
 
-/// One entry per record.
+/// One entry per record. What `clip` (index space) cuts away whole is not kept.
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
-                                        const Settings& settings, const Footprints& footprints);
+                                        const Settings& settings, const Footprints& footprints,
+                                        const IndexClip& clip = {});
 
 }  // namespace edgesplat::reference

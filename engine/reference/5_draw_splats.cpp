@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
@@ -22,19 +23,9 @@ double in_front(double s0) {
 
 }  // namespace
 
-double light_on(const Light& light, const VolumeGeometry& geometry, const glm::dvec3& n_index,
-                const glm::dvec3& position, const glm::dvec3& eye) {
-    if (light.kind == Light::Kind::None) return 1;
-    if (n_index == glm::dvec3(0)) return light.ambient + light.diffuse / 2;
-    const glm::dvec3 towards = light.kind == Light::Kind::Headlight ? eye - position : light.direction;
-    const double length = glm::length(towards);
-    // A voxel centre exactly at the eye: every direction is as good.
-    const double facing = length > 0 ? glm::dot(world_normal(geometry, n_index), towards / length) : 1.0;
-    return light.ambient + light.diffuse * std::max(facing, 0.0);
-}
-
 glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
-                      const Settings& settings, Payload payload) {
+                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut,
+                      const Reach& reach) {
     const VoxelEdge& edge = record.edge;
     const glm::dvec3 x(field.voxel(record.voxel));
     // A surface faces its lower values, whichever side of it the splat is on.
@@ -44,19 +35,52 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     if (wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0) {
         n = -n;
     }
+    const glm::dvec3 normal = edge.has_normal ? world_normal(view.geometry, n) : n;
+    const double depth = cut ? std::clamp(view.depth(x), cut->near, cut->far) : view.depth(x);
     switch (payload) {
-        case Payload::Color:
-            return scene.materials[record.material].color *
-                   light_on(scene.light, view.geometry, n, view.geometry.to_world(x), view.frame.eye);
+        case Payload::Color: {
+            const Material& material = scene.materials[record.material];
+            const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
+            return shade(scene,
+                         {.color = record.color(scene),
+                          .response = material.response,
+                          .normal = unlit ? glm::dvec3(0) : normal,
+                          .position = view.geometry.to_world(x),
+                          .depth = depth},
+                         view.frame.eye, reach);
+        }
         case Payload::Depth:
-            return {view.depth(x), 0, 0};
+            return {depth, 0, 0};
         case Payload::Distance:
             if (!edge.has_edge) return {-(kKernelRadius + settings.edge_half_width), 0, 0};
             return {edge.upper ? edge.D : -edge.D, 0, 0};
         case Payload::Normal:
             break;
     }
-    return edge.has_normal ? world_normal(view.geometry, n) : glm::dvec3(0);
+    return normal;
+}
+
+glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
+                       const Scene& scene, const View& view, Payload payload) {
+    switch (payload) {
+        case Payload::Color: {
+            const Material& material = scene.materials[number];
+            return shade(scene,
+                         {.color = material.color,
+                          .response = material.response,
+                          .normal = world_normal(view.geometry, face),
+                          .position = view.geometry.to_world(entry),
+                          .depth = view.depth(entry)},
+                         view.frame.eye);
+        }
+        case Payload::Depth:
+            return {view.depth(entry), 0, 0};
+        case Payload::Distance:
+            return own;
+        case Payload::Normal:
+            break;
+    }
+    return world_normal(view.geometry, face);
 }
 
 SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,
@@ -67,7 +91,8 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
       scene_(scene),
       view_(view),
       settings_(settings),
-      footprints_(footprints) {
+      footprints_(footprints),
+      clip_(index_clip(scene.effects.clip, view.geometry)) {
     rays_.reserve(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height));
     for (int y = 0; y < view.height; ++y) {
         for (int x = 0; x < view.width; ++x) {
@@ -87,13 +112,40 @@ double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<D
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
-        return scene_.materials[record.material].extinction * ray.w *
-               footprints_.along_slice(record.edge, s0 * u - v, u, slice);
+        return record.extinction(scene_) * ray.w * footprints_.along_slice(record.edge, s0 * u - v, u, slice);
     }
     const double share = in_front(s0);
     if (!(share > 0)) return 0;
     const glm::dvec3 p = s0 * u - v;
-    return scene_.materials[record.material].extinction * ray.w * share * footprints_.along_ray(record.edge, p, u);
+    return record.extinction(scene_) * ray.w * share * footprints_.along_ray(record.edge, p, u);
+}
+
+glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
+                                     const std::optional<DepthRange>& cut) const {
+    if (clip_.empty()) return tau(splat, x, y, cut) * glm::dvec4(own, 1);
+    const SplatRecord& record = records_[splat];
+    const glm::dvec4& ray =
+        rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
+    const glm::dvec3 u(ray), center(field_.voxel(record.voxel));
+    const double s0 = glm::dot(center - view_.eye_index, u);
+    const glm::dvec3 p = view_.eye_index + s0 * u - center;
+    Slice slice{-s0, std::numeric_limits<double>::infinity()};
+    if (cut) {
+        const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
+        slice = {std::max(cut->near / depth_along - s0, -s0), cut->far / depth_along - s0};
+    }
+    glm::dvec4 sum(0);
+    for (const KeptPiece& piece : clip_.kept_along(center + p, u)) {
+        const Slice kept{std::max(piece.first, slice.low), std::min(piece.last, slice.high)};
+        if (piece.empty() || !(kept.low < kept.high)) continue;
+        glm::dvec3 quantity = own;
+        const glm::dvec3 entry = p + piece.first * u;
+        if (piece.face && piece.first > -s0 && footprints_.in_matter(record.edge, entry)) {
+            quantity = cap_payload(record.material, own, *piece.face, center + entry, scene_, view_, payload);
+        }
+        sum += footprints_.along_slice(record.edge, p, u, kept) * glm::dvec4(quantity, 1);
+    }
+    return scene_.materials[record.material].extinction * ray.w * sum;
 }
 
 void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,
@@ -101,9 +153,7 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
     std::vector<glm::dvec3> quantities;
     quantities.reserve(splats.size());
     for (const std::uint32_t i : splats) {
-        glm::dvec3 quantity = payload_of(records_[i], field_, scene_, view_, settings_, payload);
-        if (cut && payload == Payload::Depth) quantity.x = std::clamp(quantity.x, cut->near, cut->far);
-        quantities.push_back(quantity);
+        quantities.push_back(payload_of(records_[i], field_, scene_, view_, settings_, payload, cut));
     }
     // Rows in parallel: every pixel adds its splats in the list's order, however the rows are shared out.
     parallel_for(view_.height, [&](int begin, int end) {
@@ -114,8 +164,8 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
                     const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) +
                                            static_cast<std::size_t>(x);
                     if (!closed.empty() && closed[at] != 0) continue;
-                    const double t = tau(splats[k], x, y, cut);
-                    if (t > 0) sheet[at] += t * glm::dvec4(quantities[k], 1);
+                    const glm::dvec4 added = contribution(splats[k], x, y, quantities[k], payload, cut);
+                    if (added.w > 0) sheet[at] += added;
                 }
             }
         }

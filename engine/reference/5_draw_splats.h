@@ -7,27 +7,31 @@
 
 #include "engine/reference/3_select_footprints.h"
 #include "engine/reference/footprints.h"
+#include "engine/reference/shading.h"
+#include "engine/scene/clip_planes.h"
 
 namespace edgesplat::reference {
 
 /// What stands in the place of colour.
 enum class Payload { Color, Depth, Distance, Normal };
 
-/// Light on one splat, before its material's colour. `n_index` is the splat's normal in index space, 0 for none;
-/// `position` is the voxel centre in world mm.
-double light_on(const Light& light, const VolumeGeometry& geometry, const glm::dvec3& n_index,
-                const glm::dvec3& position, const glm::dvec3& eye);
-
-/// The quantity a splat carries: lit colour (linear), z in mm (first component), signed distance to the edge in voxels
-/// (first component, negative inside) or unit world normal.
-glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
-                      const Settings& settings, Payload payload);
+/// What stands in the place of a splat of material `number` where a ray enters its matter at `entry` (index space) by a
+/// clip plane: colour lit by the cut's normal, depth of the entry, the cut's normal. `face` is that normal in index
+/// space, `own` payload_of the splat.
+glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
+                       const Scene& scene, const View& view, Payload payload);
 
 /// Depths, mm along the view axis from the eye, that a kernel is cut to.
 struct DepthRange {
     double near = 0;
     double far = 0;
 };
+
+/// The quantity a splat carries: lit colour (linear), z in mm (first component), signed distance to the edge in voxels
+/// (first component, negative inside) or unit world normal. Depths are moved into `cut`.
+glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
+                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut = {},
+                      const Reach& reach = {});
 
 /// Everything the sheets of a frame have in common. Referenced objects must outlive it.
 class SplatDrawer {
@@ -44,6 +48,10 @@ class SplatDrawer {
     double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;
 
   private:
+    /// tau times the quantity, and tau; `own` is the splat's quantity where no cut shows.
+    glm::dvec4 contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
+                            const std::optional<DepthRange>& cut) const;
+
     std::span<const SplatRecord> records_;
     std::span<const Selected> selected_;
     const Field& field_;
@@ -51,6 +59,7 @@ class SplatDrawer {
     const View& view_;
     const Settings& settings_;
     const Footprints& footprints_;
+    IndexClip clip_;
     std::vector<glm::dvec4> rays_;  ///< per pixel: unit direction in index space, mm per voxel along it
 };
 

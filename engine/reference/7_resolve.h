@@ -2,14 +2,17 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <span>
 
 #include "engine/image.h"
 
 namespace edgesplat::reference {
 
-/// RGBA, background blended in; alpha is the volume's own opacity.
-Image resolve_color(std::span<const glm::dvec4> frame, int width, int height, const glm::dvec3& background);
+/// RGBA, background blended in; alpha is the volume's own opacity. With `top` the background goes from `background` in
+/// the bottom row to it in the top row.
+Image resolve_color(std::span<const glm::dvec4> frame, int width, int height, const glm::dvec3& background,
+                    const std::optional<glm::dvec3>& top = {});
 
 /// Opacity-weighted mean of the first component, 1 channel; 0 where nothing was hit.
 Image resolve_mean(std::span<const glm::dvec4> frame, int width, int height);

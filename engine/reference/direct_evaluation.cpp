@@ -15,8 +15,15 @@ constexpr double kPanel = 0.5;  ///< voxels: the coarsest panels, and how far sp
 /// Integrates one ray after the other; one per row.
 class RayWalker {
   public:
-    RayWalker(const SplatCloud& cloud, const Footprints& footprints, double tolerance, bool tau_only)
-        : cloud_(cloud), footprints_(footprints), tolerance_(tolerance), tau_only_(tau_only) {}
+    RayWalker(const SplatCloud& cloud, const Footprints& footprints, const Scene& scene, const View& view,
+              double tolerance, bool tau_only)
+        : cloud_(cloud),
+          footprints_(footprints),
+          scene_(scene),
+          view_(view),
+          clip_(index_clip(scene.effects.clip, view.geometry)),
+          tolerance_(tolerance),
+          tau_only_(tau_only) {}
 
     /// `mm_per_voxel` along the unit direction u; both in index space.
     RaySum walk(const glm::dvec3& eye, const glm::dvec3& u, double mm_per_voxel) {
@@ -32,31 +39,35 @@ class RayWalker {
         const auto density = [&](double t) {
             const glm::dvec3 p = origin + t * u;
             Density at;
-            for (const ModelSplat* splat : active_) {
+            for (std::size_t i = 0; i < active_.size(); ++i) {
+                const ModelSplat* splat = active_[i];
                 const glm::dvec3 d = p - splat->support_center;
                 if (glm::dot(d, d) >= splat->support_radius * splat->support_radius) continue;
                 const double h = mm_per_voxel * footprints_.at_point(*splat->edge, p - splat->center);
                 at.extinction += h * splat->extinction;
-                at.emission += h * splat->emission;
+                at.emission += h * emission_[i];
             }
             return at;
         };
         PanelIntegrator integrator(density, accuracy, sum);
-        for (double t = 0; t < length;) {
-            const double empty = cloud_.empty_around(origin + t * u);
-            if (empty > 0) {
-                t += std::max(empty, 1e-3);
-                continue;
-            }
-            const double step = std::min(kPanel, length - t);
-            cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
-            if (!active_.empty()) integrator.add(t, step);
-            t += kPanel;
-            if (!tau_only_ && sum.transmittance < cut) {
-                sum.error += sum.transmittance;  // whatever stands behind
-                break;
+        for (const KeptPiece& piece : clip_.kept_along(origin, u)) {
+            const double last = std::min(piece.last, length);
+            // A cut is seen from outside only.
+            const bool cut_seen = piece.face && piece.first > -begin;
+            for (double t = std::max(piece.first, 0.0); t < last && (tau_only_ || sum.transmittance >= cut);) {
+                const double empty = cloud_.empty_around(origin + t * u);
+                if (empty > 0) {
+                    t += std::max(empty, 1e-3);
+                    continue;
+                }
+                const double step = std::min(kPanel, last - t);
+                cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
+                light(cut_seen ? piece.face : std::nullopt, origin + piece.first * u);
+                if (!active_.empty()) integrator.add(t, step);
+                t += kPanel;
             }
         }
+        if (!tau_only_ && sum.transmittance < cut) sum.error += sum.transmittance;  // whatever stands behind
         if (tau_only_) {
             sum.error /= std::max(sum.tau, 1.0);
             sum.color = glm::dvec3(0);
@@ -65,18 +76,32 @@ class RayWalker {
     }
 
   private:
+    /// What the gathered splats emit along a piece that begins in a cut, if any, at `entry`.
+    void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry) {
+        emission_.clear();
+        for (const ModelSplat* splat : active_) {
+            const bool shows_cut = face && footprints_.in_matter(*splat->edge, entry - splat->center);
+            emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->material, glm::dvec3(0), *face,
+                                                                            entry, scene_, view_, Payload::Color)
+                                          : splat->emission);
+        }
+    }
+
     const SplatCloud& cloud_;
     const Footprints& footprints_;
+    const Scene& scene_;
+    const View& view_;
+    IndexClip clip_;
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
+    std::vector<glm::dvec3> emission_;  ///< of each active splat
 };
 
 }  // namespace
 
 Settings without_tables(Settings settings) {
-    const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
-    if (tabled) settings.footprints = FootprintMode::Procedural;
+    if (asks_for_table(settings)) settings.footprints = FootprintMode::Procedural;
     return settings;
 }
 
@@ -98,14 +123,15 @@ DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& cam
 
     const RayValue value = output == Output::Tau ? RayValue::Tau : RayValue::Opacity;
     const RayFrame frame = trace_rays(width, height, value, options.progress, [&]() -> RayTracer {
-        return
-            [&, walker = RayWalker(cloud, footprints, options.tolerance, output == Output::Tau)](int x, int y) mutable {
-                const glm::dvec3 u = view.ray(x, y);
-                return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
-            };
+        return [&, walker = RayWalker(cloud, footprints, prepared.scene(), view, options.tolerance,
+                                      output == Output::Tau)](int x, int y) mutable {
+            const glm::dvec3 u = view.ray(x, y);
+            return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
+        };
     });
     return {output == Output::Tau ? resolve_sum(frame.pixels, width, height)
-                                  : resolve_color(frame.pixels, width, height, prepared.scene().background),
+                                  : resolve_color(frame.pixels, width, height, prepared.scene().background,
+                                                  prepared.scene().effects.background_top),
             frame.error, frame.samples};
 }
 

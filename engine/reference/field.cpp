@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/scene/transfer_function.h"
+
 namespace edgesplat::reference {
 
 namespace {
@@ -73,9 +75,10 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
         const double j = range > 0 ? (iso - low) / range : (iso <= low ? 0.0 : 1.0);
         scaled.iso.push_back(static_cast<double>(static_cast<float>(j)));
     }
-    for (const Material& material : scene.materials)
-        scaled.drawn.push_back(material.extinction > 0);
-    scaled.light = scene.light.kind != Light::Kind::None;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        scaled.drawn.push_back(extinctions_of(scene, m).most > 0);
+    scaled.transfer = scaled_transfer(scene, volume);
+    scaled.light = !scene.lights.empty() || scene.effects.silhouette;
     return scaled;
 }
 

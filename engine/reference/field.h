@@ -25,12 +25,13 @@ struct Field {
 
 /// What estimation needs of a scene, in the units of F.
 struct ScaledScene {
-    std::vector<double> iso;       ///< J_j, ascending; float32 precision, as the GPU compares them
-    std::vector<bool> drawn;       ///< per material: extinction > 0
-    bool light = false;            ///< the scene has a light, so splats want normals
-    int material(double f) const;  ///< number of iso-values <= f
-    double lower(int m) const;     ///< J_{m-1}, -infinity below the first
-    double upper(int m) const;     ///< J_m, +infinity above the last
+    std::vector<double> iso;              ///< J_j, ascending; float32 precision, as the GPU compares them
+    std::vector<bool> drawn;              ///< per material: extinction > 0 somewhere in its interval
+    std::vector<TransferPoint> transfer;  ///< values scaled alike; empty without a transfer function
+    bool light = false;                   ///< splats want normals, for light or silhouettes
+    int material(double f) const;         ///< number of iso-values <= f
+    double lower(int m) const;            ///< J_{m-1}, -infinity below the first
+    double upper(int m) const;            ///< J_m, +infinity above the last
 };
 
 /// The scene in F's units. In a constant volume J is 0 for iso-values <= the value and 1 for the others.

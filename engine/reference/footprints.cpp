@@ -19,8 +19,7 @@ Footprints::Footprints(const Settings& settings)
       band_{settings.edge_half_width, settings.edge_strength},
       largest_radius_(largest_support_radius(band_)) {
     if (settings.edge_shape == EdgeShape::Curved) largest_radius_ = covering_supports_of_curved(band_, 1)[0].radius;
-    const bool tabled = settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
-    if (tabled && settings.warp == WarpFamily::Edge) {
+    if (asks_for_table(settings) && settings.warp == WarpFamily::Edge) {
         table_ = std::make_shared<const FootprintTable>(load_footprint_table(band_).table);
     }
 }
@@ -74,6 +73,18 @@ double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const
     if (flat) return edge.weight * warp2d_footprint(ray, faces(edge), slice);
     const Edge drawn = faces(edge);
     return edge.weight * procedural_footprint(ray, drawn, drawn.curvature == 0 ? 10 : 16, slice);
+}
+
+bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& r) const {
+    const double r2 = glm::dot(r, r);
+    const bool knows_edge = edge.has_edge && std::abs(edge.D) < kKernelRadius + band_.half_width &&
+                            settings_.footprints != FootprintMode::Isotropic;
+    if (!knows_edge) return r2 < kKernelRadius * kKernelRadius;
+    const double t = glm::dot(r, edge.n), q = t - edge.D;
+    const double curvature = is_wall(edge) ? 0 : edge.curvature;
+    const bool own_side = 2 * q + curvature * (q * q + r2 - t * t) < 0 && t > -edge.D2;
+    if (settings_.warp == WarpFamily::Paper) return own_side && r2 < (kKernelRadius + 1) * (kKernelRadius + 1);
+    return own_side && at_point(edge, r) > 0;
 }
 
 Support Footprints::support(const VoxelEdge& edge) const {

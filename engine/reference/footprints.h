@@ -28,6 +28,10 @@ class Footprints {
     /// The same over a piece of the line.
     double along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
+    /// Whether r, relative to the voxel centre, is inside the voxel's matter: in its kernel, and on the voxel's own
+    /// side of its edge. (For the paper's family the kernel is taken as the ball that holds it.)
+    bool in_matter(const VoxelEdge& edge, const glm::dvec3& r) const;
+
     /// Sphere around x + shift n outside which h is 0. A bound that holds for every edge of these settings, since the
     /// smallest sphere takes a search per edge; `warped_support` gives that one.
     Support support(const VoxelEdge& edge) const;

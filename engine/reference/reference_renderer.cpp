@@ -29,7 +29,7 @@ Payload payload_for(Output output) {
 Image resolve(std::span<const glm::dvec4> frame, int width, int height, const Scene& scene, Output output) {
     switch (output) {
         case Output::Color:
-            return resolve_color(frame, width, height, scene.background);
+            return resolve_color(frame, width, height, scene.background, scene.effects.background_top);
         case Output::Tau:
             return resolve_sum(frame, width, height);
         case Output::Normal:
@@ -46,7 +46,7 @@ Image resolve(std::span<const glm::dvec4> frame, int width, int height, const Sc
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
     : volume_(&volume),
       scene_((validate(scene), scene)),
-      settings_((validate(settings), drawn_as(settings))),
+      settings_((validate(settings), drawn_as(settings, scene))),
       scaled_(scale_scene(scene, volume)),
       values_(scaled_field(volume)),
       footprints_(settings_) {
@@ -59,6 +59,7 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     if (weighted) estimated.drawn.assign(estimated.drawn.size(), true);
     std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (weighted) weigh_kernels(field(), settings_, edges);
+    if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
     edges_ = smooth_edges(field(), scaled_, settings_, edges);
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
 }
@@ -69,8 +70,9 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     const VolumeGeometry& geometry = volume_->geometry;
     const View view(camera, geometry, width, height);
     const std::vector<SplatRecord> records =
-        collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye, output == Output::Tau);
-    const std::vector<Selected> selected = select_footprints(records, f, view, settings_, footprints_);
+        collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye, output == Output::Tau, classified_);
+    const std::vector<Selected> selected =
+        select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);
     const SplatDrawer drawer(records, selected, f, scene_, view, settings_, footprints_);
 

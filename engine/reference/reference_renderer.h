@@ -24,6 +24,8 @@ class PreparedVolume {
     const ScaledScene& scaled_scene() const { return scaled_; }
     Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }
     const std::vector<VoxelEdge>& edges() const { return edges_; }
+    /// classified_values() of the voxels; empty without a transfer function.
+    const std::vector<double>& classified() const { return classified_; }
 
     /// Passes 2 to 7. 4 channels (Color), 3 (Normal) or 1, as engine/renderer.h says of each. Throws Error for an
     /// invalid camera or a picture without pixels.
@@ -36,6 +38,7 @@ class PreparedVolume {
     ScaledScene scaled_;
     std::vector<float> values_, coefficients_;
     std::vector<VoxelEdge> edges_;
+    std::vector<double> classified_;
     Footprints footprints_;
 };
 

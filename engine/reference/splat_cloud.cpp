@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/transfer_function.h"
+
 namespace edgesplat::reference {
 
 SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const Footprints& footprints)
@@ -10,10 +12,12 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
     const Scene& scene = prepared.scene();
     for (std::size_t at = 0; at < field_.values.size(); ++at) {
         const int m = prepared.scaled_scene().material(static_cast<double>(field_.values[at]));
-        const double extinction = scene.materials[static_cast<std::size_t>(m)].extinction;
-        if (!(extinction > 0)) continue;
         const VoxelEdge& edge = prepared.edges()[at];
-        const SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
+        SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
+        const auto& transfer = prepared.scaled_scene().transfer;
+        if (!transfer.empty()) record.classified = transfer_at(transfer, prepared.classified()[at]);
+        const double extinction = record.extinction(scene);
+        if (!(extinction > 0)) continue;
         const Support support = footprints.support(edge);
         ModelSplat splat;
         splat.center = glm::dvec3(field_.voxel(at));
@@ -21,6 +25,7 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
         splat.support_radius = support.radius;
         splat.extinction = extinction;
         splat.emission = extinction * payload_of(record, field_, scene, view, prepared.settings(), Payload::Color);
+        splat.material = record.material;
         splat.edge = &edge;
         splat_of_[at] = static_cast<std::int32_t>(splats_.size());
         splats_.push_back(splat);

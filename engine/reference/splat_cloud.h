@@ -16,6 +16,7 @@ struct ModelSplat {
     double support_radius = 0;  ///< from there on the kernel is 0
     double extinction = 0;      ///< per mm
     glm::dvec3 emission{0};     ///< extinction times lit colour
+    std::uint32_t material = 0;
     const VoxelEdge* edge = nullptr;
 };
 

@@ -183,7 +183,7 @@ class TruthWalker {
         const auto color = [&](double a) {
             const double t = std::min(begin - std::log1p(-a) / per_voxel, end);
             ++sum_.samples;
-            return m.color * light(origin_ + t * u_);
+            return color_at(m, origin_ + t * u_);
         };
         const glm::dvec3 whole = mean(color, 0, opacity);
         halved(color, 0, opacity, whole, 0);
@@ -216,14 +216,16 @@ class TruthWalker {
         halved(color, middle, end, far, depth + 1);
     }
 
-    double light(const glm::dvec3& x) const {
-        if (look_.light.kind == Light::Kind::None) return 1;
+    glm::dvec3 color_at(const Material& material, const glm::dvec3& x) const {
+        if (look_.lights.empty()) return material.color;
         // Lower values lie where the gradient does not point. A distance rises in the same direction all the way from
         // its edge, so that it need not be followed there; it has a slope where a step has no gradient.
         glm::dvec3 n = scene_.signed_distance ? distance_slope(x) : -scene_.gradient(x);
         const double length = glm::length(n);
         n = length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
-        return light_on(look_.light, view_.geometry, n, view_.geometry.to_world(x), view_.frame.eye);
+        if (n != glm::dvec3(0)) n = glm::normalize(glm::transpose(view_.world_to_index) * n);
+        return lit(look_, {.color = material.color, .normal = n, .position = view_.geometry.to_world(x)},
+                   view_.frame.eye);
     }
 
     glm::dvec3 distance_slope(const glm::dvec3& x) const {
@@ -253,6 +255,8 @@ DirectResult truth(const AnalyticScene& scene, const VolumeGeometry& geometry, c
     check_picture_size(width, height);
     check_options(options);
     validate(look);
+    if (const std::string beyond = beyond_ray_casting(look); !beyond.empty())
+        fail("truth: {} cannot be shown, expected a scene without", beyond);
     if (geometry.dims != scene.dims) {
         fail("truth: {} is made for {} x {} x {} voxels, not {} x {} x {}", scene.name, scene.dims.x, scene.dims.y,
              scene.dims.z, geometry.dims.x, geometry.dims.y, geometry.dims.z);

@@ -41,19 +41,15 @@ void set_number(Settings& s, const Knob& knob, View text) {
     s.*Member = value;
 }
 
-bool warps(const Settings& s) {
-    return s.edges != EdgeEstimator::Off && s.footprints != FootprintMode::Isotropic;
-}
 bool edge_family(const Settings& s) {
-    return warps(s) && s.warp == WarpFamily::Edge;
+    return draws_warped(s) && s.warp == WarpFamily::Edge;
 }
 /// The two-dimensional short cut knows planes only.
 bool may_curve(const Settings& s) {
     return edge_family(s) && s.footprints != FootprintMode::Warp2d;
 }
 bool tables(const Settings& s) {
-    return edge_family(s) && s.sheets == SheetCut::Whole && s.edge_shape == EdgeShape::Plane &&
-           (s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp);
+    return edge_family(s) && s.sheets == SheetCut::Whole && s.edge_shape == EdgeShape::Plane && asks_for_table(s);
 }
 
 std::vector<Knob> make_ladder() {
@@ -72,7 +68,7 @@ std::vector<Knob> make_ladder() {
                      .others = {"paper"},
                      .get = get_name<&Settings::warp>,
                      .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },
-                     .matters = warps});
+                     .matters = draws_warped});
     knobs.push_back({.name = "edge-half-width",
                      .help = "Half width of the warped band, voxels",
                      .kind = KnobKind::Model,

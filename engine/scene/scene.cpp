@@ -1,5 +1,6 @@
 #include "engine/scene/scene.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -17,15 +18,119 @@ void check_color(const std::string& field, const glm::dvec3& color) {
     }
 }
 
-void check_share(const char* field, double value) {
-    if (!(value >= 0) || !std::isfinite(value)) fail("scene light {}: {} is not a finite number >= 0", field, value);
+void check_share(const std::string& field, double value) {
+    if (!(value >= 0) || !std::isfinite(value)) fail("scene {}: {} is not a finite number >= 0", field, value);
+}
+
+void check_materials(const Scene& scene) {
+    const std::size_t count = scene.iso_values.size();
+    if (scene.materials.size() != count + 1) {
+        fail("scene materials: {} of them, expected {} (one more than iso-values)", scene.materials.size(), count + 1);
+    }
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const auto& [color, extinction, response, name] = scene.materials[m];
+        const std::string field = fmt::format("materials[{}].", m);
+        check_color(field + "color", color);
+        if (!(extinction >= 0) || !std::isfinite(extinction)) {
+            fail("scene {}extinction: {} is not a finite number >= 0 (per mm)", field, extinction);
+        }
+        check_share(field + "response.ambient", response.ambient);
+        check_share(field + "response.diffuse", response.diffuse);
+        check_share(field + "response.specular", response.specular);
+        if (!(response.shininess >= 1 && response.shininess <= 1000)) {
+            fail("scene {}response.shininess: {} is outside [1, 1000]", field, response.shininess);
+        }
+    }
+}
+
+void check_transfer(const std::vector<TransferPoint>& points) {
+    if (points.size() > kMaxTransferPoints) {
+        fail("scene transfer: {} points, expected at most {}", points.size(), kMaxTransferPoints);
+    }
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const auto& [value, color, extinction] = points[i];
+        if (!std::isfinite(value)) fail("scene transfer[{}].value: {} is not finite", i, value);
+        if (i > 0 && !(value > points[i - 1].value)) {
+            fail("scene transfer[{}].value: {} is not above the one before ({})", i, value, points[i - 1].value);
+        }
+        check_color(fmt::format("transfer[{}].color", i), color);
+        if (!(extinction >= 0) || !std::isfinite(extinction)) {
+            fail("scene transfer[{}].extinction: {} is not a finite number >= 0 (per mm)", i, extinction);
+        }
+    }
+}
+
+void check_lights(const std::vector<Light>& lights) {
+    if (lights.size() > kMaxLights) fail("scene lights: {} of them, expected at most {}", lights.size(), kMaxLights);
+    std::size_t with_shadows = 0;
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        const Light& light = lights[i];
+        const std::string field = fmt::format("lights[{}].", i);
+        check_color(field + "color", light.color);
+        check_share(field + "intensity", light.intensity);
+        const glm::dvec3 &d = light.direction, &p = light.position;
+        const double length = glm::length(d);
+        if (light.kind == Light::Kind::Directional && (!(length > 0) || !std::isfinite(length))) {
+            fail("scene {}direction: ({}, {}, {}) is not a finite vector other than 0", field, d.x, d.y, d.z);
+        }
+        if (light.kind == Light::Kind::Point && !std::isfinite(glm::dot(p, p))) {
+            fail("scene {}position: ({}, {}, {}) is not finite", field, p.x, p.y, p.z);
+        }
+        if (light.shadows && light.kind == Light::Kind::Headlight) {
+            fail("scene {}shadows: a headlight casts none that the eye can see; expected a directional or point light",
+                 field);
+        }
+        with_shadows += light.shadows ? 1 : 0;
+    }
+    if (with_shadows > kMaxShadowLights) {
+        fail("scene lights: {} of them with shadows, expected at most {}", with_shadows, kMaxShadowLights);
+    }
 }
 
 }  // namespace
 
+glm::dvec3 unit(const glm::dvec3& v) {
+    const glm::dvec3 scaled = v / std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+    return scaled / glm::length(scaled);
+}
+
+bool only_edges_lit(const Scene& scene, bool edges_drawn) {
+    return scene.lit == Lit::Edges && edges_drawn && !scene.iso_values.empty();
+}
+
+Light directional_light(const glm::dvec3& towards) {
+    Light light;
+    light.kind = Light::Kind::Directional;
+    light.direction = towards;
+    return light;
+}
+
+std::string beyond_ray_casting(const Scene& scene) {
+    const Effects& effects = scene.effects;
+    if (!scene.transfer.empty()) return "a transfer function";
+    if (scene.lights.size() > 1) return "more than one light";
+    for (const Light& light : scene.lights) {
+        if (light.kind == Light::Kind::Point) return "a point light";
+        if (light.shadows) return "shadows";
+        if (light.color != glm::dvec3(1)) return "a coloured light";
+    }
+    for (const Material& material : scene.materials)
+        if (material.response != LightResponse{}) return "a material's own response to light";
+    if (scene.lit != Lit::Everywhere) return "light on edges only";
+    if (effects.fog) return "fog";
+    if (effects.silhouette) return "silhouettes";
+    if (effects.occlusion) return "ambient occlusion";
+    if (!effects.clip.empty()) return "clip planes";
+    if (effects.background_top) return "a background of two colours";
+    if (effects.samples != 1) return "several samples a pixel";
+    return "";
+}
+
 void validate(const Scene& scene) {
-    const std::size_t count = scene.iso_values.size();
-    if (count < 1 || count > 15) fail("scene iso_values: {} of them, expected 1 to 15", count);
+    const std::size_t count = scene.iso_values.size(), fewest = scene.transfer.empty() ? 1 : 0;
+    if (count < fewest || count > kMaxIsoValues) {
+        fail("scene iso_values: {} of them, expected {} to {}", count, fewest, kMaxIsoValues);
+    }
     for (std::size_t i = 0; i < count; ++i) {
         const double value = scene.iso_values[i];
         if (!std::isfinite(value)) fail("scene iso_values[{}]: {} is not finite", i, value);
@@ -33,26 +138,12 @@ void validate(const Scene& scene) {
             fail("scene iso_values[{}]: {} is not above the one before ({})", i, value, scene.iso_values[i - 1]);
         }
     }
-    if (scene.materials.size() != count + 1) {
-        fail("scene materials: {} of them, expected {} (one more than iso-values)", scene.materials.size(), count + 1);
-    }
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        const Material& material = scene.materials[m];
-        check_color(fmt::format("materials[{}].color", m), material.color);
-        if (!(material.extinction >= 0) || !std::isfinite(material.extinction)) {
-            fail("scene materials[{}].extinction: {} is not a finite number >= 0 (per mm)", m, material.extinction);
-        }
-    }
+    check_materials(scene);
+    check_transfer(scene.transfer);
     check_color("background", scene.background);
-    check_share("ambient", scene.light.ambient);
-    check_share("diffuse", scene.light.diffuse);
-    if (scene.light.kind == Light::Kind::Directional) {
-        const glm::dvec3& d = scene.light.direction;
-        const double length = glm::length(d);
-        if (!(length > 0) || !std::isfinite(length)) {
-            fail("scene light direction: ({}, {}, {}) is not a finite vector other than 0", d.x, d.y, d.z);
-        }
-    }
+    check_share("ambient", scene.ambient);
+    check_lights(scene.lights);
+    validate(scene.effects);
 }
 
 }  // namespace edgesplat

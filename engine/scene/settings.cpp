@@ -1,9 +1,11 @@
 #include "engine/scene/settings.h"
 
+#include <algorithm>
 #include <array>
 #include <string>
 
 #include "engine/error.h"
+#include "engine/scene/scene.h"
 
 namespace edgesplat {
 
@@ -115,10 +117,30 @@ std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;
 }
 
-Settings drawn_as(const Settings& settings) {
+bool draws_warped(const Settings& settings) {
+    return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
+}
+
+bool asks_for_table(const Settings& settings) {
+    return settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
+}
+
+double most_curved(const Settings& settings) {
+    return std::min(0.5, 0.9 / settings.edge_half_width);
+}
+
+Settings papers_own(Settings base) {
+    base.edges = EdgeEstimator::Taylor;
+    base.warp = WarpFamily::Paper;
+    base.footprints = FootprintMode::Warp2d;
+    base.edge_shape = EdgeShape::Plane;
+    return base;
+}
+
+Settings drawn_as(const Settings& settings, bool clipped) {
     const Settings usual;
     Settings s = settings;
-    if (s.edges == EdgeEstimator::Off || s.footprints == FootprintMode::Isotropic) {
+    if (!draws_warped(s)) {
         s.edges = EdgeEstimator::Off;
         s.footprints = FootprintMode::Isotropic;
         s.warp = usual.warp;
@@ -130,17 +152,21 @@ Settings drawn_as(const Settings& settings) {
         s.edge_shape = EdgeShape::Plane;
         s.normalisation = usual.normalisation;
     }
-    const bool tabled = s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp;
     if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
     // Kernels of curved edges sum to one as they are.
     if (s.edge_shape == EdgeShape::Curved) s.normalisation = usual.normalisation;
-    if (tabled && (!edge_family || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
+    if (asks_for_table(s) &&
+        (!edge_family || clipped || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
         s.footprints = FootprintMode::Procedural;
     }
-    if (s.footprints != FootprintMode::Table && s.footprints != FootprintMode::TableLerp) {
-        s.table_size = usual.table_size;
-    }
+    if (!asks_for_table(s)) s.table_size = usual.table_size;
     return s;
+}
+
+Settings drawn_as(const Settings& settings, const Scene& scene) {
+    Settings s = settings;
+    if (scene.iso_values.empty()) s.edges = EdgeEstimator::Off;
+    return drawn_as(s, !scene.effects.clip.empty());
 }
 
 void validate(const Settings& settings) {

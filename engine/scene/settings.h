@@ -6,6 +6,8 @@
 
 namespace edgesplat {
 
+struct Scene;
+
 enum class EdgeEstimator { Off, Taylor, Quadratic, March, Cubic };
 enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
 enum class WarpFamily { Edge, Paper };
@@ -59,10 +61,25 @@ std::span<const std::string_view> table_size_names();
 std::span<const std::string_view> sheet_cut_names();
 std::span<const std::string_view> sheet_format_names();
 
+/// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
+bool draws_warped(const Settings& settings);
+
+/// Whether footprints are asked for from a table. `drawn_as` says whether they are taken from it.
+bool asks_for_table(const Settings& settings);
+
+/// The largest curvature that is drawn, 1/voxel: the band must not reach a sphere's centre.
+double most_curved(const Settings& settings);
+
+/// What the paper did, where `base` says nothing else: Taylor estimates, its own curve, warped in two dimensions.
+Settings papers_own(Settings base = {});
+
 /// The same picture with every knob that has no say in it at its default, and with the footprints that are really
 /// evaluated: tables hold whole footprints of plane edges of the family `edge`; what is sliced, curved or of the
-/// paper's family is integrated.
-Settings drawn_as(const Settings& settings);
+/// paper's family is integrated, and so is everything where `clipped`: the scene has clip planes.
+Settings drawn_as(const Settings& settings, bool clipped = false);
+
+/// Likewise for a scene: without iso-values there are no edges.
+Settings drawn_as(const Settings& settings, const Scene& scene);
 
 /// Checks every range above. Throws Error naming the field, the value and the range.
 void validate(const Settings& settings);

@@ -14,6 +14,7 @@ namespace {
 Volume like(const Volume& volume) {
     Volume result;
     result.geometry = volume.geometry;
+    result.in_patient = volume.in_patient;
     result.name = volume.name;
     result.stored_type = volume.stored_type;
     result.notes = volume.notes;
@@ -116,6 +117,24 @@ Volume threshold(const Volume& volume, double iso_value) {
 double scaled_value(const Volume& volume, double value) {
     const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
     return range > 0 ? (value - low) / range : 0.0;
+}
+
+Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    if (glm::any(glm::lessThan(low, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(high, dims)) ||
+        glm::any(glm::lessThan(high - low, glm::ivec3(1))))
+        fail("crop {},{},{} to {},{},{}: expected at least 2 voxels along each axis within {} x {} x {}", low.x, low.y,
+             low.z, high.x, high.y, high.z, dims.x, dims.y, dims.z);
+    Volume result = volume;
+    result.geometry.dims = high - low + 1;
+    result.geometry.origin = volume.geometry.to_world(glm::dvec3(low));
+    result.values.clear();
+    for (int z = low.z; z <= high.z; ++z)
+        for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
+                result.values.push_back(volume.at(x, y, z));
+    finish_volume(result);
+    return result;
 }
 
 std::vector<float> scaled_field(const Volume& volume) {

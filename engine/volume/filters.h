@@ -15,6 +15,10 @@ Volume box_filter(const Volume& volume);
 /// 1 where the sample is >= `iso_value`, else 0. Geometry, name and notes are kept; the result is finished.
 Volume threshold(const Volume& volume, double iso_value);
 
+/// Voxels low to high, both included; positions in the world stay what they were. Throws Error unless it lies in the
+/// volume and has at least 2 voxels along each axis.
+Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high);
+
 /// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, kept as float; all 0 where
 /// the volume is constant. Same order as `Volume::values`.
 std::vector<float> scaled_field(const Volume& volume);

@@ -268,6 +268,7 @@ Volume load_dicom(const std::string& name, const std::vector<std::string>& files
     (void)chosen_frame(name, options, 1);
     const auto& first = slices.front();
     volume.geometry = first.geometry;
+    volume.in_patient = first.has_position;
     volume.stored_type = first.stored_type;
     std::size_t depth = first.dims[2];
     if (slices.size() > 1) {

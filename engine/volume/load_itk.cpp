@@ -2,6 +2,7 @@
 // the file holds, reads it, and the voxels are converted to float here.
 #include <itkGiplImageIO.h>
 #include <itkMINCImageIO.h>
+#include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
@@ -162,6 +163,14 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
     return geometry;
 }
 
+/// Whether the file says where the patient's left, back and top are; ITK has then turned it to these axes.
+static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
+    std::string space;
+    itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "NRRD_space", space);
+    return format == ItkFormat::Nifti || format == ItkFormat::Minc || space.find("left") != std::string::npos ||
+           space.find("right") != std::string::npos;
+}
+
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
     const std::string& path = request.path;
     const auto io = image_io(request.format);
@@ -189,6 +198,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
         frames *= dims[axis];
     const std::size_t frame = chosen_frame(path, options, frames);
     volume.geometry = geometry_of(*io);
+    volume.in_patient = in_patient(*io, request.format);
     if (dims.size() == 2)
         volume.notes.push_back("The file holds a 2-D image: it is taken as a volume of one slice, 1 mm thick.");
 

@@ -46,7 +46,7 @@ struct MetaHeader {
     std::vector<std::string> lines;  // all but those about compression and the data file
     std::vector<std::size_t> dims;
     std::size_t axes = 0, spacings = 0, channels = 1;
-    bool compressed = false;
+    bool compressed = false, in_patient = false;
     std::string data_file;
     std::size_t listed = 0;       // data files after "LIST"
     std::size_t data_offset = 0;  // of data in the header's own file
@@ -76,6 +76,7 @@ MetaHeader parse(const std::string& path) {
         if (key == "ElementSpacing")
             for (std::string word; words >> word;)
                 ++header.spacings;
+        if (key == "AnatomicalOrientation") header.in_patient = value.find_first_of("LRlr") != std::string::npos;
         if (key == "CompressedData")
             header.compressed = !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
         if (key != "CompressedData" && key != "CompressedDataSize") header.lines.push_back(line);
@@ -158,6 +159,7 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
         request.stored_bytes = fs::file_size(folder->path() / "data.raw");
     }
     auto volume = load_through_itk(request, options);
+    volume.in_patient = header.in_patient;
     if (header.axes > 0 && header.spacings > 0 && header.spacings != header.axes)
         volume.notes.push_back(fmt::format("The header says NDims = {} but gives {} spacings; NDims was believed.",
                                            header.axes, header.spacings));

@@ -31,6 +31,7 @@ struct VolumeGeometry {
 struct Volume {
     VolumeGeometry geometry;
     std::vector<float> values;  ///< (dims.z, dims.y, dims.x), x fastest, in the file's unit after slope/intercept
+    bool in_patient = false;    ///< the file says that the world's axes are the patient's: +x left, +y back, +z up
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
     std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite

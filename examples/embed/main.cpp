@@ -17,7 +17,6 @@ int main(int argc, char** argv) {
         const auto volume = std::make_shared<const edgesplat::Volume>(edgesplat::load_volume("builtin:sphere:32"));
         const edgesplat::Scene scene{.iso_values = {0.5},
                                      .materials = {{.extinction = 0}, {.color = {1, 0.85, 0.75}, .extinction = 8}},
-                                     .light = {},
                                      .background = {0.1, 0.1, 0.1}};
         const edgesplat::Camera camera = edgesplat::named_view(
             "front", {.volume = volume.get(), .scene = &scene, .fov_y = 45, .width = 128, .height = 128});

@@ -3,7 +3,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/raycast_params.h"
 
-layout(constant_id = SPEC_LIGHT) const uint LIGHT = 1u;
+layout(constant_id = SPEC_RAY_LIGHT) const uint LIGHT = 1u;
 layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;
 layout(constant_id = SPEC_SKIP) const uint SKIP = 1u;
 const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u;

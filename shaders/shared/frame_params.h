@@ -40,11 +40,16 @@ struct FrameParams {
     int sheet_base;         // first sheet that can hold a splat
     mat3 index_to_world;    // S
     mat3 normal_to_world;   // S^-T
-    vec3 light;             // world unit vector towards the light (Directional)
+    vec3 background;        // linear light; of two colours: in the bottom row
     float ambient;
-    vec3 background;  // linear light
-    float diffuse;
+    vec3 background_top;    // linear light: in the top row
+    uint background_pad;
+    vec4 light_at[4];       // w = 0: world unit vector towards it; w = 1: its place relative to the eye, mm
+    vec4 light_color[4];    // rgb times intensity
     vec4 materials[16];      // rgb, extinction per mm
+    vec4 responses[16];      // factors on ambient, diffuse and specular light, shininess
+    vec4 fog;                // rgb, density per mm
+    vec4 silhouette;         // rgb, strength
     vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
     ivec3 dims;
     uint splat_count;
@@ -59,6 +64,8 @@ struct FrameParams {
     float wall_support;  // support radius of a splat with two faces, voxels
     float sheet_zero;    // mm: depth of sheet 0's near plane relative to the anchor
     float curvature_unit;  // the largest curvature that is drawn, 1/voxel
+    float fog_start;       // mm
+    float silhouette_sharpness;
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
     Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
@@ -69,6 +76,15 @@ struct FrameParams {
     Address drawn;          // (1) uint: splats drawn
     Address output_pixels;  // (size.y, size.x) vec4
     Address traits;         // (splat_count) uint: curvature and weight (edge_record.glsl); edges curved or kernels normalised
+    Address splat_shadows;    // (splat_count) uint: unorm16 of what reaches the splat of either light with shadows
+    Address splat_occlusion;  // (splat_count) uint: unorm16 of the ambient light that reaches either face
+    Address light_layers;     // (sheet_count, size.y, size.x) float, of a light's picture: optical depth so far
+    uint shadow_channels;     // 4 bits per light: 0 casts no shadow, else which half of splat_shadows, from 1
+    float occlusion_strength;
+    vec4 clip_keep[8];      // normal (unit) and offset, index space relative to anchor: above 0 is beyond
+    vec4 clip_remove[8];
+    Address transfer;       // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
+    Address values;         // (splat_count) float: what each splat is classified by, scaled; likewise
 };
 
 /// Push constants of every pass of the frame.
@@ -85,15 +101,18 @@ static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(sizeof(edgesplat::shader::FramePush) == 16);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
-static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 232);
-static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1000);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1184);
+static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
+static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1416);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1912);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef {
     FrameParams frame;
 };
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatsRef {
+    float at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawsRef {
     DrawCommand at[];

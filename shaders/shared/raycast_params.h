@@ -13,7 +13,8 @@ EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks ar
 
 // Specialization constants beside those of limits.h.
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;
-EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;  // 1: transparent bricks are leapt over
+EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;       // 1: transparent bricks are leapt over
+EDGESPLAT_CONSTANT uint SPEC_RAY_LIGHT = 34u;  // 0 without light, else 1 + Light::Kind
 
 struct RayParams {
     // Rays begin on the plane across the view through `anchor`, the centre of the volume: a far eye costs no digits.

@@ -19,6 +19,10 @@ struct SceneParams {
     uint estimate_mask;    // bit m: edges of material m are estimated
     float half_width;      // a, voxels
     float strength;        // k
+    vec4 clip_keep[8];    // normal (unit) and offset, index space: above 0 is beyond; where buried voxels are found
+    vec4 clip_remove[8];
+    Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
+    Address values;        // (splat_count) float: what each splat is classified by, scaled; likewise
 };
 
 /// One splat as collected: 12 bytes.
@@ -38,7 +42,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 136);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 408);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -31,8 +31,7 @@ Shot oblique_orbital() {
     const double top = static_cast<double>(shot.volume->max_value);
     shot.scene.iso_values = {0.08 * top, 0.4 * top};
     shot.scene.materials = {{}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
-    shot.scene.light.kind = Light::Kind::Directional;
-    shot.scene.light.direction = {0.3, -1, 0.5};
+    shot.scene.lights = {directional_light({0.3, -1, 0.5})};
     shot.volume = placed(shot.volume,
                          glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.7)),
                          {-40, 12, 7});
@@ -79,6 +78,64 @@ Shot small(Shot shot, int side = 48) {
     // The device finishes pixels by groups of sheets of its own: up to 1 - saturation.
     shot.settings.saturation = 1;
     return shot;
+}
+
+/// A ball with a cavity in it, cut by a plane through both, seen at 40 degrees to the cut.
+Shot cut_cavity() {
+    Shot shot;
+    const glm::dvec3 middle(15.4, 15.6, 15.5), cavity(18.2, 13.1, 16.9);
+    const auto value = [&](const glm::dvec3& x) {
+        return std::min(blurred_step(glm::length(x - middle) - 12.2), 1 - blurred_step(glm::length(x - cavity) - 4.6));
+    };
+    shot.volume = sampled(glm::ivec3(32), value);
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 0.7, 0.5}, 4}};
+    shot.scene.effects.clip.keep = {{{15.5, 15.5, 16.2}, {0.3, -1, 0.5}}};
+    shot.camera = look(*shot.volume, {30, -14, 42}, {15.5, 15.5, 15.5}, 42);
+    shot.width = shot.height = kSide;
+    return shot;
+}
+
+/// The orbital, a box of it cut out.
+Shot cut_out_box() {
+    Shot shot = oblique_orbital();
+    const glm::dvec3 middle = shot.volume->geometry.to_world({12, 11, 14}), low = middle - glm::dvec3(1, 40, 1),
+                     high = middle + glm::dvec3(40, 2, 40);
+    shot.scene.effects.clip.remove = {{low, {-1, 0, 0}}, {low, {0, -1, 0}}, {low, {0, 0, -1}},
+                                      {high, {1, 0, 0}}, {high, {0, 1, 0}}, {high, {0, 0, 1}}};
+    return shot;
+}
+
+/// Kernels cut by planes of the scene, in every way that they are integrated.
+std::vector<ImageCase> clip_cases() {
+    using E = EdgeEstimator;
+    using F = FootprintMode;
+    std::vector<ImageCase> cases;
+    const Shot cavity = small(cut_cavity()), orbital = small(cut_out_box());
+    cases.push_back({"cut cavity", cavity});
+    cases.push_back({"cut cavity, tables asked for", with(cavity, F::TableLerp)});
+    cases.push_back({"cut cavity, plain", with(cavity, F::Isotropic, E::Off)});
+    cases.push_back({"cut cavity, warp2d", with(cavity, F::Warp2d)});
+    cases.push_back({"cut cavity, sliced", sliced(cavity, 0.5)});
+    cases.push_back({"cut cavity, sliced and curved", sliced(small(cavity, 32), 0.5, EdgeShape::Curved)});
+    cases.push_back({"cut cavity, depth", cavity, Output::Depth});
+    cases.push_back({"cut cavity, normals", cavity, Output::Normal});
+    cases.push_back({"cut-out box", orbital});
+    cases.push_back({"cut-out box, sliced", sliced(orbital, 0.5)});
+    cases.push_back({"cut-out box, optical depth", orbital, Output::Tau});
+    cases.push_back({"cut-out box, normals", orbital, Output::Normal});
+    Shot both = cavity;
+    both.scene.effects.clip.remove = {{{12, 0, 0}, {-1, 0, 0}}, {{12.4, 0, 0}, {1, 0, 0}}};
+    cases.push_back({"cut cavity, a slit under one voxel", both});
+    Shot inside = small(inside_torus(), 32);
+    inside.scene.effects.clip.keep = {{inside.camera.eye, {0.2, 0.1, 1}}};
+    cases.push_back({"inside the torus, eye on the plane", inside});
+    Shot wall = small(near_wall(), 32);
+    wall.scene.effects.clip.keep = {{{12, 13, 12}, {-1, -0.3, 0.4}}};
+    cases.push_back({"near wall, cut", wall});
+    for (ImageCase& c : cases)
+        c.smallest_psnr = 95;
+    return cases;
 }
 
 /// Kernels cut at sheets' planes, curved, weighted; coarser and finer tables; a picture accumulated in half precision.
@@ -135,6 +192,35 @@ std::vector<ImageCase> later_cases() {
     return cases;
 }
 
+std::vector<ImageCase> shading_cases() {
+    std::vector<ImageCase> cases;
+    Shot glossy = torus_shot();
+    Light light;
+    light.kind = Light::Kind::Point;
+    light.position = {30, -10, 30};
+    glossy.scene.lights = {light};
+    glossy.scene.materials[2].response = {.ambient = 1, .diffuse = 0.8, .specular = 0.6, .shininess = 40};
+    cases.push_back({"point_light_and_gloss", glossy});
+    Shot foggy = torus_shot();
+    foggy.camera = look(*foggy.volume, {14, -16, 15}, {14, 13, 9}, 60);
+    foggy.scene.effects.fog = Fog{{0.35, 0.45, 0.55}, 0.06, 14};
+    cases.push_back({"fog", foggy});
+    Shot outlined = torus_shot();
+    outlined.scene.effects.silhouette = Silhouette{{0.02, 0.02, 0.1}, 0.9, 2};
+    cases.push_back({"silhouette", outlined});
+    Shot orbital = oblique_orbital();
+    const double top = static_cast<double>(orbital.volume->max_value);
+    orbital.scene.iso_values = {0.4 * top};
+    orbital.scene.materials = {{}, {}};
+    orbital.scene.transfer = {{0.03 * top, {0.1, 0.2, 1}, 0},
+                              {0.15 * top, {0.1, 0.8, 0.6}, 0.1},
+                              {0.39 * top, {0.9, 0.9, 0.2}, 0.15},
+                              {0.4 * top, {1, 0.5, 0.1}, 2},
+                              {top, {1, 0.1, 0.1}, 4}};
+    cases.push_back({"transfer_function", orbital});
+    return cases;
+}
+
 }  // namespace
 
 std::vector<ImageCase> reference_cases() {
@@ -172,6 +258,8 @@ std::vector<ImageCase> reference_cases() {
     cases.push_back({"near wall, edge distance", near_wall(), Output::Distance});
     for (ImageCase& c : later_cases())
         cases.push_back(std::move(c));
+    for (ImageCase& c : clip_cases())
+        cases.push_back(std::move(c));
     return cases;
 }
 
@@ -189,6 +277,21 @@ std::vector<ImageCase> golden_cases() {
     from(phantom, "front", 40);
     cases.push_back({"phantom", phantom});
     cases.push_back({"inside_torus", inside_torus()});
+    cases.push_back({"cut_cavity", cut_cavity()});
+    cases.push_back({"cut_out_box", cut_out_box()});
+    Shot two = torus_shot();
+    two.scene.background = {0.02, 0.02, 0.04};
+    two.scene.effects.background_top = glm::dvec3(0.5, 0.65, 0.9);
+    cases.push_back({"background_of_two_colours", two});
+    Shot shadow = ball_over_plate_shot();
+    shadow.scene.ambient = 0.15;
+    cases.push_back({"shadow_of_a_ball", shadow});
+    hole.scene.ambient = 0.9;
+    hole.scene.lights[0].intensity = 0.1;
+    hole.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 8};
+    cases.push_back({"ambient_occlusion", hole});
+    for (ImageCase& c : shading_cases())
+        cases.push_back(std::move(c));
     for (ImageCase& c : cases)
         c.shot.width = c.shot.height = 128;
     return cases;

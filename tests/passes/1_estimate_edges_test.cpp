@@ -71,7 +71,7 @@ TEST(EstimateEdgesOff, LeavesNormalsForLightAndNoEdge) {
 TEST(EstimateEdgesOff, WithoutLightThereIsNoPassAndNoField) {
     PassScene s = pass_scenes()[0];
     s.settings.edges = EdgeEstimator::Off;
-    s.scene.light.kind = Light::Kind::None;
+    s.scene.lights.clear();
     RendererState& state = prepared(s);
     EXPECT_FALSE(static_cast<bool>(state.volume_resources.edges));
     for (const auto& time : state.collection_times)

@@ -86,7 +86,7 @@ TEST(CollectSplats, TraitsHoldTheCurvature) {
         const auto values = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, values, {}};
         const auto want = reference::smooth_edges(field, s.scaled(), s.settings, device_field(state));
-        const double most = reference::most_curved(s.settings);
+        const double most = most_curved(s.settings);
         double largest = 0;
         std::size_t differ = 0;
         const auto records = device_records(state);

@@ -66,7 +66,7 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
         }
         // Single splats agree to the float32 mirror's 1e-4 of the footprint's peak; some tens of them add up in a
         // sheet. The table is sampled by the device's filter, whose weights have 8 bits.
-        const bool table = GetParam().mode == FootprintMode::Table || GetParam().mode == FootprintMode::TableLerp;
+        const bool table = asks_for_table({.footprints = GetParam().mode});
         EXPECT_GT(peak, 0.5);
         EXPECT_LE(worst, (table ? 2e-3 : 5e-4) * peak) << "peak " << peak;
         RecordProperty("worst_of_peak_" + std::string(s.name), std::to_string(worst / peak));
@@ -152,7 +152,7 @@ TEST_P(DrawKernels, SheetsAgreeWithTheReference) {
             }
         }
         // As above: some tens of splats of float32, each good to 1e-4 of a footprint's peak.
-        const bool table = kernels.mode == FootprintMode::Table || kernels.mode == FootprintMode::TableLerp;
+        const bool table = asks_for_table({.footprints = kernels.mode});
         EXPECT_GT(peak, 0.5);
         EXPECT_LE(worst, (table ? 2e-3 : 5e-4) * peak) << "peak " << peak;
         std::printf("%-18s %-18s worst of peak %.1e\n", kernels.name, s.name.c_str(), worst / peak);
@@ -234,7 +234,26 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
     const Image color = reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
         ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], color.pixels[i], 1e-6F);
+    EXPECT_FALSE(state.plan.gradient);
+    s.scene.effects.background_top = glm::dvec3(0.9, 0, 0.25);
+    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    EXPECT_TRUE(state.plan.gradient);
+    const Image two =
+        reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background, s.scene.effects.background_top);
+    for (std::size_t i = 0; i < kPixels * 4; ++i)
+        ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], two.pixels[i], 1e-6F);
+    // Where nothing is hit, the first row is the top's colour and the last the bottom's, to the bit.
+    int seen = 0;
+    for (const auto& [y, plain] : {std::pair{0, *s.scene.effects.background_top}, {kSize.y - 1, s.scene.background}})
+        for (int x = 0; x < kSize.x; ++x) {
+            const glm::vec4 pixel = output()[static_cast<std::size_t>(y * kSize.x + x)];
+            if (pixel.a > 0) continue;
+            ++seen;
+            ASSERT_EQ(glm::vec3(pixel), glm::vec3(plain)) << "row " << y;
+        }
+    EXPECT_GT(seen, kSize.x);
     state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_DEPTH_DISTANCE);
+    EXPECT_FALSE(state.plan.gradient);
     const Image depth = reference::resolve_mean(accumulated(), kSize.x, kSize.y);
     for (std::size_t i = 0; i < kPixels; ++i)
         ASSERT_NEAR(output()[i].x, depth.pixels[i], 1e-4F);

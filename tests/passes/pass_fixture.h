@@ -7,6 +7,7 @@
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/5_draw_splats.h"
 #include "engine/renderer_state.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
 #include "tests/passes/device_under_test.h"
@@ -99,8 +100,7 @@ inline std::vector<PassScene> pass_scenes() {
     const double top = static_cast<double>(orbital.volume.max_value);
     orbital.scene.iso_values = {0.08 * top, 0.4 * top};
     orbital.scene.materials = {{{0, 0, 0}, 0}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
-    orbital.scene.light.kind = Light::Kind::Directional;
-    orbital.scene.light.direction = {0.3, -1, 0.5};
+    orbital.scene.lights = {directional_light({0.3, -1, 0.5})};
     look_at(orbital, {40, -18, 12}, {10, 10, 12}, 35);
 
     auto& wall = scenes[2];
@@ -124,12 +124,23 @@ inline RendererState& prepared(const PassScene& s) {
     return state;
 }
 
-/// The device's splat list as the reference writes it, with curvature and weight where the device has them.
+/// The device's splat list as the reference writes it, with curvature, weight and classification where the device has
+/// them.
 inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat :
          download<shader::Splat>(state, state.volume_resources.splats, state.volume_resources.splat_count)) {
         records.push_back({splat.voxel, splat.edge >> 28U, decode_edge(splat.normal, splat.edge)});
+    }
+    if (state.volume_resources.values) {
+        std::vector<TransferPoint> points;
+        for (const shader::TransferRow& row : state.collected->transfer) {
+            const glm::dvec4 matter(row.matter);
+            if (row.value < 3e38F) points.push_back({static_cast<double>(row.value), glm::dvec3(matter), matter.a});
+        }
+        const auto values = download<float>(state, state.volume_resources.values, records.size());
+        for (std::size_t i = 0; i < records.size(); ++i)
+            records[i].classified = transfer_at(points, static_cast<double>(values[i]));
     }
     if (!state.volume_resources.traits) return records;
     const auto traits = download<std::uint32_t>(state, state.volume_resources.traits, records.size());

@@ -82,7 +82,7 @@ TEST(Convergence, ThinSheetsAreTheModelToATenthOfAPercent) {
         shot.settings.sheet_spacing = 0.125;
         // Plates of half a voxel: voxels half-way between their faces take the normal of either, the device of another
         // one than the reference. What they are made of is the same.
-        if (std::string_view(name) == "plates") shot.scene.light.kind = Light::Kind::None;
+        if (std::string_view(name) == "plates") shot.scene.lights.clear();
         orbit(shot, 35);
         const reference::PreparedVolume prepared(*shot.volume, shot.scene, shot.settings, true);
         const Image expected = model(prepared, shot), got = render(shot).color;

@@ -97,7 +97,7 @@ TEST(Degenerate, SmallestVolumes) {
             Shot shot;
             shot.volume = sampled(dims, [](const glm::dvec3& x) { return x.x + x.y + x.z + 1; });
             shot.scene = two_tone(0, 3);
-            shot.scene.light.kind = Light::Kind::Headlight;
+            shot.scene.lights = {Light{}};
             shot.settings.edges = edges;
             const glm::dvec3 middle = glm::dvec3(dims - 1) / 2.0;
             shot.camera = look(*shot.volume, middle - glm::dvec3(9, 21, -13), middle, 30);

@@ -159,7 +159,7 @@ std::vector<Method> compared_methods() {
             {"quadratic", with(E::Quadratic, F::Procedural)},
             {"cubic", with(E::Cubic, F::Procedural)},
             {"paper family", with(E::March, F::Procedural, WarpFamily::Paper)},
-            {"paper's own (taylor, warp2d)", with(E::Taylor, F::Warp2d, WarpFamily::Paper)}};
+            {"paper's own (taylor, warp2d)", papers_own()}};
 }
 
 EdgeProfiles plane_edges(const Settings& settings) {

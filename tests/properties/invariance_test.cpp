@@ -71,7 +71,7 @@ TEST(Settings, EdgesOffIsIsotropicBitForBit) {
 
 TEST(Settings, StrengthOneIsNoWarp) {
     Shot shot = torus_shot();
-    shot.scene.light.kind = Light::Kind::None;
+    shot.scene.lights.clear();
     shot.settings.edges = EdgeEstimator::Off;
     const Image off = render(shot).color;
     shot.settings.edges = EdgeEstimator::March;
@@ -117,7 +117,8 @@ Shot moved(Shot shot, const glm::dmat3& map, const glm::dvec3& shift) {
     shot.camera.eye = map * shot.camera.eye + shift;
     shot.camera.direction = map * shot.camera.direction;
     shot.camera.up = map * shot.camera.up;
-    shot.scene.light.direction = map * shot.scene.light.direction;
+    for (Light& light : shot.scene.lights)
+        light.direction = map * light.direction;
     return shot;
 }
 
@@ -129,8 +130,7 @@ void expect_alike(const Image& a, const Image& b, const char* what) {
 
 TEST(Place, RotatedAndShiftedTogetherLooksTheSame) {
     Shot shot = torus_shot();
-    shot.scene.light.kind = Light::Kind::Directional;
-    shot.scene.light.direction = {0.4, -1, 0.6};
+    shot.scene.lights = {directional_light({0.4, -1, 0.6})};
     const glm::dmat3 rotation(glm::rotate(glm::dmat4(1), 1.1, glm::normalize(glm::dvec3(1, -2, 0.7))));
     const RenderResult still = render(shot, {.tau = true, .depth = true});
     const RenderResult turned = render(moved(shot, rotation, {300, -120, 45}), {.tau = true, .depth = true});
@@ -145,8 +145,7 @@ TEST(Place, RotatedAndShiftedTogetherLooksTheSame) {
 
 TEST(Place, MirroredTogetherGivesTheMirroredPicture) {
     Shot shot = torus_shot();
-    shot.scene.light.kind = Light::Kind::Directional;
-    shot.scene.light.direction = {0.4, -1, 0.6};
+    shot.scene.lights = {directional_light({0.4, -1, 0.6})};
     const Image still = render(shot).color;
     const Image mirrored = render(moved(shot, glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), {7, 0, 0})).color;
     expect_alike(still, flipped(mirrored), "mirrored in x");

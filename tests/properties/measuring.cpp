@@ -76,7 +76,7 @@ Scene two_tone(double below, double above) {
     Scene scene;
     scene.iso_values = {0.5};
     scene.materials = {{{1, 1, 1}, below}, {{1, 1, 1}, above}};
-    scene.light.kind = Light::Kind::None;
+    scene.lights.clear();
     return scene;
 }
 

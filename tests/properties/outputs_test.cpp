@@ -23,7 +23,7 @@ FaceOn face_on(const Pose& pose, const glm::dvec3& spacing) {
     f.shot.volume = sampled(
         glm::ivec3(kSize), [&](const glm::dvec3& x) { return blurred_step(glm::dot(pose.n, x - center)); }, axes);
     f.shot.scene = two_tone(0, 4 / std::min({spacing.x, spacing.y, spacing.z}));
-    f.shot.scene.light.kind = Light::Kind::Headlight;
+    f.shot.scene.lights = {Light{}};
     f.normal_world = glm::normalize(glm::inverse(glm::transpose(axes)) * pose.n);
     f.distance = 60;
     f.shot.camera.eye = axes * center + f.distance * f.normal_world;

@@ -176,7 +176,7 @@ TEST(Raycast, SmallAndFlatVolumes) {
                 Shot shot;
                 shot.volume = sampled(dims, [&](const glm::dvec3& x) { return constant ? 1 : x.x + x.y + x.z + 1; });
                 shot.scene = two_tone(0, 3);
-                shot.scene.light.kind = Light::Kind::Headlight;
+                shot.scene.lights = {Light{}};
                 const glm::dvec3 middle = glm::dvec3(dims - 1) / 2.0;
                 for (const glm::dvec3& eye : {middle - glm::dvec3(9, 21, -13), middle - glm::dvec3(0, 20, 0), middle}) {
                     shot.camera = look(*shot.volume, eye, middle + glm::dvec3(0, 0.1, 0), 30);

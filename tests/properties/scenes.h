@@ -38,6 +38,30 @@ inline Shot torus_shot() {
     return shot;
 }
 
+/// An opaque ball, radius 8 around (22, 24, 18), over a plate z < 5.4; voxels of 1 mm. Light from one side that casts
+/// shadows, and nothing else.
+inline Shot ball_over_plate_shot() {
+    Volume volume;
+    volume.geometry.dims = {48, 48, 32};
+    for (int z = 0; z < 32; ++z)
+        for (int y = 0; y < 48; ++y)
+            for (int x = 0; x < 48; ++x) {
+                const double inside = std::max(8 - glm::length(glm::dvec3(x, y, z) - glm::dvec3(22, 24, 18)), 5.4 - z);
+                volume.values.push_back(static_cast<float>(std::clamp(0.5 + inside, 0.0, 1.0)));
+            }
+    finish_volume(volume);
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(std::move(volume));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 0.85, 0.7}, 3}};
+    shot.scene.ambient = 0;
+    shot.scene.lights = {directional_light({-1, -0.3, 1.2})};
+    shot.scene.lights[0].shadows = true;
+    shot.camera = look(*shot.volume, {24, -40, 55}, {24, 25, 9}, 40);
+    shot.width = shot.height = 128;
+    return shot;
+}
+
 /// Whether every channel of every pixel is finite and within [low, high].
 inline bool within(const Image& image, float low, float high) {
     for (const float v : image.pixels)

@@ -131,7 +131,7 @@ TEST(Sliced, DegenerateVolumesGiveNumbers) {
             Shot shot;
             shot.volume = sampled(dims, [&](const glm::dvec3& x) { return constant ? 1.0 : x.x + x.y + x.z; });
             shot.scene = two_tone(0.2, 3);
-            shot.scene.light.kind = Light::Kind::Headlight;
+            shot.scene.lights = {Light{}};
             shot.settings = everything().settings;
             shot.settings.edge_shape = kind.shape;
             shot.settings.normalisation = kind.normalisation;

@@ -110,7 +110,7 @@ TEST(Direct, InsideAHomogeneousBodyTauIsExtinctionTimesLength) {
     // Plain kernels sum to one to within their ripple (2e-3); over whole voxels along an axis it averages out.
     const Volume volume = sampled(glm::ivec3(16, 48, 16), [](const glm::dvec3& x) { return x.y < 100 ? 1.0 : 0.0; });
     Scene scene = solid_scene(0.05);
-    scene.light.kind = Light::Kind::None;
+    scene.lights.clear();
     Settings settings;
     settings.edges = EdgeEstimator::Off;
     Camera camera;

@@ -132,7 +132,7 @@ TEST(Frame, ConstantSlabAbsorbsAsBeerAndLambertSay) {
     const Volume slab = sampled(
         glm::ivec3(20, 12, 20), [](const glm::dvec3&) { return 5.0; }, glm::dmat3(0.5));
     Scene scene = solid_scene(0.3);
-    scene.light.kind = Light::Kind::None;
+    scene.lights.clear();
     const Camera camera = looking_at(slab, {0, 1, 0}, 200, 0.4);
     for (const double spacing : {0.3, 1.0, 4.0}) {
         Settings settings = procedural();

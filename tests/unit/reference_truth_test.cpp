@@ -16,7 +16,7 @@ Scene look_of(const AnalyticScene& scene, double extinction, bool lit = false) {
     look.materials = {{}};
     for (std::size_t i = 0; i < scene.iso_values.size(); ++i)
         look.materials.push_back({{1, 0.5, 0.25}, extinction * (i == 0 ? 1 : 20)});
-    if (!lit) look.light.kind = Light::Kind::None;
+    if (!lit) look.lights.clear();
     return look;
 }
 
@@ -92,8 +92,7 @@ TEST(Truth, ASpheresSilhouetteIsExact) {
 TEST(Truth, LightFallsOnTheExactNormal) {
     const AnalyticScene scene = analytic_scene("sphere");
     Scene look = look_of(scene, 1e6, true);
-    look.light.kind = Light::Kind::Directional;
-    look.light.direction = {0.6, -0.8, 0};
+    look.lights = {directional_light({0.6, -0.8, 0})};
     const Camera camera = looking_at(scene, {0, 1, 0}, 100, 30);
     const View view(camera, geometry_of(scene), 64, 64);
     const Image image = seen(scene, look, camera, 64, 64).image;
@@ -104,7 +103,7 @@ TEST(Truth, LightFallsOnTheExactNormal) {
             const double length = chord(view.eye_index, u, center, 20);
             if (!(length > 0.01)) continue;
             const glm::dvec3 hit = view.eye_index + (glm::dot(center - view.eye_index, u) - length / 2) * u;
-            const double facing = glm::dot((hit - center) / 20.0, look.light.direction);
+            const double facing = glm::dot((hit - center) / 20.0, look.lights.front().direction);
             EXPECT_NEAR(static_cast<double>(image.at(x, y, 0)), 0.15 + 0.85 * std::max(facing, 0.0), 2e-5);
         }
     }

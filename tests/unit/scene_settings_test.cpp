@@ -57,8 +57,8 @@ TEST(Scene, NamesTheWrongField) {
     EXPECT_THAT(with([](Scene& s) { s.materials[1].extinction = kNan; }), HasSubstr("materials[1].extinction"));
     EXPECT_THAT(with([](Scene& s) { s.materials[0].color.y = 1.5; }), HasSubstr("materials[0].color"));
     EXPECT_THAT(with([](Scene& s) { s.background.x = kNan; }), HasSubstr("background"));
-    EXPECT_THAT(with([](Scene& s) { s.light.diffuse = kNan; }), HasSubstr("diffuse"));
-    EXPECT_THAT(with([](Scene& s) { s.light = {Light::Kind::Directional, glm::dvec3(0)}; }), HasSubstr("direction"));
+    EXPECT_THAT(with([](Scene& s) { s.lights.front().intensity = kNan; }), HasSubstr("intensity"));
+    EXPECT_THAT(with([](Scene& s) { s.lights = {directional_light(glm::dvec3(0))}; }), HasSubstr("direction"));
 }
 
 TEST(Settings, NamesTheWrongField) {

@@ -1,0 +1,166 @@
+#include "apps/edgesplat/effects_options.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <sstream>
+
+#include "engine/error.h"
+
+namespace {
+
+using edgesplat::Light;
+using edgesplat::Plane;
+using edgesplat::SceneDocument;
+
+/// Six finite numbers with commas between them.
+std::array<glm::dvec3, 2> read_two_vectors(const std::string& option, const std::string& text, const char* type) {
+    std::array<double, 6> v{};
+    std::istringstream in(text);
+    std::string part;
+    std::size_t count = 0;
+    bool good = true;
+    while (std::getline(in, part, ',')) {
+        const auto number = parse_number(part);
+        good = good && number && count < v.size();
+        if (good) v[count] = *number;
+        ++count;
+    }
+    if (!good || count != v.size() || text.ends_with(','))
+        throw CLI::ValidationError(option,
+                                   fmt::format("'{}' is not six numbers {} with commas and no spaces", text, type));
+    return {glm::dvec3(v[0], v[1], v[2]), glm::dvec3(v[3], v[4], v[5])};
+}
+
+Plane read_plane(const std::string& option, const std::string& text) {
+    const auto [point, normal] = read_two_vectors(option, text, "PX,PY,PZ,NX,NY,NZ");
+    if (normal == glm::dvec3(0))
+        throw CLI::ValidationError(option, fmt::format("'{}': its normal, the last three, must not be 0,0,0", text));
+    return {point, normal};
+}
+
+/// The six planes of a box; beyond them is outside of it.
+std::vector<Plane> read_box(const std::string& option, const std::string& text) {
+    const auto [low, high] = read_two_vectors(option, text, "X0,Y0,Z0,X1,Y1,Z1");
+    if (!glm::all(glm::lessThan(low, high)))
+        throw CLI::ValidationError(
+            option, fmt::format("'{}': each of the last three numbers must be above that of the first three", text));
+    std::vector<Plane> planes;
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 normal(0);
+        normal[axis] = 1;
+        planes.push_back({low, -normal});
+        planes.push_back({high, normal});
+    }
+    return planes;
+}
+
+void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group) {
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--clip-plane",
+            [&edits](const std::vector<std::string>& texts) {
+                for (const std::string& text : texts)
+                    edits.add([plane = read_plane("--clip-plane", text)](SceneDocument& d) {
+                        d.effects.clip.keep.push_back(plane);
+                    });
+            },
+            "Cut away what lies beyond the plane through a point (world mm), on the side its normal points to; "
+            "repeatable")
+        ->type_name("PX,PY,PZ,NX,NY,NZ")
+        ->allow_extra_args(false)
+        ->group(group);
+    command
+        .add_option_function<std::string>(
+            "--clip-box",
+            [&edits](const std::string& text) {
+                edits.add([planes = read_box("--clip-box", text)](SceneDocument& d) {
+                    auto& keep = d.effects.clip.keep;
+                    keep.insert(keep.end(), planes.begin(), planes.end());
+                });
+            },
+            "Keep only what lies in the box, world mm")
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+        ->group(group);
+    command
+        .add_option_function<std::string>(
+            "--cut-box",
+            [&edits](const std::string& text) {
+                edits.add([planes = read_box("--cut-box", text)](SceneDocument& d) { d.effects.clip.remove = planes; });
+            },
+            "Cut the box out, world mm")
+        ->type_name("X0,Y0,Z0,X1,Y1,Z1")
+        ->group(group);
+}
+
+void cast_shadows(SceneDocument& document) {
+    bool any = false;
+    for (Light& light : document.lights) {
+        light.shadows = light.kind != Light::Kind::Headlight;
+        any = any || light.shadows;
+    }
+    if (!any) edgesplat::fail("--shadows: a headlight casts none that the eye can see; give --light X,Y,Z");
+}
+
+}  // namespace
+
+void add_effects_options(CLI::App& command, DocumentEdits& edits) {
+    constexpr const char* kGroup = "Effects (what is not asked for costs nothing)";
+    add_number_edit(command, edits, "--fog", {0}, "Far things fade: density per mm",
+                    [](SceneDocument& d, double density) {
+                        if (!d.effects.fog) d.effects.fog.emplace();
+                        d.effects.fog->density = density;
+                    })
+        ->group(kGroup);
+    add_flag_edit(command, edits, "--silhouette", "Lines where surfaces turn away from the eye", [](SceneDocument& d) {
+        if (!d.effects.silhouette) d.effects.silhouette.emplace();
+    })->group(kGroup);
+    add_number_edit(command, edits, "--occlusion", {0, std::numeric_limits<double>::infinity(), true},
+                    "Ambient light does not reach into hollows: radius in mm beyond which the sky is open",
+                    [](SceneDocument& d, double radius) {
+                        if (!d.effects.occlusion) d.effects.occlusion.emplace();
+                        d.effects.occlusion->radius = radius;
+                    })
+        ->group(kGroup);
+    add_flag_edit(command, edits, "--shadows", "Lights other than a headlight cast shadows", cast_shadows)
+        ->group(kGroup);
+    add_clip_options(command, edits, kGroup);
+    add_flag_edit(command, edits, "--antialias", "No footprint smaller than a pixel", [](SceneDocument& d) {
+        d.effects.antialias = true;
+    })->group(kGroup);
+    command
+        .add_option_function<std::string>(
+            "--samples",
+            [&edits](const std::string& text) {
+                const double n = read_number("--samples", text, {1, edgesplat::kMaxSamples});
+                if (n != std::trunc(n))
+                    throw CLI::ValidationError("--samples", fmt::format("'{}' is not a whole number", text));
+                edits.add([n](SceneDocument& d) { d.effects.samples = static_cast<int>(n); });
+            },
+            "N x N rays a pixel")
+        ->type_name("N")
+        ->default_str("1")
+        ->group(kGroup);
+    add_vector_edit(command, edits, "--background-top", "R,G,B",
+                    "The background goes from --background at the bottom to this at the top",
+                    [](SceneDocument& d, const glm::dvec3& color) { d.effects.background_top = color; })
+        ->group(kGroup);
+    command
+        .add_option_function<std::vector<std::string>>(
+            "--overlay",
+            [&edits](const std::vector<std::string>& names) {
+                edits.add([names](SceneDocument& d) {
+                    for (const std::string& name : names) {
+                        d.effects.overlays.orientation = d.effects.overlays.orientation || name == "orientation";
+                        d.effects.overlays.scale_bar = d.effects.overlays.scale_bar || name == "scale-bar";
+                        d.effects.overlays.legend = d.effects.overlays.legend || name == "legend";
+                    }
+                });
+            },
+            "Signs over the picture, with commas between")
+        ->type_name("orientation,scale-bar,legend")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(std::vector<std::string>{"orientation", "scale-bar", "legend"}).description(""))
+        ->group(kGroup);
+}

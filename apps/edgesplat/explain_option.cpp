@@ -1,0 +1,86 @@
+#include "apps/edgesplat/explain_option.h"
+
+#include <algorithm>
+
+#include "apps/edgesplat/option_values.h"
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json number_or_null(const std::optional<double>& value) {
+    return value ? ordered_json(*value) : ordered_json();
+}
+
+ordered_json number_or_null(const std::optional<std::uint64_t>& value) {
+    return value ? ordered_json(*value) : ordered_json();
+}
+
+}  // namespace
+
+void add_explain_options(CLI::App& command, ExplainOption& option) {
+    constexpr const char* kGroup = "Plan and memory";
+    command
+        .add_flag("--explain", option.explain,
+                  "Print the plan: passes, memory, splat record, each with what calls for it; and what was left out, "
+                  "with its price. Without -o nothing is rendered and no device is needed")
+        ->group(kGroup);
+    add_number(
+        command, "--memory-budget", option.memory_budget, {0, 1e9},
+        "MiB of device memory that may be held; a picture that needs more is refused beforehand, with what would "
+        "fit. 0: what the device has")
+        ->group(kGroup);
+}
+
+ordered_json to_json(const edgesplat::FrameDescription& d) {
+    ordered_json passes = ordered_json::array(), resources = ordered_json::array(), record = ordered_json::array(),
+                 effects = ordered_json::object(), left_out = ordered_json::array();
+    for (const auto& pass : d.passes) {
+        passes.push_back({{"for", pass.draw},
+                          {"name", pass.name},
+                          {"reason", pass.reason},
+                          {"variants", pass.variants},
+                          {"estimated_ms", pass.estimated_milliseconds},
+                          {"measured_ms", number_or_null(pass.measured_milliseconds)}});
+    }
+    for (const auto& r : d.resources) {
+        resources.push_back({{"name", r.name},
+                             {"format", r.format},
+                             {"shape", r.shape},
+                             {"contents", r.contents},
+                             {"written", r.written},
+                             {"read", r.read},
+                             {"reason", r.reason},
+                             {"held", r.held},
+                             {"bytes", r.bytes},
+                             {"device_bytes", number_or_null(r.device_bytes)},
+                             {"allocated_bytes", number_or_null(r.allocated_bytes)}});
+    }
+    for (const auto& field : d.record)
+        record.push_back({{"name", field.name}, {"bytes", field.bytes}, {"reason", field.reason}});
+    for (const auto& [effect, reason] : d.called_for)
+        effects[effect] = reason;
+    for (const auto& row : d.left_out) {
+        left_out.push_back({{"effect", row.effect},
+                            {"call", row.call},
+                            {"passes", row.passes},
+                            {"bytes", row.bytes},
+                            {"obstacle", row.obstacle}});
+    }
+    return {{"splats", d.splats},
+            {"splats_from", d.splats_from},
+            {"sheets", d.sheets},
+            {"sheet_groups", d.sheet_groups},
+            {"total_bytes", d.total_bytes()},
+            {"estimate", d.estimate},
+            {"effects", effects},
+            {"passes", passes},
+            {"resources", resources},
+            {"record", record},
+            {"left_out", left_out}};
+}
+
+edgesplat::AovRequest aov_request(const std::vector<std::string>& names) {
+    const auto wants = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
+    return {wants("tau"), wants("depth"), wants("normal"), wants("distance")};
+}

@@ -1,0 +1,23 @@
+// --explain and --memory-budget: what a picture will run and hold, and how much it may hold.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "engine/frame_description.h"
+
+struct ExplainOption {
+    bool explain = false;
+    double memory_budget = 0;  ///< MiB; 0: what the device has
+    std::uint64_t budget_bytes() const { return static_cast<std::uint64_t>(memory_budget * 1024 * 1024); }
+};
+
+/// Adds both, in a group of their own.
+void add_explain_options(CLI::App& command, ExplainOption& option);
+
+/// The description's tables as JSON.
+nlohmann::ordered_json to_json(const edgesplat::FrameDescription& description);
+
+/// The extra outputs named, as the renderer takes them.
+edgesplat::AovRequest aov_request(const std::vector<std::string>& names);

@@ -1,0 +1,290 @@
+#include "apps/edgesplat/movie_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <optional>
+
+#include "apps/edgesplat/camera_options.h"
+#include "apps/edgesplat/effects_options.h"
+#include "apps/edgesplat/max_error_option.h"
+#include "apps/edgesplat/movie_encoder.h"
+#include "apps/edgesplat/movie_folder.h"
+#include "apps/edgesplat/progress_bar.h"
+#include "apps/edgesplat/render_command.h"
+#include "apps/edgesplat/render_output.h"
+#include "apps/edgesplat/renderer_option.h"
+#include "apps/edgesplat/scene_options.h"
+#include "apps/edgesplat/volume_options.h"
+#include "engine/error.h"
+#include "engine/scene/camera_path.h"
+#include "engine/scene/scene_file.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+using edgesplat::fail;
+using edgesplat::SceneDocument;
+
+constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
+constexpr int kMostFrames = 1'000'000;
+
+/// First and last frame, both included.
+struct FrameRange {
+    int first = 0, last = 0;
+};
+
+/// Everything the command line said.
+struct MovieCommand {
+    std::string source, output;
+    VolumeOptions volume;
+    DocumentEdits edits;
+    std::optional<double> orbit, seconds, fps;
+    std::optional<FrameRange> range;
+    edgesplat::DeviceChoice device;
+    bool keep_frames = false, restart = false, quiet = false;
+};
+
+/// Where frames and film go.
+struct Places {
+    fs::path folder;
+    std::string pattern;
+    bool film = false;
+};
+
+/// What every frame is made from.
+struct Film {
+    SceneDocument document;
+    std::shared_ptr<const edgesplat::Volume> volume;
+    edgesplat::CameraPath path;
+    std::vector<edgesplat::AnimatedParameter> animation;
+    edgesplat::Settings settings;
+    double fps = 25;
+    FrameRange range;
+};
+
+Places places_of(const MovieCommand& command) {
+    const fs::path output(command.output);
+    const std::string extension = output.extension().string();
+    if (extension == ".mp4" || extension == ".webm") {
+        edgesplat::check_output_path(output);
+        check_encoder();
+        return {output.string() + ".frames", "frame_%05d.png", true};
+    }
+    if (extension != ".png" && extension != ".exr")
+        fail("{}: expected a film (.mp4 or .webm) or numbered frames such as frames/frame_%04d.png or .exr",
+             command.output);
+    FramePattern checked(output.filename().string());
+    return {output.parent_path(), output.filename().string(), false};
+}
+
+SceneDocument document_of(const MovieCommand& command, std::vector<fs::path>& folders) {
+    SceneDocument document;
+    read_source(command.source, document, folders);
+    apply(command.volume, document.volume);
+    command.edits.apply(document);
+    document.output.file.clear();
+    if (command.fps) document.movie.fps = *command.fps;
+    if (command.orbit) {
+        document.movie.path.clear();
+        document.movie.flight.reset();
+        document.movie.orbit = edgesplat::OrbitChoice{};
+        document.movie.orbit->degrees = *command.orbit;
+        if (command.seconds) document.movie.orbit->seconds = *command.seconds;
+    }
+    if (!document.output.aovs.empty() || document.output.compare_plain || on_processor(document.output.renderer))
+        fail("a movie has neither extra outputs nor comparisons, and is made by --renderer splat or a ray caster");
+    std::string text;
+    for (const edgesplat::DocumentProblem& problem : problems_of(document, folders))
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
+    if (!text.empty()) fail("{}", text);
+    return document;
+}
+
+/// The scene at a time: the document with its animated numbers set.
+edgesplat::Scene scene_at(const Film& film, double time) {
+    SceneDocument document = film.document;
+    for (const edgesplat::AnimatedParameter& parameter : film.animation)
+        edgesplat::set_key(document, fmt::format("{}={}", parameter.key, value_at(parameter, time)));
+    return resolve_scene(document, *film.volume);
+}
+
+Film film_of(const MovieCommand& command, const std::vector<fs::path>& folders, SceneDocument document) {
+    Film film;
+    film.document = std::move(document);
+    film.volume =
+        std::make_shared<const edgesplat::Volume>(load_with_progress(film.document.volume, folders, command.quiet));
+    const edgesplat::Scene scene = resolve_scene(film.document, *film.volume);
+    const edgesplat::Camera start = resolve_camera(film.document, *film.volume, scene);
+    film.path = resolve_camera_path(film.document, *film.volume, start);
+    film.animation = resolve_animation(film.document);
+    film.settings = film.document.quality.settings;
+    film.fps = film.document.movie.fps;
+    double seconds = duration(film.path);
+    for (const edgesplat::AnimatedParameter& parameter : film.animation)
+        seconds = std::max(seconds, parameter.values.back().time - film.path.keys.front().time);
+    if (command.seconds) seconds = *command.seconds;
+    if (!(seconds > 0))
+        fail("nothing says how long the movie is: give --orbit DEGREES, --seconds, or a scene file with [movie]");
+    const double count = std::max(1.0, std::round(seconds * film.fps));
+    if (!(count <= kMostFrames)) fail("the movie has {} frames; {} are possible", count, kMostFrames);
+    const int last = static_cast<int>(count) - 1;
+    film.range = command.range.value_or(FrameRange{0, last});
+    if (film.range.last > last) fail("--frames: the movie's last frame is {}, not {}", last, film.range.last);
+    return film;
+}
+
+/// What decides the frames, for the note in their folder.
+nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& device) {
+    const glm::ivec2& size = film.document.output.size;
+    return {{"program", "edgesplat " EDGESPLAT_VERSION},
+            {"scene", scene_text(film.document)},
+            {"volume", fmt::format("{:016x}", film.volume->checksum)},
+            {"size", fmt::format("{}x{}", size.x, size.y)},
+            {"frames per second", film.fps},
+            {"device", fmt::format("{}, {} {}", device.name, device.driver, device.driver_version)}};
+}
+
+void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file) {
+    const double time = film.path.keys.front().time + frame / film.fps;
+    const edgesplat::Scene scene = scene_at(film, time);
+    const edgesplat::Camera camera = camera_at(film.path, time);
+    const edgesplat::OutputChoice& output = film.document.output;
+    std::vector<RenderedFrame> frames(1);
+    frames[0].settings = film.settings;
+    frames[0].result =
+        casts_rays(output.renderer)
+            ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
+            : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
+    const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
+                                            {"edgesplat:volume", film.volume->name},
+                                            {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
+    edgesplat::write_files(picture_files(file, frames, metadata));
+}
+
+/// Renders the frames that are missing; false where it was stopped.
+bool make_missing(const Film& film, edgesplat::Renderer& renderer, const MovieFolder& folder, bool quiet) {
+    using Clock = std::chrono::steady_clock;
+    std::vector<int> missing;
+    for (int frame = film.range.first; frame <= film.range.last; ++frame)
+        if (!folder.has(frame)) missing.push_back(frame);
+    const std::size_t all = static_cast<std::size_t>(film.range.last - film.range.first) + 1;
+    const std::size_t there = all - missing.size();
+    if (there > 0 && !quiet) fmt::print("{}: {} of {} frames are there already\n", folder.path().string(), there, all);
+    ProgressBar bar(quiet);
+    const StopRequest stop;
+    const auto start = Clock::now();
+    for (std::size_t done = 0; done < missing.size(); ++done) {
+        if (stop.asked()) return false;
+        const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+        const double left =
+            done == 0 ? 0 : seconds / static_cast<double>(done) * static_cast<double>(missing.size() - done);
+        bar.update(static_cast<double>(there + done) / static_cast<double>(all), left,
+                   fmt::format("frame {} of {}", there + done + 1, all));
+        make_frame(film, renderer, missing[done], folder.frame_path(missing[done]));
+    }
+    return true;
+}
+
+void run(const MovieCommand& command, int& exit_status) {
+    const Places places = places_of(command);
+    std::vector<fs::path> folders;
+    Film film = film_of(command, folders, document_of(command, folders));
+    edgesplat::Renderer renderer(command.device);
+    renderer.set_volume(film.volume);
+    MovieFolder folder(places.folder, FramePattern(places.pattern), decisions(film, renderer.device()),
+                       command.restart);
+    const edgesplat::Scene first = scene_at(film, film.path.keys.front().time);
+    apply_max_error(film.document.quality.max_error, renderer, *film.volume, first,
+                    camera_at(film.path, film.path.keys.front().time), film.document.output.size, film.settings,
+                    command.quiet);
+    const int count = film.range.last - film.range.first + 1;
+    if (!make_missing(film, renderer, folder, command.quiet)) {
+        fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
+                   folder.path().string());
+        exit_status = kStoppedStatus;
+        return;
+    }
+    if (renderer.validation_messages() > 0)
+        fail("the frames are written, but Vulkan validation had {} messages", renderer.validation_messages());
+    if (places.film) {
+        encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output});
+        if (!command.keep_frames) folder.remove();
+    }
+    if (!command.quiet)
+        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / film.fps,
+                   film.fps);
+}
+
+FrameRange parse_range(const std::string& text) {
+    FrameRange range;
+    const char* end = text.data() + text.size();
+    const auto first = std::from_chars(text.data(), end, range.first);
+    if (first.ec == std::errc() && first.ptr != end && *first.ptr == ':') {
+        const auto last = std::from_chars(first.ptr + 1, end, range.last);
+        if (last.ec == std::errc() && last.ptr == end && range.first >= 0 && range.last >= range.first) return range;
+    }
+    throw CLI::ValidationError("--frames", fmt::format("'{}' is not FIRST:LAST, such as 0:99", text));
+}
+
+void add_movie_options(CLI::App& app, MovieCommand& command) {
+    constexpr const char* kGroup = "Movie";
+    app.add_option("-o,--output", command.output,
+                   "A film (.mp4, .webm), or numbered frames: FOLDER/frame_%04d.png or .exr")
+        ->required()
+        ->type_name("FILE")
+        ->group(kGroup);
+    add_number(app, "--orbit", command.orbit, {-36000, 36000},
+               "Go so many degrees around the volume's centre, from the scene's camera on")
+        ->type_name("DEGREES")
+        ->group(kGroup);
+    add_number(app, "--fps", command.fps, {0.01, 1000}, "Frames a second; default: the scene file's, else 25")
+        ->group(kGroup);
+    add_number(app, "--seconds", command.seconds, {0.001, 1e6},
+               "How long; default: until the camera's way and all animated numbers end, 8 for --orbit")
+        ->group(kGroup);
+    app.add_option_function<std::string>(
+           "--frames", [&command](const std::string& text) { command.range = parse_range(text); },
+           "Only these of the movie's frames, the first being 0")
+        ->type_name("FIRST:LAST")
+        ->group(kGroup);
+    app.add_flag("--keep-frames", command.keep_frames, "Keep the frames that a film was made of, in FILE.frames")
+        ->group(kGroup);
+    app.add_flag("--restart", command.restart, "Remove frames that another scene left, and begin anew")->group(kGroup);
+    app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
+}
+
+}  // namespace
+
+void add_movie_command(CLI::App& app, int& exit_status) {
+    CLI::App& sub = *app.add_subcommand("movie", "Render a camera's way around or through a volume");
+    const auto command = std::make_shared<MovieCommand>();
+    sub.add_option("VOLUME", command->source,
+                   "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml), whose [movie] "
+                   "says how the camera moves and what changes")
+        ->required()
+        ->type_name("");
+    add_movie_options(sub, *command);
+    add_camera_options(sub, command->edits);
+    add_scene_options(sub, command->edits);
+    add_effects_options(sub, command->edits);
+    add_renderer_options(sub, command->edits);
+    add_max_error_option(sub, command->edits);
+    add_settings_options(sub, command->edits);
+    add_volume_options(sub, command->volume);
+    add_set_option(sub, command->edits);
+    add_device_options(sub, command->device);
+    sub.footer(
+        "Frames are written one by one into FILE.frames beside the film. Stopped or killed, the same command goes on\n"
+        "where it was; a movie of another scene is not mixed in.\n\n"
+        "Examples:\n"
+        "  edgesplat movie builtin:phantom --orbit 360 --seconds 6 -o phantom.mp4\n"
+        "  edgesplat movie nose.toml -o nose.webm --size 640x480\n"
+        "  edgesplat movie nose.toml -o frames/frame_%04d.exr --frames 0:49");
+    sub.callback([command, &exit_status] { run(*command, exit_status); });
+}

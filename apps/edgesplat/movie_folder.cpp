@@ -1,0 +1,138 @@
+#include "apps/edgesplat/movie_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <vector>
+
+#include "engine/error.h"
+#include "engine/image_file.h"
+
+namespace fs = std::filesystem;
+using edgesplat::fail;
+using nlohmann::ordered_json;
+
+namespace {
+
+constexpr const char* kNote = "movie.json";
+
+/// FNV-1a: a short name for a long text.
+std::string hash_of(const std::string& text) {
+    std::uint64_t hash = 14695981039346656037U;
+    for (const char c : text)
+        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
+    return fmt::format("{:016x}", hash);
+}
+
+/// The file that one of write_files' temporary files, .NAME.PID-COUNT.tmp, was to become: a killed program left it.
+std::string written_as(const std::string& name) {
+    if (!name.starts_with('.') || !name.ends_with(".tmp")) return "";
+    const std::string inner = name.substr(1, name.size() - 5);
+    return inner.substr(0, inner.rfind('.'));
+}
+
+/// The names under which two notes differ.
+std::vector<std::string> differences(const ordered_json& a, const ordered_json& b) {
+    std::vector<std::string> names;
+    for (const auto* one : {&a, &b})
+        for (const auto& [name, value] : one->items()) {
+            const bool same = a.contains(name) && b.contains(name) && a[name] == b[name];
+            if (!same && std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+        }
+    return names;
+}
+
+}  // namespace
+
+FramePattern::FramePattern(const std::string& name) {
+    const std::size_t percent = name.find('%');
+    std::size_t end = percent == std::string::npos ? name.size() : percent + 1;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0)
+        ++end;
+    const std::string digits = percent == std::string::npos ? "" : name.substr(percent + 1, end - percent - 1);
+    const bool numbered = end < name.size() && name[end] == 'd' && name.find('%', end) == std::string::npos;
+    if (!numbered || digits.size() > 2 || (!digits.empty() && digits[0] != '0'))
+        fail("{}: not a name for frames; expected one number in it, such as frame_%04d.png", name);
+    before_ = name.substr(0, percent);
+    after_ = name.substr(end + 1);
+    digits_ = digits.empty() ? 1 : std::stoi(digits);
+}
+
+std::string FramePattern::name(int frame) const {
+    return fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
+}
+
+bool FramePattern::matches(std::string_view name) const {
+    if (name.size() <= before_.size() + after_.size() || !name.starts_with(before_) || !name.ends_with(after_))
+        return false;
+    const std::string_view number = name.substr(before_.size(), name.size() - before_.size() - after_.size());
+    return number.size() >= static_cast<std::size_t>(digits_) &&
+           std::all_of(number.begin(), number.end(), [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, const ordered_json& decided_by,
+                         bool restart)
+    : folder_(folder.empty() ? "." : folder), pattern_(pattern) {
+    std::error_code error;
+    fs::create_directories(folder_, error);
+    if (error) fail("{}: cannot be made: {}", folder_.string(), error.message());
+    lock();
+    bool frames = false;
+    for (const auto& entry : fs::directory_iterator(folder_)) {
+        const std::string name = entry.path().filename().string();
+        frames |= pattern_.matches(name);
+        if (pattern_.matches(written_as(name))) fs::remove(entry.path(), error);
+    }
+    if (restart) {
+        remove_frames();
+    } else if (frames || fs::exists(folder_ / kNote)) {
+        std::ifstream file(folder_ / kNote);
+        const ordered_json note = ordered_json::parse(file, nullptr, false);
+        if (note.is_discarded() || !note.contains("decided_by"))
+            fail("{}: frames lie there that nothing is known of; --restart removes them and begins anew",
+                 folder_.string());
+        const auto changed = differences(note["decided_by"], decided_by);
+        if (!changed.empty())
+            fail("{}: its frames were made with other values of: {}; give the same again, or --restart to begin anew",
+                 folder_.string(), fmt::join(changed, ", "));
+        return;
+    }
+    const ordered_json note{{"hash", hash_of(decided_by.dump())}, {"decided_by", decided_by}};
+    const edgesplat::FileContent content{folder_ / kNote, note.dump(2) + "\n"};
+    edgesplat::write_files({&content, 1});
+}
+
+MovieFolder::~MovieFolder() {
+    if (lock_ >= 0) ::close(lock_);
+}
+
+void MovieFolder::lock() {
+    lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+        ::close(lock_);
+        fail("{}: another program is making these frames", folder_.string());
+    }
+}
+
+void MovieFolder::remove_frames() const {
+    std::error_code ignored;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::directory_iterator(folder_))
+        if (pattern_.matches(entry.path().filename().string())) files.push_back(entry.path());
+    for (const fs::path& file : files)
+        fs::remove(file, ignored);
+    // Last: so frames never lie there without their note.
+    fs::remove(folder_ / kNote, ignored);
+}
+
+void MovieFolder::remove() {
+    remove_frames();
+    std::error_code ignored;
+    fs::remove(folder_, ignored);
+}

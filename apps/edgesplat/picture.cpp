@@ -1,0 +1,169 @@
+#include "apps/edgesplat/picture.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+
+#include "apps/edgesplat/cpu_renderers.h"
+#include "apps/edgesplat/max_error_option.h"
+#include "apps/edgesplat/renderer_option.h"
+#include "apps/edgesplat/volume_options.h"
+#include "engine/error.h"
+#include "engine/overlays.h"
+#include "engine/scene/scene_file.h"
+#include "engine/volume/analytic_volumes.h"
+
+namespace {
+
+constexpr std::array<std::string_view, 2> kPictureExtensions{".png", ".exr"};
+constexpr std::array<std::string_view, 1> kJsonExtensions{".json"};
+
+/// Refuses what cannot be written or drawn before anything is computed.
+void check(const PictureRequest& request) {
+    const edgesplat::OutputChoice& output = request.document.output;
+    if (!output.file.empty()) edgesplat::check_output_path(output.file, kPictureExtensions);
+    if (!request.json.empty()) edgesplat::check_output_path(request.json, kJsonExtensions);
+    if (edgesplat::is_png_path(output.file))
+        for (const std::string& aov : output.aovs)
+            edgesplat::check_output_path(aov_path(output.file, aov));
+    if (request.explain.explain && output.renderer != edgesplat::RendererKind::Splat)
+        edgesplat::fail("--explain explains splatting; it needs --renderer splat");
+    if (casts_rays(output.renderer) && !output.aovs.empty())
+        edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
+    check_cpu_request(request.document);
+    if (request.document.quality.max_error && output.renderer != edgesplat::RendererKind::Splat)
+        edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
+    edgesplat::validate(request.document.quality.settings);
+    const auto problems = problems_of(request.document, request.folders);
+    if (problems.empty()) return;
+    std::string text;
+    for (const edgesplat::DocumentProblem& problem : problems)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
+    edgesplat::fail("{}", text);
+}
+
+edgesplat::Volume load(const PictureRequest& request) {
+    edgesplat::Volume volume = load_with_progress(request.document.volume, request.folders, request.quiet);
+    if (volume.non_finite_count > 0 && !request.quiet)
+        fmt::print(stderr, "edgesplat: warning: {}: {} samples are not finite and taken as {}\n", volume.name,
+                   volume.non_finite_count, volume.min_value);
+    return volume;
+}
+
+/// The frames asked for: with `compare_plain` the plain one first.
+std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
+                                         edgesplat::Renderer& renderer, const edgesplat::Scene& scene,
+                                         const edgesplat::Camera& camera) {
+    std::vector<RenderedFrame> frames;
+    if (output.compare_plain) {
+        edgesplat::Settings plain = settings;
+        plain.edges = edgesplat::EdgeEstimator::Off;
+        frames.push_back({"plain", plain, {}});
+    }
+    const bool edges = settings.edges != edgesplat::EdgeEstimator::Off;
+    frames.push_back({edges ? "edges" : "plain", settings, {}});
+    const edgesplat::AovRequest aovs = aov_request(output.aovs);
+    const glm::ivec2& size = output.size;
+    for (RenderedFrame& frame : frames)
+        frame.result = casts_rays(output.renderer)
+                           ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
+                           : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
+    return frames;
+}
+
+/// The volume's path as the picture remembers it: as it was written where that leads to it from the working folder or
+/// EDGESPLAT_VOLUMES, else from the picture's folder.
+std::string remembered_path(const PictureRequest& request) {
+    const std::string& written = request.document.volume.path;
+    if (edgesplat::is_builtin(written) || std::filesystem::path(written).is_absolute()) return written;
+    const std::string found = edgesplat::find_volume(written, request.folders);
+    try {
+        if (edgesplat::find_volume(written, edgesplat::volume_folders({})) == found) return written;
+    } catch (const edgesplat::Error&) {
+        // From the working folder it cannot be found; the picture's folder is what is left.
+    }
+    const std::filesystem::path folder = std::filesystem::path(request.document.output.file).parent_path();
+    return std::filesystem::proximate(found, folder.empty() ? "." : folder).string();
+}
+
+/// The document of what was drawn, for the picture's metadata.
+std::string scene_of_picture(const PictureRequest& request, const edgesplat::Volume& volume,
+                             const edgesplat::Scene& scene, const edgesplat::Camera& camera,
+                             const edgesplat::Settings& settings) {
+    edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
+    document.volume.path = remembered_path(request);
+    return scene_text(document);
+}
+
+}  // namespace
+
+void make_picture(PictureRequest request) {
+    check(request);
+    const edgesplat::OutputChoice& output = request.document.output;
+    edgesplat::Settings settings = request.document.quality.settings;
+    const auto volume = std::make_shared<const edgesplat::Volume>(load(request));
+    const edgesplat::Scene scene = resolve_scene(request.document, *volume);
+    const edgesplat::Camera camera = resolve_camera(request.document, *volume, scene);
+
+    const edgesplat::FrameRequest planned{volume, scene, camera, settings, output.size, aov_request(output.aovs)};
+    if (output.file.empty()) {
+        fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned)));
+        return;
+    }
+    RunDescription description{request.command_line, volume.get(), &scene, camera, {}, {}, {}};
+    std::vector<RenderedFrame> frames;
+    std::vector<CpuMeasurements> measurements;
+    std::optional<edgesplat::accuracy::ChosenSettings> choice;
+    std::uint64_t validation_messages = 0;
+    if (on_processor(output.renderer)) {
+        CpuFrames done = render_on_processor({output, settings, request.quiet}, *volume, scene, camera);
+        frames = std::move(done.frames);
+        measurements = std::move(done.measurements);
+        description.device = "the processor";
+        if (scene.effects.overlays.any())
+            for (RenderedFrame& frame : frames)
+                edgesplat::draw_overlays(frame.result.color, *volume, scene, camera);
+    } else {
+        edgesplat::Renderer renderer(request.device);
+        renderer.set_memory_budget(request.explain.budget_bytes());
+        renderer.set_volume(volume);
+        const auto& max_error = request.document.quality.max_error;
+        choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
+        frames = render_frames(output, settings, renderer, scene, camera);
+        if (request.explain.explain) {
+            const auto plan = edgesplat::describe_frame(planned, renderer, &frames.back().result.stats);
+            fmt::print("{}\n", edgesplat::to_text(plan));
+            description.plan = to_json(plan);
+        }
+        const edgesplat::DeviceInfo& device = renderer.device();
+        description.device = fmt::format("{}, {} {}", device.name, device.driver, device.driver_version);
+        validation_messages = renderer.validation_messages();
+    }
+    description.scene_text = scene_of_picture(request, *volume, scene, camera, settings);
+
+    edgesplat::ImageMetadata metadata = picture_metadata(description);
+    metadata.emplace_back("edgesplat:renderer", name_of(output.renderer));
+    nlohmann::ordered_json json = statistics(description, frames);
+    add_error_estimate(choice, request.document.quality.max_error, metadata, json);
+    std::vector<edgesplat::FileContent> files = picture_files(output.file, frames, metadata);
+    if (!request.json.empty()) {
+        add_renderer_statistics(json, output, measurements);
+        files.push_back({request.json, json.dump(2) + "\n"});
+    }
+    edgesplat::write_files(files);
+
+    const edgesplat::RenderStats& stats = frames.back().result.stats;
+    if (!request.quiet && !measurements.empty())
+        fmt::print("{}: {}, error at most about {:.1g}, {:.1f} s\n", output.file, name_of(output.renderer),
+                   measurements.back().error_estimate, measurements.back().seconds);
+    else if (!request.quiet && casts_rays(output.renderer))
+        fmt::print("{}: {}, {:.1f} ms on {}\n", output.file, name_of(output.renderer), stats.frame_milliseconds,
+                   stats.device.name);
+    else if (!request.quiet)
+        fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}\n", output.file, stats.splats_drawn, stats.sheets,
+                   stats.frame_milliseconds, stats.device.name);
+    if (validation_messages > 0)
+        edgesplat::fail("the picture is written, but Vulkan validation had {} messages", validation_messages);
+}

@@ -1,0 +1,117 @@
+#include "apps/edgesplat/scene_command.h"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/edgesplat/volume_options.h"
+#include "engine/error.h"
+#include "engine/image_file.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_presets.h"
+#include "engine/volume/analytic_volumes.h"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::array<std::string_view, 1> kSceneExtensions{".toml"};
+
+struct NewOptions {
+    std::string volume_path, output;
+    VolumeOptions volume;
+};
+
+/// The path as a scene in `folder` writes it.
+std::string path_in_scene(const std::string& path, const fs::path& folder) {
+    std::error_code ignored;
+    if (edgesplat::is_builtin(path) || fs::path(path).is_absolute() || !fs::exists(path, ignored)) return path;
+    return fs::proximate(path, folder.empty() ? "." : folder).string();
+}
+
+void run_new(const NewOptions& options) {
+    if (!options.output.empty()) edgesplat::check_output_path(options.output, kSceneExtensions);
+    edgesplat::SceneDocument document;
+    document.volume.path = options.volume_path;
+    apply(options.volume, document.volume);
+    const edgesplat::Volume volume = load_with_progress(document.volume, edgesplat::volume_folders({}), false);
+    document.camera.view = "oblique";
+    const edgesplat::Scene scene = resolve_scene(document, volume);
+    const edgesplat::Camera camera = resolve_camera(document, volume, scene);
+    document.iso_values = scene.iso_values;
+    for (std::size_t m = 1; m < scene.materials.size(); ++m)
+        document.materials.push_back({.color = scene.materials[m].color, .extinction = scene.materials[m].extinction});
+    // The eye as numbers, which can be changed, and what it looks at.
+    const edgesplat::VolumeGeometry& geometry = volume.geometry;
+    document.camera = {.eye = camera.eye,
+                       .target = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0),
+                       .up = camera.up,
+                       .fov = camera.fov_y};
+    document.volume.path = path_in_scene(options.volume_path, fs::path(options.output).parent_path());
+    const std::string text = commented_scene_text(document);
+    if (options.output.empty()) {
+        fmt::print("{}", text);
+    } else {
+        const edgesplat::FileContent file{options.output, text};
+        edgesplat::write_files({&file, 1});
+    }
+}
+
+void run_check(const std::vector<std::string>& paths, int& exit_status) {
+    for (const std::string& path : paths) {
+        try {
+            edgesplat::read_scene_file(path);
+            fmt::print("{}: good\n", path);
+        } catch (const edgesplat::SceneFileError& error) {
+            for (const std::string& problem : error.problems())
+                fmt::print(stderr, "{}\n", problem);
+            exit_status = 1;
+        }
+    }
+}
+
+void print_presets() {
+    std::string text;
+    for (const std::string& name : edgesplat::scene_preset_names()) {
+        const edgesplat::ScenePreset preset = edgesplat::scene_preset(name);
+        text += fmt::format("{:<26}{:<10}{}\n{:26}{}\n", name, preset.is_transfer() ? "transfer" : "material",
+                            preset.file, "", preset.content.about);
+    }
+    fmt::print("{}", text);
+}
+
+}  // namespace
+
+void add_scene_command(CLI::App& app, int& exit_status) {
+    CLI::App& scene = *app.add_subcommand("scene", "Write, check and explain scene files (docs/scene_files.md)");
+    scene.require_subcommand(1);
+
+    CLI::App& make = *scene.add_subcommand("new", "Write a scene to begin with: every key, explained");
+    const auto options = std::make_shared<NewOptions>();
+    make.add_option("VOLUME", options->volume_path, "A volume file, a folder or pattern of slices, or builtin:NAME")
+        ->required()
+        ->type_name("");
+    make.add_option("-o,--output", options->output, "The scene file, .toml; default: it is printed")->type_name("FILE");
+    add_volume_options(make, options->volume);
+    make.callback([options] { run_new(*options); });
+
+    CLI::App& check = *scene.add_subcommand("check", "Say everything that is wrong with scene files");
+    const auto paths = std::make_shared<std::vector<std::string>>();
+    check.add_option("SCENE", *paths, "Scene files (.toml)")->required()->type_name("");
+    check.footer("Exit status: 0 all are good, 1 something is wrong.");
+    check.callback([paths, &exit_status] { run_check(*paths, exit_status); });
+
+    CLI::App& keys = *scene.add_subcommand("keys", "List everything a scene file can say");
+    const auto markdown = std::make_shared<bool>(false);
+    keys.add_flag("--markdown", *markdown, "As the table in docs/scene_files.md");
+    keys.callback(
+        [markdown] { fmt::print("{}", *markdown ? edgesplat::scene_keys_markdown() : edgesplat::scene_keys_text()); });
+
+    CLI::App& presets = *scene.add_subcommand("presets", "List materials and transfer functions that have a name");
+    presets.footer(
+        "Looked for in the folders in EDGESPLAT_PRESETS, in $XDG_CONFIG_HOME/edgesplat/presets, and in the program.");
+    presets.callback(print_presets);
+}

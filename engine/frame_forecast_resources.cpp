@@ -1,0 +1,233 @@
+// The images and buffers of a frame, as renderer.cpp and frame.cpp allocate them; a test compares the bytes.
+#include <algorithm>
+
+#include "engine/frame_forecast.h"
+#include "engine/frame_reach.h"
+#include "engine/frame_resources.h"
+#include "engine/passes/2_collect_splats.h"
+#include "engine/renderer_state.h"
+#include "shaders/shared/occlusion_params.h"
+
+namespace edgesplat {
+namespace {
+
+using Usage = vk::ImageUsageFlagBits;
+
+std::uint64_t texel_bytes(vk::Format format) {
+    switch (format) {
+        case vk::Format::eR8Uint:
+            return 1;
+        case vk::Format::eD16Unorm:
+        case vk::Format::eR16Sfloat:
+            return 2;
+        case vk::Format::eR32Sfloat:
+            return 4;
+        case vk::Format::eR32G32B32A32Sfloat:
+            return 16;
+        default:
+            return 8;  // rg32ui, rgba16f
+    }
+}
+
+PlannedResource image(std::string name, const gpu::ImageShape& shape, std::string contents, std::string written,
+                      std::string read) {
+    const glm::u64vec3 size(shape.size);
+    return {.name = std::move(name),
+            .image = shape,
+            .bytes = size.x * size.y * size.z * static_cast<std::uint64_t>(shape.layers) * texel_bytes(shape.format),
+            .contents = std::move(contents),
+            .written = std::move(written),
+            .read = std::move(read)};
+}
+
+PlannedResource buffer(std::string name, std::uint64_t bytes, std::string contents, std::string written,
+                       std::string read) {
+    return {.name = std::move(name),
+            .image = {},
+            .bytes = bytes,
+            .contents = std::move(contents),
+            .written = std::move(written),
+            .read = std::move(read)};
+}
+
+PlannedResource on_host(PlannedResource resource) {
+    resource.host = true;
+    return resource;
+}
+
+PlannedResource growing(PlannedResource resource) {
+    resource.grows = true;
+    return resource;
+}
+
+/// What of all draws takes most, since each may make the target anew.
+const FramePlan& largest(const std::vector<FramePlan>& draws, std::uint64_t (*bytes)(const FramePlan&)) {
+    return *std::ranges::max_element(draws, {}, bytes);
+}
+
+std::uint64_t order_bytes(const FramePlan& plan) {
+    return std::uint64_t{plan.params.splat_count} * plan.sheets_per_splat * sizeof(std::uint32_t);
+}
+
+/// What every renderer holds from the beginning.
+void add_placeholders(std::vector<PlannedResource>& out) {
+    out.push_back(on_host(buffer("frame parameters", sizeof(shader::FrameParams), "(1) FrameParams", "host", "3-7")));
+    out.push_back(on_host(buffer("drawn splats", sizeof(std::uint32_t), "(1) uint", "4", "host")));
+    out.push_back(on_host(buffer("quad indices", passes::quad_indices().size() * sizeof(std::uint32_t),
+                                 "(quads x 6) uint", "host", "5")));
+
+    const auto add = [&](vk::Format format, bool volume, bool array, Usage usage) {
+        out.push_back(image("placeholder",
+                            {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage},
+                            "1 texel", "-", "-"));
+    };
+    add(vk::Format::eR32Sfloat, true, false, Usage::eStorage);
+    add(vk::Format::eR32G32Uint, true, false, Usage::eStorage);
+    add(vk::Format::eR8Uint, true, false, Usage::eStorage);
+    add(vk::Format::eR16Sfloat, false, true, Usage::eSampled);
+    add(vk::Format::eR32Sfloat, false, false, Usage::eSampled);
+}
+
+void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& out) {
+    const CollectionPlan& plan = f.collection;
+    const auto volume_image = [&](const char* name, vk::Format format, vk::ImageUsageFlags usage, const char* contents,
+                                  const char* written, const char* read) {
+        out.push_back(image(name, {.format = format, .size = plan.dims, .volume = true, .usage = usage}, contents,
+                            written, read));
+    };
+    volume_image("volume", vk::Format::eR32Sfloat, Usage::eStorage | Usage::eTransferDst, "(z, y, x) samples", "host",
+                 "1, 2");
+    if (plan.edge_field && plan.estimator == EdgeEstimator::Cubic) {
+        volume_image("B-spline coefficients", vk::Format::eR32Sfloat, Usage::eStorage | Usage::eTransferDst,
+                     "(z, y, x) coefficients", "host", "1");
+    }
+    if (plan.edge_field) {
+        volume_image("edge field", vk::Format::eR32G32Uint, Usage::eStorage | Usage::eTransferSrc,
+                     "(z, y, x) normal, distances, flags", "1", "2");
+    }
+    if (plan.buried) {
+        volume_image("buried mask", vk::Format::eR8Uint, Usage::eStorage | Usage::eTransferSrc, "(z, y, x) 0 or 1",
+                     "1a", "1, 2");
+    }
+    out.push_back(on_host(buffer("scene parameters", sizeof(shader::SceneParams), "(1) SceneParams", "host", "1, 2")));
+    out.push_back(on_host(buffer("run offsets", passes::collect_runs(plan.dims) * sizeof(std::uint32_t), "(runs) uint",
+                                 "2, host", "2, host")));
+    if (!plan.transfer.empty()) {
+        out.push_back(on_host(buffer("transfer function", plan.transfer.size() * sizeof(shader::TransferRow),
+                                     "(rows) TransferRow", "host", "2, 5")));
+        out.push_back(buffer("classified values", f.splats.splats * sizeof(float), "(splats) float", "2", "5"));
+    }
+    out.push_back(buffer("splat list", f.splats.splats * sizeof(shader::Splat), "(splats) Splat", "2", "3, 5"));
+    if (plan.curved || plan.weighted) {
+        out.push_back(
+            buffer("splat traits", f.splats.splats * sizeof(std::uint32_t), "(splats) curvature, weight", "2", "5"));
+    }
+}
+
+void add_table(const FrameForecast& f, std::vector<PlannedResource>& out) {
+    if (!uses_table(f.settings)) return;
+    const FootprintTableSize size = table_size_of(f.settings.table_size);
+    out.push_back(image("footprint table",
+                        {.format = vk::Format::eR16Sfloat,
+                         .size = {size.width, size.height, 1},
+                         .layers = size.distances * size.directions,
+                         .array = true,
+                         .usage = Usage::eSampled | Usage::eTransferDst},
+                        "(layers, y, x) footprints", "host", "5"));
+}
+
+/// What of the light reaches each splat, and what that is found with.
+void add_reach(const FrameForecast& f, std::vector<PlannedResource>& out) {
+    const std::uint64_t bytes = f.splats.splats * sizeof(std::uint32_t);
+    if (f.occluded) {
+        out.push_back(buffer("splat occlusion", bytes, "(splats) uint", "2b", "5"));
+        out.push_back(on_host(
+            buffer("occlusion parameters", sizeof(shader::OcclusionParams), "(1) OcclusionParams", "host", "2b")));
+        out.back().held = Held::Occluding;
+    }
+    if (f.light_frames.empty()) return;
+    out.push_back(buffer("splat shadows", bytes, "(splats) uint", "2d", "5"));
+    std::uint64_t layers = 0;
+    for (const FramePlan& light : f.light_frames)
+        layers = std::max(layers, light_layer_bytes(light));
+    out.push_back(buffer("light layers", layers, "(layers, y, x) optical depth from the light", "2c", "2d"));
+    out.back().held = Held::Sweeping;
+}
+
+/// What pictures are drawn with: the one that is asked for, or a light's.
+void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held held, std::vector<PlannedResource>& all) {
+    std::vector<PlannedResource> out;
+    const auto sheet_bytes = [](const FramePlan& p) { return texel_bytes(p.sheet_format) * p.params.sheets_per_group; };
+    const FramePlan& sheets = largest(f, sheet_bytes);
+    const FramePlan& depth = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheets_per_group}; });
+    const FramePlan& accumulated = largest(f, [](const FramePlan& p) { return texel_bytes(p.accumulated_format); });
+    const FramePlan& order = largest(f, order_bytes);
+    const FramePlan& most_sheets = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheet_count}; });
+    const FramePlan& groups = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.group_count}; });
+    const glm::ivec3 size(sheets.params.size, 1);
+    const auto pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+    constexpr std::uint64_t word = sizeof(std::uint32_t);
+
+    out.push_back(image("sheet group",
+                        {.format = sheets.sheet_format,
+                         .size = size,
+                         .layers = static_cast<int>(sheets.params.sheets_per_group),
+                         .array = true,
+                         .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc},
+                        "(sheets at once, y, x) sum tau colour, sum tau", "5", "6"));
+    out.push_back(image("sheet depth",
+                        {.format = vk::Format::eD16Unorm,
+                         .size = size,
+                         .layers = static_cast<int>(depth.params.sheets_per_group),
+                         .array = true,
+                         .usage = Usage::eDepthStencilAttachment},
+                        "(sheets at once, y, x) 0 where a pixel is opaque", "5", "5"));
+    out.push_back(
+        image("accumulated picture",
+              {.format = accumulated.accumulated_format,
+               .size = size,
+               .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
+              "(y, x) colour and opacity so far", "6", "5, 7"));
+    out.push_back(growing(buffer("sheets of splats", splats * word, "(splats) uint", "3", "4, 5")));
+    out.push_back(growing(buffer("splat order", order_bytes(order), "(splats x sheets each) uint", "4", "5")));
+    out.push_back(
+        growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,
+                       "(sheets, blocks) uint", "4", "4, 5")));
+    out.push_back(
+        on_host(growing(buffer("sheet groups", groups.params.group_count * std::uint64_t{sizeof(shader::SheetGroup)},
+                               "(groups) SheetGroup", "host, 3, 4", "5, 6"))));
+    out.push_back(
+        growing(buffer("draw commands", groups.params.group_count * std::uint64_t{sizeof(shader::DrawCommand)},
+                       "(groups) DrawCommand", "4", "5")));
+    out.push_back(on_host(growing(buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host"))));
+    for (PlannedResource& resource : out) {
+        resource.held = held;
+        all.push_back(std::move(resource));
+    }
+}
+
+}  // namespace
+
+std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
+    std::vector<PlannedResource> out;
+    add_volume_resources(forecast, out);
+    add_table(forecast, out);
+    add_reach(forecast, out);
+    std::vector<FramePlan> draws;
+    for (const ForecastDraw& draw : forecast.draws)
+        draws.push_back(draw.plan);
+    add_targets(draws, forecast.splats.splats, Held::Drawing, out);
+    if (!forecast.light_frames.empty()) add_targets(forecast.light_frames, forecast.splats.splats, Held::Sweeping, out);
+    add_placeholders(out);
+    // Uploads go through one buffer, one after another.
+    std::uint64_t staging = 0;
+    for (const PlannedResource& resource : out)
+        if (resource.image && resource.written == "host")
+            staging = std::max(staging, staging_bytes(*resource.image, texel_bytes(resource.image->format)));
+    PlannedResource upload = on_host(buffer("staging buffer", staging, "(rows) texels", "host", "copies"));
+    upload.held = Held::Uploading;
+    out.push_back(std::move(upload));
+    return out;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,16 @@
+#include "engine/passes/2c_sweep_light.h"
+
+namespace edgesplat::passes {
+
+void sweep_light(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t group) {
+    const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
+    commands.dispatch("2c_sweep_light.comp", {}, {frame, group, 0}, {groups.x, groups.y});
+    commands.barrier();
+}
+
+void shadow_splats(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, std::uint32_t channel) {
+    commands.dispatch("2d_shadow_splats.comp", {}, {frame, channel, 0}, gpu::groups_for(splat_count, 64));
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes

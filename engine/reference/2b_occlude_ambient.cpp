@@ -1,0 +1,58 @@
+#include "engine/reference/2b_occlude_ambient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "engine/scene/transfer_function.h"
+
+namespace edgesplat::reference {
+namespace {
+
+constexpr double kDark = 12;
+
+/// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+glm::dmat3 frame_of(const glm::dvec3& n) {
+    const double s = n.z >= 0 ? 1 : -1;
+    const double a = -1 / (s + n.z), b = n.x * n.y * a;
+    return {glm::dvec3(1 + s * n.x * n.x * a, s * b, -s * n.x), glm::dvec3(b, s + n.y * n.y * a, -n.y), n};
+}
+
+}  // namespace
+
+double ambient_reach(const SplatRecord& record, const Field& field, const ScaledScene& scaled, const Scene& scene,
+                     const VolumeGeometry& geometry, double band, double radius, bool turned, int rays) {
+    const SurfacePoint s = surface_point(record.edge, band, turned, geometry);
+    const glm::ivec3 voxel = field.voxel(record.voxel);
+    const glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
+    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
+    const bool sphere = !record.edge.has_normal;
+    const glm::dmat3 frame = sphere ? glm::dmat3(1) : frame_of(s.normal);
+    const glm::uvec3 v(voxel);
+    const std::uint32_t turn = v.x * 3518319155U + v.y * 2882110345U + v.z * 2360945575U;
+    const double phase = (turn >> 8U) * (2 * std::numbers::pi / 16777216.0);
+    const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
+
+    double sum = 0;
+    for (int k = 0; k < rays; ++k) {
+        const double share = (k + 0.5) / rays, angle = phase + k * golden;
+        const double up = sphere ? 1 - 2 * share : std::sqrt(1 - share);
+        const double across = std::sqrt(1 - up * up);
+        const glm::dvec3 u = to_index * (frame * glm::dvec3(across * std::cos(angle), across * std::sin(angle), up));
+        const double steps = std::clamp(std::ceil(radius * glm::length(u) - 0.01), 1.0, double{kOcclusionSteps});
+        const double dl = radius / steps;
+        double tau = 0;
+        for (int i = 0; i < static_cast<int>(steps) && tau < kDark; ++i) {
+            const glm::ivec3 p(glm::floor(start + (i + 0.5) * dl * u + 0.5));
+            if (field.clamped(p) != p || cut_away(scene.effects.clip, geometry.to_world(glm::dvec3(p)))) continue;
+            const double value = field.at(p);
+            tau += dl * (scaled.transfer.empty()
+                             ? scene.materials[static_cast<std::size_t>(scaled.material(value))].extinction
+                             : transfer_at(scaled.transfer, value).extinction);
+        }
+        sum += std::exp(-tau);
+    }
+    return sum / rays;
+}
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,22 @@
+// Passes 2c and 2d without their pictures: the optical depth between a light and the place where its light arrives at a
+// splat, kernel by kernel (method.md, 2d_shadow_splats).
+#pragma once
+
+#include <span>
+
+#include "engine/reference/footprints.h"
+#include "engine/reference/surface_point.h"
+
+namespace edgesplat::reference {
+
+/// Where light from `to_light` (world, unit) arrives at the record's splat, index space. `pixel` is a pixel of the
+/// light's picture there, mm.
+glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
+                     const glm::dvec3& to_light, double pixel);
+
+/// exp(-tau) from the light to `place` (index space) through the kernels of `records`. Directional and point lights.
+double light_reach(std::span<const SplatRecord> records, const Field& field, const Scene& scene,
+                   const VolumeGeometry& geometry, const Footprints& footprints, const Light& light,
+                   const glm::dvec3& place);
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,28 @@
+// Where light arrives at a splat (method.md, Light that arrives). Mirrors shaders/lib/surface_point.glsl.
+#pragma once
+
+#include "engine/reference/2_collect_splats.h"
+
+namespace edgesplat::reference {
+
+/// Voxels between a surface and the place that looks up from it, for shadows at least and for ambient light.
+constexpr double kShortestLift = 1.5, kLongestLift = 8, kOcclusionLift = 1.25;
+
+struct SurfacePoint {
+    glm::dvec3 foot{0};    ///< relative to the voxel centre, index space
+    glm::dvec3 normal{0};  ///< world, unit, outwards; 0 where the splat has none
+    glm::dvec3 step{0};    ///< index space: one mm along the normal
+    double voxel = 1;      ///< mm per voxel along the normal
+    double room = 0;       ///< mm along the normal to where the next surface may be
+};
+
+/// Whether the kernel reaches a second face too. `band`: R + a, voxels.
+bool is_wall(const VoxelEdge& edge, double band);
+
+/// `turned`: of a wall, the face on the other side.
+SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& geometry);
+
+/// Whether the scene's clip leaves nothing of a point, world mm.
+bool cut_away(const Clip& clip, const glm::dvec3& point);
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,65 @@
+// RendererState: what is held, and whether what comes next can be.
+#include "engine/error.h"
+#include "engine/renderer_state.h"
+
+namespace edgesplat {
+
+void RendererState::provide_volume() {
+    if (!volume_resources.volume) upload_volume(*this);
+}
+
+double RendererState::reach_of(const Settings& drawn) {
+    choose_supports(drawn);
+    return draws_warped(drawn) ? footprint_resources.farthest_reach : farthest_reach(drawn);
+}
+
+std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& wanted) const {
+    if (!collected || !(*collected == wanted)) return std::nullopt;
+    return SplatCount{SplatCount::From::Frame, volume_resources.splat_count, volume_resources.box_low,
+                      volume_resources.box_high};
+}
+
+void RendererState::check_memory(const FrameRequest& request) {
+    const Settings settings = drawn_settings(request);
+    const double reach = reach_of(settings);
+    const CollectionPlan wanted = plan_collection(*volume, request.scene, settings, keeps_buried(request));
+    const auto known = collected_splats(wanted);
+    const SplatCount splats = known.value_or(most_splats(volume->geometry));
+    FrameForecast forecast = forecast_frame(request, splats, reach);
+    std::vector<std::pair<std::string, std::uint64_t>> asked;
+    for (const PlannedResource& resource : forecast.resources)
+        asked.emplace_back(resource.name, resource.bytes);
+    if (asked == checked_fit) return;
+    MemoryNeed need = memory_need(device, forecast, memory_budget);
+    // The bound by the number of voxels is too high for most volumes; counting takes longer.
+    if (!need.fits() && !known) {
+        forecast = forecast_frame(request, count_splats(*volume, wanted), reach);
+        need = memory_need(device, forecast, memory_budget);
+    }
+    if (!need.fits()) refuse_memory(device, request, need, memory_budget);
+    checked_fit = std::move(asked);
+}
+
+FrameForecast Renderer::forecast(const FrameRequest& request) {
+    const Settings settings = drawn_settings(request);
+    const CollectionPlan wanted = plan_collection(*request.volume, request.scene, settings, keeps_buried(request));
+    const auto known = request.volume == state_->volume ? state_->collected_splats(wanted) : std::nullopt;
+    return forecast_frame(request, known ? *known : count_splats(*request.volume, wanted), state_->reach_of(settings));
+}
+
+std::vector<FittingChange> Renderer::what_fits(const FrameRequest& request) const {
+    return edgesplat::what_fits(state_->device, request, state_->memory_budget);
+}
+
+std::uint64_t Renderer::held_bytes() const {
+    return state_->device.allocated_bytes();
+}
+
+std::uint64_t Renderer::required_bytes(const PlannedResource& resource) const {
+    const gpu::Device& device = state_->device;
+    if (!resource.image) return gpu::Buffer::required_bytes(device, resource.bytes);
+    return gpu::beyond_limits(device, *resource.image).empty() ? gpu::required_bytes(device, *resource.image)
+                                                               : resource.bytes;
+}
+
+}  // namespace edgesplat

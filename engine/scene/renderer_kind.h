@@ -1,0 +1,30 @@
+// Which way to the picture.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace edgesplat {
+
+/// Splatting; rays cast through the interpolated volume, plain or through warped materials; the sum of all kernels
+/// itself; a builtin volume's exact surfaces.
+enum class RendererKind { Splat, Raycast, RaycastWarped, Reference, Truth };
+
+inline constexpr std::array<std::string_view, 5> kRendererNames{"splat", "raycast", "raycast-warped", "reference",
+                                                                "truth"};
+
+/// Whether it computes on the processor alone and needs no Vulkan device.
+constexpr bool on_processor(RendererKind kind) {
+    return kind == RendererKind::Reference || kind == RendererKind::Truth;
+}
+
+/// Whether it is the ray caster, in either way.
+constexpr bool casts_rays(RendererKind kind) {
+    return kind == RendererKind::Raycast || kind == RendererKind::RaycastWarped;
+}
+
+constexpr std::string_view name_of(RendererKind kind) {
+    return kRendererNames[static_cast<std::size_t>(kind)];
+}
+
+}  // namespace edgesplat

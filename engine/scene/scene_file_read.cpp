@@ -1,0 +1,337 @@
+// From TOML to a SceneDocument, key by key.
+#include <toml++/toml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "engine/scene/nearest_name.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_keys.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a preset may say.
+constexpr std::array<std::string_view, 4> kPresetKeys{"about", "iso_values", "materials", "transfer"};
+
+struct Problem {
+    std::size_t line;
+    std::string text;
+};
+
+/// A value on its way into the document.
+struct Assignment {
+    const SceneKey* key;
+    std::size_t index;
+    std::string path;
+    KeyValue value;
+    std::size_t line;
+};
+
+/// Walks a TOML tree beside the table of keys.
+class Reader {
+  public:
+    Reader(SceneDocument& document, bool preset) : document_(document), preset_(preset) {
+        for (const SceneKey& key : scene_keys())
+            for (std::string path = table_of(key); !path.empty();
+                 path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')))
+                groups_.insert(path);
+    }
+
+    void read_table(const toml::table& table, const std::string& concrete, const std::string& generic,
+                    std::size_t index) {
+        for (auto&& [key, node] : table) {
+            const std::string name(key.str());
+            const std::string separator = generic.empty() ? "" : ".";
+            read_node(node, concrete + separator + name, generic + separator + name, index, line_of(key));
+        }
+    }
+
+    /// Puts what was read into the document, in the order of the table of keys: a preset before single knobs.
+    void apply() {
+        std::stable_sort(assignments_.begin(), assignments_.end(),
+                         [](const Assignment& a, const Assignment& b) { return a.key < b.key; });
+        for (const Assignment& assignment : assignments_)
+            assignment.key->set(document_, assignment.index, assignment.value);
+    }
+
+    void add_problem(std::size_t line, const std::string& path, const std::string& text) {
+        problems_.push_back({line, path.empty() ? text : path + ": " + text});
+    }
+
+    /// The line of a path, or of the nearest thing around it that the file has.
+    std::size_t line_of_path(std::string path) const {
+        while (!path.empty()) {
+            const auto found = lines_.find(path);
+            if (found != lines_.end()) return found->second;
+            const std::size_t end = path.find_last_of(".[");
+            path = end == std::string::npos ? "" : path.substr(0, end);
+        }
+        return 1;
+    }
+
+    std::vector<Problem>& problems() { return problems_; }
+
+    void read_node(const toml::node& node, const std::string& concrete, const std::string& generic, std::size_t index,
+                   std::size_t line) {
+        lines_[concrete] = line;
+        const std::string top = generic.substr(0, generic.find_first_of(".["));
+        if (preset_ && std::find(kPresetKeys.begin(), kPresetKeys.end(), top) == kPresetKeys.end() &&
+            (groups_.contains(top) || find_key(top)))
+            return add_problem(line, concrete,
+                               fmt::format("is not for presets; they have {}", fmt::join(kPresetKeys, ", ")));
+        if (const SceneTable* table = find_table(generic)) return read_group(*table, node, concrete, line);
+        if (const SceneKey* key = find_key(generic)) return read_key(*key, node, concrete, index, line);
+        if (groups_.contains(generic)) {
+            const toml::table* table = node.as_table();
+            if (!table) return add_problem(line, concrete, text_of(node) + ": expected a table: [" + concrete + "]");
+            return read_table(*table, concrete, generic, index);
+        }
+        const std::string nearest = nearest_key(concrete);
+        add_problem(line, concrete, "unknown key" + (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+    }
+
+  private:
+    static std::size_t line_of(const toml::key& key) { return key.source().begin.line; }
+
+    static std::string text_of(const toml::node& node) {
+        std::ostringstream out;
+        if (node.is_table()) return "a table";
+        node.visit([&out](const auto& concrete) { out << concrete; });
+        std::string text = out.str();
+        std::replace(text.begin(), text.end(), '\n', ' ');
+        return text.size() > 80 ? text.substr(0, 77) + "..." : text;
+    }
+
+    void read_group(const SceneTable& group, const toml::node& node, const std::string& concrete, std::size_t line) {
+        if (!group.list) {
+            const toml::table* table = node.as_table();
+            if (!table) return add_problem(line, concrete, text_of(node) + ": expected a table: [" + concrete + "]");
+            group.resize(document_, 1);
+            return read_table(*table, concrete, group.path, 0);
+        }
+        const toml::array* array = node.as_array();
+        const bool tables = array && std::all_of(array->begin(), array->end(), [](auto& n) { return n.is_table(); });
+        if (!tables)
+            return add_problem(line, concrete,
+                               text_of(node) + ": expected a list of tables, each begun by [[" + group.path + "]]");
+        if (array->size() > group.most)
+            return add_problem(line, concrete,
+                               fmt::format("{} entries: expected at most {}", array->size(), group.most));
+        group.resize(document_, 0);
+        group.resize(document_, array->size());
+        for (std::size_t i = 0; i < array->size(); ++i) {
+            const std::string entry = fmt::format("{}[{}]", concrete, i);
+            lines_[entry] = (*array)[i].source().begin.line;
+            read_table(*(*array)[i].as_table(), entry, group.path + "[]", i);
+        }
+    }
+
+    void read_key(const SceneKey& key, const toml::node& node, const std::string& concrete, std::size_t index,
+                  std::size_t line) {
+        const std::optional<KeyValue> value = value_of(node, key);
+        if (!value) return add_problem(line, concrete, text_of(node) + ": expected " + key.expectation());
+        const std::string refusal = key.refusal(*value);
+        if (!refusal.empty()) return add_problem(line, concrete, refusal);
+        assignments_.push_back({&key, index, concrete, *value, line});
+    }
+
+    static bool append_numbers(const toml::array& array, bool nested, std::vector<double>& numbers) {
+        for (auto&& item : array) {
+            if (const toml::array* inner = item.as_array(); inner && nested) {
+                if (inner->size() != 3 || !append_numbers(*inner, false, numbers)) return false;
+            } else if (nested || !item.is_number()) {
+                return false;
+            } else {
+                numbers.push_back(*item.value<double>());
+            }
+        }
+        return true;
+    }
+
+    /// The node as the key's type; nothing where it is of another.
+    static std::optional<KeyValue> value_of(const toml::node& node, const SceneKey& key) {
+        const toml::array* array = node.as_array();
+        switch (key.type) {
+            case KeyType::Flag:
+                return node.is_boolean() ? std::optional<KeyValue>(*node.value<bool>()) : std::nullopt;
+            case KeyType::Number:
+            case KeyType::Integer:
+                return node.is_number() ? std::optional<KeyValue>(*node.value<double>()) : std::nullopt;
+            case KeyType::Text:
+                return node.is_string() ? std::optional<KeyValue>(*node.value<std::string>()) : std::nullopt;
+            case KeyType::Texts: {
+                if (!array) return std::nullopt;
+                std::vector<std::string> texts;
+                for (auto&& item : *array) {
+                    if (!item.is_string()) return std::nullopt;
+                    texts.push_back(*item.value<std::string>());
+                }
+                return texts;
+            }
+            default:
+                break;
+        }
+        std::vector<double> numbers;
+        if (!array || !append_numbers(*array, key.points, numbers)) return std::nullopt;
+        return numbers;
+    }
+
+    SceneDocument& document_;
+    bool preset_;
+    std::set<std::string> groups_;  ///< tables that keys are in, and those around them
+    std::map<std::string, std::size_t> lines_;
+    std::vector<Assignment> assignments_;
+    std::vector<Problem> problems_;
+};
+
+[[noreturn]] void report(std::vector<Problem> problems, const std::string& name) {
+    std::stable_sort(problems.begin(), problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.line < b.line; });
+    std::vector<std::string> lines;
+    for (const Problem& problem : problems)
+        lines.push_back(fmt::format("{}:{}: {}", name, problem.line, problem.text));
+    throw SceneFileError(std::move(lines));
+}
+
+/// The first byte that is not part of valid UTF-8, or npos.
+std::size_t invalid_utf8(std::string_view text) {
+    for (std::size_t i = 0; i < text.size();) {
+        const auto lead = static_cast<unsigned char>(text[i]);
+        const std::size_t length = lead < 0x80                   ? 1
+                                   : lead >= 0xC2 && lead < 0xE0 ? 2
+                                   : lead >= 0xE0 && lead < 0xF0 ? 3
+                                   : lead >= 0xF0 && lead < 0xF5 ? 4
+                                                                 : 0;
+        if (length == 0 || i + length > text.size()) return i;
+        for (std::size_t k = 1; k < length; ++k)
+            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return i;
+        i += length;
+    }
+    return std::string_view::npos;
+}
+
+}  // namespace
+
+SceneFileError::SceneFileError(std::vector<std::string> problems)
+    : Error(fmt::format("{}", fmt::join(problems, "\n"))), problems_(std::move(problems)) {}
+
+bool is_scene_path(const fs::path& path) {
+    return path.extension() == ".toml";
+}
+
+SceneDocument parse_scene(std::string_view text, const std::string& name, const SceneTextOptions& options) {
+    if (const std::size_t bad = invalid_utf8(text); bad != std::string_view::npos) {
+        const auto line =
+            static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n')) +
+            1;
+        report({{line, fmt::format("byte {} is no UTF-8 text; a scene is a text file in TOML", bad)}}, name);
+    }
+    toml::table table;
+    try {
+        table = toml::parse(text, name);
+    } catch (const toml::parse_error& error) {
+        report({{error.source().begin.line, fmt::format("no valid TOML: {}", error.description())}}, name);
+    }
+    if (table.empty())
+        report({{1, "the file is empty; `edgesplat scene new VOLUME` writes a scene to begin with"}}, name);
+    SceneDocument document;
+    Reader reader(document, options.preset);
+    reader.read_table(table, "", "", 0);
+    reader.apply();
+    if (options.whole && !options.preset)
+        for (const DocumentProblem& problem : problems_of(document, options.folders))
+            reader.add_problem(reader.line_of_path(problem.path), problem.path, problem.text);
+    if (!reader.problems().empty()) report(std::move(reader.problems()), name);
+    return document;
+}
+
+SceneDocument read_scene_file(const fs::path& path) {
+    const auto refuse = [&](const std::string& why) { throw SceneFileError({path.string() + ": " + why}); };
+    std::error_code error;
+    const fs::file_status status = fs::status(path, error);
+    if (error && error != std::errc::no_such_file_or_directory) refuse(error.message());
+    if (!fs::exists(status)) refuse("no such file");
+    if (fs::is_directory(status)) refuse("is a folder; expected a scene file");
+    std::ifstream in(path, std::ios::binary);
+    std::ostringstream text;
+    text << in.rdbuf();
+    if (!in) refuse("cannot be read");
+    return parse_scene(text.str(), path.string(), {.folders = volume_folders(path.parent_path())});
+}
+
+namespace {
+
+/// A node that `text` means to a key: TOML where it is that, else a text or the inside of a list.
+toml::table node_of(const SceneKey* key, std::string text) {
+    const bool list =
+        key && (key->type == KeyType::Numbers || key->type == KeyType::Integers || key->type == KeyType::Texts);
+    const bool textual = key && (key->type == KeyType::Text || key->type == KeyType::Texts);
+    if (key && key->type == KeyType::Text && !text.starts_with('"') && !text.starts_with('\''))
+        return toml::table{{"v", text}};
+    if (list && !text.starts_with('[')) {
+        if (textual) {
+            toml::array items;
+            std::istringstream in(text);
+            for (std::string item; std::getline(in, item, ',');)
+                items.push_back(item);
+            return toml::table{{"v", items}};
+        }
+        text = "[" + text + "]";
+    }
+    return toml::parse("v = " + text);
+}
+
+}  // namespace
+
+void set_key(SceneDocument& document, std::string_view assignment) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string_view::npos || equals == 0)
+        fail("'{}' is not KEY=VALUE, such as effects.fog.density=0.02", assignment);
+    const std::string path(assignment.substr(0, equals)), text(assignment.substr(equals + 1));
+    const KeyAddress address = key_address(path);
+    const SceneKey* key = find_key(address.path);
+    const SceneTable* table = find_table(address.path);
+    if (!key && !table) {
+        const std::string nearest = nearest_key(path);
+        fail("{}: unknown key{}", path, nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    }
+    if (address.component && key) {
+        double value = 0;
+        std::istringstream in(text);
+        if (!(in >> value) || !in.eof()) fail("{}: {}: expected a number", path, text);
+        return set_number(document, path, value);
+    }
+    if (table && !table->list && (text == "true" || text == "false"))
+        return table->resize(document, text == "true" ? 1 : 0);
+
+    SceneDocument changed = document;
+    if (key) {
+        const std::string around = table_of(*key);
+        const bool list = around.ends_with("[]");
+        const SceneTable* group = find_table(list ? around.substr(0, around.size() - 2) : around);
+        const std::size_t count = group ? group->count(changed) : 0;
+        if (group && (address.index > count || address.index >= group->most))
+            fail("{}: there are {} entries, expected an index from 0 to {}", path, count,
+                 std::min(count, group->most - 1));
+        if (group && address.index >= count) group->resize(changed, address.index + 1);
+    }
+    toml::table holder;
+    try {
+        holder = node_of(key, text);
+    } catch (const toml::parse_error&) {
+        fail("{}: {}: expected {}", path, text, key ? key->expectation() : "a TOML value");
+    }
+    Reader reader(changed, false);
+    reader.read_node(*holder.get("v"), path, address.path, address.index, 1);
+    if (!reader.problems().empty()) fail("{}", reader.problems().front().text);
+    reader.apply();
+    document = std::move(changed);
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,438 @@
+// What a scene file can say, row by row.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "engine/scene/ladder.h"
+#include "engine/scene/scene_keys.h"
+#include "engine/scene/views.h"
+
+namespace edgesplat {
+namespace {
+
+constexpr KeyRange kShare{0, 1};
+constexpr KeyRange kFromZero{.low = 0};
+constexpr KeyRange kAboveZero{.low = 0, .above_low = true};
+
+template <typename T>
+struct is_optional : std::false_type {};
+template <typename T>
+struct is_optional<std::optional<T>> : std::true_type {};
+
+/// How a member of the document is a value of a file, and back.
+template <typename T>
+KeyValue to_value(const T& v, const std::vector<std::string>& choices) {
+    if constexpr (std::is_enum_v<T>)
+        return choices[static_cast<std::size_t>(v)];
+    else if constexpr (std::is_same_v<T, int>)
+        return static_cast<double>(v);
+    else if constexpr (std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::ivec3>)
+        return std::vector<double>{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+    else if constexpr (std::is_same_v<T, glm::ivec2>)
+        return std::vector<double>{static_cast<double>(v.x), static_cast<double>(v.y)};
+    else
+        return v;
+}
+
+template <typename T>
+T from_value(const KeyValue& value, const std::vector<std::string>& choices) {
+    if constexpr (std::is_enum_v<T>) {
+        const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(value));
+        return static_cast<T>(found - choices.begin());
+    } else if constexpr (std::is_same_v<T, int>) {
+        return static_cast<int>(std::get<double>(value));
+    } else if constexpr (std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::ivec3>) {
+        const auto& v = std::get<std::vector<double>>(value);
+        return T(v[0], v[1], v[2]);
+    } else if constexpr (std::is_same_v<T, glm::ivec2>) {
+        const auto& v = std::get<std::vector<double>>(value);
+        return T(v[0], v[1]);
+    } else {
+        return std::get<T>(value);
+    }
+}
+
+template <typename T>
+void describe(SceneKey& key) {
+    if constexpr (std::is_same_v<T, bool>) key.type = KeyType::Flag;
+    if constexpr (std::is_same_v<T, double>) key.type = KeyType::Number;
+    if constexpr (std::is_same_v<T, int>) key.type = KeyType::Integer;
+    if constexpr (std::is_same_v<T, std::string> || std::is_enum_v<T>) key.type = KeyType::Text;
+    if constexpr (std::is_same_v<T, std::vector<std::string>>) key.type = KeyType::Texts;
+    if constexpr (std::is_same_v<T, std::vector<double>>) key.type = KeyType::Numbers;
+    if constexpr (std::is_same_v<T, glm::dvec3>) key.type = KeyType::Numbers, key.count = 3;
+    if constexpr (std::is_same_v<T, glm::ivec3>) key.type = KeyType::Integers, key.count = 3;
+    if constexpr (std::is_same_v<T, glm::ivec2>) key.type = KeyType::Integers, key.count = 2;
+}
+
+class Table {
+  public:
+    /// Adds a key whose member `access` names. What its row says beside path and type is in `facts`.
+    template <typename Access>
+    void add(const char* path, Access access, SceneKey facts) {
+        using Member = std::remove_reference_t<decltype(access(std::declval<SceneDocument&>(), std::size_t{}))>;
+        SceneKey key = std::move(facts);
+        key.path = path;
+        if constexpr (is_optional<Member>::value) {
+            using T = typename Member::value_type;
+            describe<T>(key);
+            key.get = [access, choices = key.choices](const SceneDocument& d, std::size_t i) {
+                const auto& member = access(d, i);
+                return member ? std::optional(to_value(*member, choices)) : std::nullopt;
+            };
+            key.set = [access, choices = key.choices](SceneDocument& d, std::size_t i, const KeyValue& v) {
+                access(d, i) = from_value<T>(v, choices);
+            };
+        } else {
+            describe<Member>(key);
+            key.get = [access, choices = key.choices](const SceneDocument& d, std::size_t i) {
+                std::optional<KeyValue> value = to_value(access(d, i), choices);
+                // An empty text or list is what "not given" is in a document.
+                if constexpr (requires(const Member& m) { m.empty(); })
+                    if (access(d, i).empty()) value.reset();
+                return value;
+            };
+            key.set = [access, choices = key.choices](SceneDocument& d, std::size_t i, const KeyValue& v) {
+                access(d, i) = from_value<Member>(v, choices);
+            };
+        }
+        keys.push_back(std::move(key));
+    }
+
+    std::vector<SceneKey> keys;
+};
+
+// One access function per member; works on a document that may be changed and on one that may not.
+#define MEMBER(expression)                                 \
+    [](auto& d, [[maybe_unused]] std::size_t i) -> auto& { \
+        return d.expression;                               \
+    }
+
+void add_top(Table& t) {
+    t.add("about", MEMBER(about), {.help = "What is to be seen, in words", .absent = "nothing"});
+    t.add("iso_values", MEMBER(iso_values),
+          {.unit = "the volume's",
+           .help = "Values of the surfaces, ascending, at most 15; may be left out with a transfer function",
+           .absent = "those of the materials' presets, a builtin scene's own, or the strongest that `edgesplat info` "
+                     "suggests"});
+    t.add("transfer_preset", MEMBER(transfer_preset),
+          {.help = "A transfer function by name (`edgesplat scene presets`)", .absent = "none"});
+    t.add("ambient", MEMBER(ambient), {.help = "Light from everywhere", .range = kFromZero});
+    t.add("lit", MEMBER(lit),
+          {.help = "Which splats lights reach: those at an edge, or all, by their own gradient",
+           .choices = {"edges", "everywhere"}});
+    t.add("background", MEMBER(background), {.unit = "linear light", .help = "Colour behind it all", .range = kShare});
+}
+
+void add_volume(Table& t) {
+    t.add("volume.path", MEMBER(volume.path),
+          {.help = "File, folder, pattern of slices (slice_%03d.tif) or builtin:NAME; relative to the scene file, then "
+                   "to the folders in EDGESPLAT_VOLUMES",
+           .absent = "needed"});
+    t.add("volume.raw", MEMBER(volume.raw),
+          {.help = "Layout of a file without header: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]", .absent = "none"});
+    t.add("volume.component", MEMBER(volume.component),
+          {.help = "Component of vector or colour data", .range = {0, 1e6}, .absent = "needed for such data"});
+    t.add("volume.frame", MEMBER(volume.frame),
+          {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "needed for such data"});
+    t.add("volume.series", MEMBER(volume.series),
+          {.help = "DICOM series of a folder with several: number or UID", .absent = "needed for such folders"});
+    t.add("volume.spacing", MEMBER(volume.spacing),
+          {.unit = "mm", .help = "Voxel spacing along i, j, k", .range = kAboveZero, .absent = "the file's"});
+    t.add("volume.threshold", MEMBER(volume.threshold),
+          {.unit = "the volume's", .help = "First make it binary: 1 from this value up, else 0", .absent = "none"});
+    t.add("volume.box_filter", MEMBER(volume.box_filter), {.help = "Then take the mean over 3x3x3 voxels"});
+    t.add("volume.crop_low", MEMBER(volume.crop_low),
+          {.unit = "voxels", .help = "Then keep only voxels from here", .range = {0, 65535}, .absent = "the first"});
+    t.add("volume.crop_high", MEMBER(volume.crop_high),
+          {.unit = "voxels", .help = "to here, both included", .range = {0, 65535}, .absent = "the last"});
+    t.add("volume.checksum", MEMBER(volume.checksum),
+          {.help = "Of the samples as drawn; any others are refused", .absent = "any"});
+}
+
+void add_lights(Table& t) {
+    t.add(
+        "lights[].kind", MEMBER(lights[i].kind),
+        {.help = "Where it is: at the eye, far away, or somewhere", .choices = {"headlight", "directional", "point"}});
+    t.add("lights[].direction", MEMBER(lights[i].direction),
+          {.unit = "world", .help = "Towards a directional light", .direction = true});
+    t.add("lights[].position", MEMBER(lights[i].position), {.unit = "world mm", .help = "Of a point light"});
+    t.add("lights[].color", MEMBER(lights[i].color), {.unit = "linear light", .help = "Its colour", .range = kShare});
+    t.add("lights[].intensity", MEMBER(lights[i].intensity), {.help = "Factor on its colour", .range = kFromZero});
+    t.add("lights[].shadows", MEMBER(lights[i].shadows),
+          {.help = "Whether what stands in its way darkens what lies behind; not for a headlight, at most 2 lights"});
+}
+
+void add_materials(Table& t) {
+    // The same rows for the material below all iso-values and for those from each iso-value up.
+    const auto rows = [&t](const std::string& table, auto material, const char* color, const char* extinction) {
+        const auto add = [&](const char* name, auto access, const SceneKey& facts) {
+            t.add((table + name).c_str(), access, facts);
+        };
+        if (table != "below.")
+            add("preset", [material](auto& d, std::size_t i) -> auto& { return material(d, i).preset; },
+                {.help = "A material by name (`edgesplat scene presets`); the other keys change single things of it",
+                 .absent = "none"});
+        add("name", [material](auto& d, std::size_t i) -> auto& { return material(d, i).name; },
+            {.help = "For legends", .absent = "none"});
+        add("color", [material](auto& d, std::size_t i) -> auto& { return material(d, i).color; },
+            {.unit = "linear light", .help = "Its colour", .range = kShare, .absent = color});
+        add("extinction", [material](auto& d, std::size_t i) -> auto& { return material(d, i).extinction; },
+            {.unit = "per mm", .help = "0 is transparent", .range = kFromZero, .absent = extinction});
+        add("ambient", [material](auto& d, std::size_t i) -> auto& { return material(d, i).ambient; },
+            {.help = "Factor on light from everywhere", .range = kFromZero, .absent = "1.0"});
+        add("diffuse", [material](auto& d, std::size_t i) -> auto& { return material(d, i).diffuse; },
+            {.help = "Factor on scattered light", .range = kFromZero, .absent = "1.0"});
+        add("specular", [material](auto& d, std::size_t i) -> auto& { return material(d, i).specular; },
+            {.help = "Factor on highlights; 0 is dull", .range = kFromZero, .absent = "0.0"});
+        add("shininess", [material](auto& d, std::size_t i) -> auto& { return material(d, i).shininess; },
+            {.help = "Exponent of highlights", .range = {1, 1000}, .absent = "32.0"});
+    };
+    rows("materials[].", MEMBER(materials[i]), "one of a palette", "8 per voxel for the highest, 0.15 for the others");
+    rows("below.", MEMBER(below), "[0.0, 0.0, 0.0]", "0.0");
+    t.add("transfer[].value", MEMBER(transfer[i].value), {.unit = "the volume's", .help = "Where; ascending"});
+    t.add("transfer[].color", MEMBER(transfer[i].color),
+          {.unit = "linear light", .help = "Colour there", .range = kShare});
+    t.add("transfer[].extinction", MEMBER(transfer[i].extinction),
+          {.unit = "per mm", .help = "Extinction there", .range = kFromZero});
+}
+
+void add_effects(Table& t) {
+    t.add("effects.background_top", MEMBER(effects.background_top),
+          {.unit = "linear light",
+           .help = "Background at the top; `background` is at the bottom",
+           .range = kShare,
+           .absent = "one colour"});
+    t.add("effects.antialias", MEMBER(effects.antialias), {.help = "No footprint smaller than a pixel"});
+    t.add("effects.samples", MEMBER(effects.samples),
+          {.help = "n: the mean of n x n pictures whose rays lie between the pixels' centres",
+           .range = {1, kMaxSamples}});
+    t.add("effects.fog.color", MEMBER(effects.fog->color),
+          {.unit = "linear light", .help = "What far things fade to", .range = kShare});
+    t.add("effects.fog.density", MEMBER(effects.fog->density),
+          {.unit = "per mm", .help = "How fast", .range = kFromZero});
+    t.add("effects.fog.start", MEMBER(effects.fog->start),
+          {.unit = "mm", .help = "From which depth on", .range = kFromZero});
+    t.add("effects.silhouette.color", MEMBER(effects.silhouette->color),
+          {.unit = "linear light", .help = "Colour of what turns away from the eye", .range = kShare});
+    t.add("effects.silhouette.strength", MEMBER(effects.silhouette->strength), {.help = "Its share", .range = kShare});
+    t.add("effects.silhouette.sharpness", MEMBER(effects.silhouette->sharpness),
+          {.help = "How narrow the line is", .range = {0.25, 64}});
+    t.add("effects.occlusion.strength", MEMBER(effects.occlusion->strength),
+          {.help = "Share of the occlusion that is shown", .range = kShare});
+    t.add("effects.occlusion.radius", MEMBER(effects.occlusion->radius),
+          {.unit = "mm", .help = "Beyond it the sky is open", .range = kAboveZero});
+    t.add("effects.shadows.resolution", MEMBER(effects.shadows.resolution),
+          {.unit = "pixels", .help = "Across a light's picture", .range = {16, 2048}});
+    t.add("effects.shadows.layers", MEMBER(effects.shadows.layers), {.help = "Along a light", .range = {2, 1024}});
+    t.add("effects.clip.keep[].point", MEMBER(effects.clip.keep[i].point),
+          {.unit = "world mm", .help = "A point of the plane"});
+    t.add("effects.clip.keep[].normal", MEMBER(effects.clip.keep[i].normal),
+          {.unit = "world", .help = "Towards the side that is cut away", .direction = true});
+    t.add("effects.clip.remove[].point", MEMBER(effects.clip.remove[i].point),
+          {.unit = "world mm", .help = "A point of the plane"});
+    t.add("effects.clip.remove[].normal", MEMBER(effects.clip.remove[i].normal),
+          {.unit = "world", .help = "Out of the region that is cut out", .direction = true});
+    t.add("effects.overlays.orientation", MEMBER(effects.overlays.orientation), {.help = "The volume's axes"});
+    t.add("effects.overlays.scale_bar", MEMBER(effects.overlays.scale_bar), {.help = "A length in mm"});
+    t.add("effects.overlays.legend", MEMBER(effects.overlays.legend), {.help = "Materials or transfer function"});
+}
+
+void add_camera(Table& t) {
+    std::vector<std::string> views(view_names().begin(), view_names().end());
+    t.add("camera.view", MEMBER(camera.view),
+          {.help = "A camera by name, which shows the whole volume; close: near the first surface",
+           .choices = views,
+           .absent = "front, where neither eye nor direction is given"});
+    t.add("camera.eye", MEMBER(camera.eye),
+          {.unit = "world mm", .help = "Where the eye is", .absent = "such that all is seen"});
+    t.add("camera.target", MEMBER(camera.target),
+          {.unit = "world mm", .help = "What the eye looks at", .absent = "the volume's centre"});
+    t.add("camera.direction", MEMBER(camera.direction),
+          {.unit = "world",
+           .help = "Which way the eye looks; without eye the whole volume is framed",
+           .absent = "towards the target",
+           .direction = true});
+    t.add("camera.up", MEMBER(camera.up),
+          {.unit = "world",
+           .help = "What is up in the picture",
+           .absent = "[0.0, 0.0, 1.0], or the view's own",
+           .direction = true});
+    t.add("camera.voxel", MEMBER(camera.voxel),
+          {.help = "Eye and target are voxel indices, direction and up run along the volume's axes"});
+    t.add("camera.fov", MEMBER(camera.fov),
+          {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
+}
+
+void add_movie(Table& t) {
+    t.add("movie.fps", MEMBER(movie.fps), {.help = "Frames a second", .range = {0, 1000, true}});
+    t.add("movie.voxel", MEMBER(movie.voxel),
+          {.help = "Positions are voxel indices, directions run along the volume's axes"});
+    t.add("movie.loop", MEMBER(movie.loop), {.help = "The last key of the path is the first one again"});
+    t.add("movie.path[].time", MEMBER(movie.path[i].time), {.unit = "s", .help = "When; ascending"});
+    t.add("movie.path[].eye", MEMBER(movie.path[i].eye), {.unit = "world mm", .help = "Where the eye is then"});
+    t.add("movie.path[].target", MEMBER(movie.path[i].target), {.unit = "world mm", .help = "What it looks at"});
+    t.add("movie.path[].up", MEMBER(movie.path[i].up),
+          {.unit = "world", .help = "What is up in the picture", .direction = true});
+    t.add("movie.path[].fov", MEMBER(movie.path[i].fov),
+          {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
+    t.add("movie.orbit.degrees", MEMBER(movie.orbit->degrees), {.unit = "degrees", .help = "How far around"});
+    t.add("movie.orbit.seconds", MEMBER(movie.orbit->seconds), {.unit = "s", .help = "How long", .range = kAboveZero});
+    t.add("movie.orbit.axis", MEMBER(movie.orbit->axis), {.unit = "world", .help = "Around what", .direction = true});
+    t.add("movie.flight.points", MEMBER(movie.flight->points),
+          {.unit = "world mm", .help = "Where the eye flies along", .absent = "needed", .points = true});
+    t.add("movie.flight.seconds", MEMBER(movie.flight->seconds),
+          {.unit = "s", .help = "How long", .range = kAboveZero});
+    t.add("movie.flight.look_ahead", MEMBER(movie.flight->look_ahead),
+          {.unit = "mm", .help = "How far ahead on the curve the eye looks", .range = kAboveZero});
+    t.add("movie.flight.up", MEMBER(movie.flight->up),
+          {.unit = "world", .help = "What is up in the picture", .direction = true});
+    t.add("movie.flight.fov", MEMBER(movie.flight->fov),
+          {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
+    t.add("movie.animate[].key", MEMBER(movie.animate[i].key),
+          {.help = "A number of the scene, such as effects.fog.density or iso_values[0]", .absent = "needed"});
+    t.add("movie.animate[].times", MEMBER(movie.animate[i].times),
+          {.unit = "s", .help = "When; ascending", .absent = "needed"});
+    t.add("movie.animate[].values", MEMBER(movie.animate[i].values),
+          {.help = "What it is then; as many as times", .absent = "needed"});
+}
+
+void add_quality(Table& t) {
+    std::vector<std::string> names;
+    for (const Preset& preset : presets())
+        names.emplace_back(preset.name);
+    t.add("quality.preset", MEMBER(quality.preset),
+          {.help = "A row of the ladder; the keys below change single steps of it",
+           .choices = names,
+           .absent = "none, the defaults below"});
+    t.keys.back().set = [](SceneDocument& d, std::size_t, const KeyValue& v) {
+        d.quality.preset = std::get<std::string>(v);
+        d.quality.settings = preset_named(d.quality.preset).settings;
+    };
+    t.add("quality.max_error", MEMBER(quality.max_error),
+          {.unit = "RMS of full scale",
+           .help = "Choose the cheapest method that keeps this error against its model",
+           .range = {0, 1, true, true},
+           .absent = "none"});
+    for (const Knob& knob : ladder()) {
+        SceneKey key{.help = std::string(knob.help)};
+        key.path = "quality." + std::string(knob.name);
+        std::replace(key.path.begin(), key.path.end(), '-', '_');
+        key.type = knob.number ? KeyType::Number : KeyType::Text;
+        if (knob.number) key.range = {knob.low, knob.high, knob.above_low};
+        for (const auto* steps : {&knob.steps, &knob.others})
+            for (const std::string_view step : *steps)
+                if (!knob.number) key.choices.emplace_back(step);
+        key.get = [&knob](const SceneDocument& d, std::size_t) -> std::optional<KeyValue> {
+            const std::string text = knob.get(d.quality.settings);
+            return knob.number ? KeyValue(std::stod(text)) : KeyValue(text);
+        };
+        key.set = [&knob](SceneDocument& d, std::size_t, const KeyValue& v) {
+            const auto* number = std::get_if<double>(&v);
+            knob.set(d.quality.settings, number ? fmt::format("{}", *number) : std::get<std::string>(v));
+        };
+        t.keys.push_back(std::move(key));
+    }
+    t.add("quality.cull_buried", MEMBER(quality.settings.cull_buried),
+          {.help = "Drop voxels that opaque ones hide from every side"});
+}
+
+void add_output(Table& t) {
+    t.add(
+        "output.file", MEMBER(output.file),
+        {.help = "The picture: .png (8 bit sRGB) or .exr (float32 linear, with alpha); relative to the working folder",
+         .absent = "said on the command line"});
+    t.add("output.size", MEMBER(output.size), {.unit = "pixels", .help = "Width and height", .range = {1, 16384}});
+    t.add("output.aovs", MEMBER(output.aovs),
+          {.help = "Extra outputs", .choices = {"tau", "depth", "normal", "distance"}, .absent = "none"});
+    t.add("output.compare_plain", MEMBER(output.compare_plain), {.help = "Conventional splatting beside it"});
+    t.add("output.renderer", MEMBER(output.renderer),
+          {.help = "Which way to the picture", .choices = {kRendererNames.begin(), kRendererNames.end()}});
+    t.add("output.raycast_step", MEMBER(output.raycast_step),
+          {.unit = "voxels", .help = "Between samples (raycast, raycast-warped)", .range = {0.01, 4, true}});
+    t.add("output.tolerance", MEMBER(output.tolerance),
+          {.help = "Largest error of a pixel, of full scale (reference, truth)", .range = {0, 0.1, true}});
+}
+
+template <typename Access>
+SceneTable list_table(const char* path, const char* help, std::size_t most, Access access) {
+    return {path,
+            help,
+            true,
+            most,
+            [access](const SceneDocument& d) { return access(d, 0).size(); },
+            [access](SceneDocument& d, std::size_t n) { access(d, 0).resize(n); }};
+}
+
+template <typename Access>
+SceneTable optional_table(const char* path, const char* help, Access access) {
+    return {path,
+            help,
+            false,
+            1,
+            [access](const SceneDocument& d) -> std::size_t { return access(d, 0) ? 1 : 0; },
+            [access](SceneDocument& d, std::size_t n) {
+                if (n == 0)
+                    access(d, 0).reset();
+                else if (!access(d, 0))
+                    access(d, 0).emplace();
+            }};
+}
+
+/// A document in which every table is there, for the defaults.
+SceneDocument full_document(std::span<const SceneTable> tables) {
+    SceneDocument document;
+    for (const SceneTable& table : tables)
+        table.resize(document, 1);
+    return document;
+}
+
+}  // namespace
+
+std::span<const SceneTable> scene_tables() {
+    static const std::vector<SceneTable> tables{
+        list_table("materials", "One per iso-value, in the same order: what lies from that value up", kMaxIsoValues,
+                   MEMBER(materials)),
+        list_table("transfer",
+                   "Points of a piecewise-linear transfer function, which says colour and extinction in "
+                   "place of the materials",
+                   kMaxTransferPoints, MEMBER(transfer)),
+        list_table("lights", "At most 4; `lights = []`: colours are shown as they are. Default: a headlight",
+                   kMaxLights, MEMBER(lights)),
+        optional_table("effects.fog", "Far things fade", MEMBER(effects.fog)),
+        optional_table("effects.silhouette", "Lines where surfaces turn away from the eye", MEMBER(effects.silhouette)),
+        optional_table("effects.occlusion", "Ambient light does not reach into hollows", MEMBER(effects.occlusion)),
+        list_table("effects.clip.keep", "Planes: what lies beyond any of them is cut away", kMaxClipPlanes,
+                   MEMBER(effects.clip.keep)),
+        list_table("effects.clip.remove", "Planes around a region that is cut out", kMaxClipPlanes,
+                   MEMBER(effects.clip.remove)),
+        list_table("movie.path", "Where the eye is at which time", 10000, MEMBER(movie.path)),
+        optional_table("movie.orbit", "Around the volume's centre, from the scene's camera on", MEMBER(movie.orbit)),
+        optional_table("movie.flight", "Along a smooth curve at constant speed", MEMBER(movie.flight)),
+        list_table("movie.animate", "A number that changes with time", 1000, MEMBER(movie.animate)),
+    };
+    return tables;
+}
+
+std::span<const SceneKey> scene_keys() {
+    static const std::vector<SceneKey> keys = [] {
+        Table t;
+        add_top(t);
+        add_volume(t);
+        add_materials(t);
+        add_lights(t);
+        add_effects(t);
+        add_camera(t);
+        add_movie(t);
+        add_quality(t);
+        add_output(t);
+        const SceneDocument defaults = full_document(scene_tables());
+        for (SceneKey& key : t.keys)
+            if (key.absent.empty()) key.default_value = key.get(defaults, 0);
+        return t.keys;
+    }();
+    return keys;
+}
+
+}  // namespace edgesplat

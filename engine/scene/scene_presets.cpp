@@ -1,0 +1,82 @@
+#include "engine/scene/scene_presets.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "engine/scene/embedded_presets.h"
+#include "engine/scene/nearest_name.h"
+#include "engine/scene/scene_file.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Reads a preset's text and refuses what is neither one material nor a transfer function.
+ScenePreset parsed(std::string_view name, const std::string& file, std::string_view text) {
+    const std::string called = file == "built in" ? "preset " + std::string(name) : file;
+    ScenePreset preset{std::string(name), file, parse_scene(text, called, {.preset = true})};
+    const SceneDocument& content = preset.content;
+    const bool material = content.materials.size() == 1 && content.transfer.empty() && content.iso_values.size() <= 1;
+    const bool transfer = content.materials.empty() && !content.transfer.empty();
+    if (!material && !transfer)
+        throw SceneFileError({called +
+                              ": expected one [[materials]] with at most one value in iso_values, or [[transfer]] "
+                              "points with any iso_values"});
+    if (material && !content.materials.front().preset.empty())
+        throw SceneFileError({called + ": materials[0].preset: a preset cannot stand on another"});
+    return preset;
+}
+
+}  // namespace
+
+std::vector<fs::path> preset_folders() {
+    std::vector<fs::path> folders;
+    if (const char* text = std::getenv("EDGESPLAT_PRESETS")) {
+        std::istringstream in(text);
+        for (std::string folder; std::getline(in, folder, ':');)
+            if (!folder.empty()) folders.emplace_back(folder);
+    }
+    const char* config = std::getenv("XDG_CONFIG_HOME");
+    const char* home = std::getenv("HOME");
+    if (config && *config != '\0')
+        folders.push_back(fs::path(config) / "edgesplat" / "presets");
+    else if (home && *home != '\0')
+        folders.push_back(fs::path(home) / ".config" / "edgesplat" / "presets");
+    return folders;
+}
+
+std::vector<std::string> scene_preset_names() {
+    std::set<std::string> names;
+    std::error_code ignored;
+    for (const fs::path& folder : preset_folders())
+        for (const auto& entry : fs::directory_iterator(folder, ignored))
+            if (entry.path().extension() == ".toml") names.insert(entry.path().stem().string());
+    for (const EmbeddedPreset& preset : embedded_presets())
+        names.emplace(preset.name);
+    return {names.begin(), names.end()};
+}
+
+ScenePreset scene_preset(std::string_view name) {
+    std::error_code ignored;
+    const bool plain = !name.empty() && name.find('/') == std::string_view::npos;
+    for (const fs::path& folder : preset_folders()) {
+        const fs::path path = folder / (std::string(name) + ".toml");
+        if (!plain || !fs::is_regular_file(path, ignored)) continue;
+        std::ifstream in(path, std::ios::binary);
+        std::ostringstream text;
+        text << in.rdbuf();
+        return parsed(name, path.string(), text.str());
+    }
+    for (const EmbeddedPreset& preset : embedded_presets())
+        if (preset.name == name) return parsed(name, "built in", preset.text);
+    const std::vector<std::string> names = scene_preset_names();
+    const std::string nearest = nearest_name(name, names);
+    fail("\"{}\": no preset has this name; {}", name,
+         nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : "did you mean \"" + nearest + "\"?");
+}
+
+}  // namespace edgesplat

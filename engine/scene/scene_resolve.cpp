@@ -1,0 +1,212 @@
+// What a scene leaves open is chosen from the volume.
+#include <algorithm>
+#include <array>
+#include <numeric>
+
+#include "engine/error.h"
+#include "engine/scene/scene_document.h"
+#include "engine/scene/scene_presets.h"
+#include "engine/scene/views.h"
+#include "engine/volume/analytic_volumes.h"
+#include "engine/volume/filters.h"
+
+namespace edgesplat {
+namespace {
+
+constexpr double kOpaquePerVoxel = 8;          ///< default extinction of the highest material
+constexpr double kTranslucentPerVoxel = 0.15;  ///< and of those below it
+
+/// Default colours, lowest iso-value first; linear light.
+constexpr std::array<glm::dvec3, 6> kPalette{{{1.0, 0.85, 0.75},
+                                              {0.45, 0.70, 1.0},
+                                              {1.0, 0.72, 0.25},
+                                              {0.50, 0.90, 0.50},
+                                              {0.90, 0.50, 0.85},
+                                              {0.95, 0.40, 0.30}}};
+
+std::vector<double> chosen_iso_values(const SceneDocument& document, const Volume& volume) {
+    if (document.volume.threshold) return {0.5};
+    if (is_builtin(volume.name)) {
+        const std::string name = volume.name.substr(volume.name.find(':') + 1);
+        return analytic_scene(name.substr(0, name.find(':'))).iso_values;
+    }
+    const auto suggestions = suggest_iso_values(volume, 1);
+    if (suggestions.empty())
+        fail("{}: every voxel has the value {}, so there is no surface to show", volume.name, volume.min_value);
+    return {suggestions.front().value};
+}
+
+/// The iso-values that all materials' presets bring; empty where one of them has none.
+std::vector<double> preset_iso_values(const std::vector<MaterialChoice>& materials) {
+    std::vector<double> values;
+    for (const MaterialChoice& material : materials) {
+        if (material.preset.empty()) return {};
+        const ScenePreset preset = scene_preset(material.preset);
+        if (preset.content.iso_values.empty()) return {};
+        values.push_back(preset.content.iso_values.front());
+    }
+    return values;
+}
+
+void check_iso_values(const std::vector<double>& iso, const Volume& volume) {
+    const double low = volume.min_value, high = volume.max_value;
+    for (std::size_t i = 0; i < iso.size(); ++i)
+        if (!(iso[i] > low && iso[i] <= high))
+            fail("iso_values[{}] (--iso {}): no surface has this value; the values of {} lie between {} and {}", i,
+                 iso[i], volume.name, volume.min_value, volume.max_value);
+}
+
+/// `usual` with what the choice's preset says, then with what the choice itself says.
+Material material_of(const MaterialChoice& choice, const Material& usual) {
+    Material material = usual;
+    const auto apply = [&material](const MaterialChoice& said) {
+        material.color = said.color.value_or(material.color);
+        material.extinction = said.extinction.value_or(material.extinction);
+        material.response.ambient = said.ambient.value_or(material.response.ambient);
+        material.response.diffuse = said.diffuse.value_or(material.response.diffuse);
+        material.response.specular = said.specular.value_or(material.response.specular);
+        material.response.shininess = said.shininess.value_or(material.response.shininess);
+        if (!said.name.empty()) material.name = said.name;
+    };
+    if (!choice.preset.empty()) {
+        const ScenePreset preset = scene_preset(choice.preset);
+        if (preset.content.materials.size() != 1) fail("preset '{}' is a transfer function, no material", preset.name);
+        apply(preset.content.materials.front());
+    }
+    apply(choice);
+    return material;
+}
+
+MaterialChoice choice_of(const Material& material) {
+    const LightResponse& r = material.response;
+    return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
+}
+
+}  // namespace
+
+Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
+    Scene scene;
+    scene.transfer = document.transfer;
+    std::vector<double> iso = document.iso_values;
+    if (!document.transfer_preset.empty()) {
+        const ScenePreset preset = scene_preset(document.transfer_preset);
+        scene.transfer = preset.content.transfer;
+        if (iso.empty()) iso = preset.content.iso_values;
+    }
+    if (iso.empty()) iso = preset_iso_values(document.materials);
+    if (iso.empty() && scene.transfer.empty()) iso = chosen_iso_values(document, volume);
+    check_iso_values(iso, volume);
+    if (!document.materials.empty() && document.materials.size() != iso.size())
+        fail("materials (--color, --extinction, --material): given {} times; expected once per iso-value, {} times",
+             document.materials.size(), iso.size());
+
+    std::vector<std::size_t> order(iso.size());  // of the document's iso-values, by rising value
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return iso[a] < iso[b]; });
+    const glm::dvec3 spacing = volume.geometry.spacing();
+    const double voxel = (spacing.x + spacing.y + spacing.z) / 3;
+    scene.materials.push_back(material_of(document.below, {.color = glm::dvec3(0)}));
+    for (std::size_t rank = 0; rank < order.size(); ++rank) {
+        const bool highest = rank + 1 == order.size();
+        const Material usual{.color = kPalette[rank % kPalette.size()],
+                             .extinction = (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / voxel};
+        scene.iso_values.push_back(iso[order[rank]]);
+        scene.materials.push_back(document.materials.empty() ? usual
+                                                             : material_of(document.materials[order[rank]], usual));
+    }
+    scene.ambient = document.ambient;
+    scene.lights = document.lights;
+    scene.lit = document.lit;
+    scene.background = document.background;
+    scene.effects = document.effects;
+    validate(scene);
+    return scene;
+}
+
+Camera resolve_camera(const SceneDocument& document, const Volume& volume, const Scene& scene) {
+    const CameraChoice& choice = document.camera;
+    const VolumeGeometry& geometry = volume.geometry;
+    const ViewRequest request{&volume, &scene, choice.fov, document.output.size.x, document.output.size.y};
+    const auto point = [&](const glm::dvec3& p) { return choice.voxel ? geometry.to_world(p) : p; };
+    const auto along = [&](const glm::dvec3& v) { return choice.voxel ? volume_axes(geometry) * v : v; };
+    for (const auto& [name, vector] : {std::pair{"direction", choice.direction}, {"up", choice.up}})
+        if (vector && !(glm::length(*vector) > 0)) fail("camera.{} (--{}) must not be 0,0,0", name, name);
+
+    const glm::dvec3 up = along(choice.up.value_or(glm::dvec3(0, 0, 1)));
+    if (choice.eye) {
+        const glm::dvec3 eye = point(*choice.eye);
+        const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+        const glm::dvec3 direction =
+            choice.direction ? along(*choice.direction) : (choice.target ? point(*choice.target) : center) - eye;
+        if (!(glm::length(direction) > 0))
+            fail("camera.eye (--eye) is where the eye looks at ({}); give another target, or a direction",
+                 choice.target ? "its target" : "the volume's centre");
+        return {eye, direction, up, choice.fov};
+    }
+    if (choice.direction) return framing_camera(along(*choice.direction), up, request);
+    Camera camera = named_view(choice.view.empty() ? "front" : choice.view, request);
+    if (choice.up) camera.up = up;
+    return camera;
+}
+
+CameraPath resolve_camera_path(const SceneDocument& document, const Volume& volume, const Camera& start) {
+    const MovieChoice& movie = document.movie;
+    const VolumeGeometry& geometry = volume.geometry;
+    const auto point = [&](const glm::dvec3& p) { return movie.voxel ? geometry.to_world(p) : p; };
+    const auto along = [&](const glm::dvec3& v) { return movie.voxel ? volume_axes(geometry) * v : v; };
+    const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+    if (const auto& orbit = movie.orbit)
+        return orbit_path({start, center, along(orbit->axis), orbit->degrees, orbit->seconds});
+    if (const auto& flight = movie.flight) {
+        FlyThrough through{{}, flight->seconds, flight->look_ahead, along(flight->up), flight->fov};
+        for (std::size_t i = 0; i + 2 < flight->points.size(); i += 3)
+            through.points.push_back(point({flight->points[i], flight->points[i + 1], flight->points[i + 2]}));
+        return fly_through(through);
+    }
+    CameraPath path{movie.path, movie.loop};
+    for (CameraKey& key : path.keys)
+        key = {key.time, point(key.eye), point(key.target), along(key.up), key.fov};
+    if (path.keys.empty()) path.keys.push_back({0, start.eye, start.eye + start.direction, start.up, start.fov_y});
+    validate(path);
+    return path;
+}
+
+std::vector<AnimatedParameter> resolve_animation(const SceneDocument& document) {
+    std::vector<AnimatedParameter> parameters;
+    for (const AnimationChoice& choice : document.movie.animate) {
+        if (choice.times.size() != choice.values.size())
+            fail("movie.animate of {}: {} times and {} values; expected as many of each", choice.key,
+                 choice.times.size(), choice.values.size());
+        AnimatedParameter parameter{choice.key, {}};
+        for (std::size_t i = 0; i < choice.times.size(); ++i)
+            parameter.values.push_back({choice.times[i], choice.values[i]});
+        validate(parameter);
+        parameters.push_back(std::move(parameter));
+    }
+    return parameters;
+}
+
+SceneDocument resolved(const SceneDocument& document, const Volume& volume, const Scene& scene, const Camera& camera,
+                       const Settings& settings) {
+    SceneDocument result = document;
+    result.volume.checksum = fmt::format("{:016x}", volume.checksum);
+    result.iso_values = scene.iso_values;
+    result.below = choice_of(scene.materials.front());
+    result.materials.clear();
+    for (std::size_t m = 1; m < scene.materials.size(); ++m)
+        result.materials.push_back(choice_of(scene.materials[m]));
+    result.transfer = scene.transfer;
+    result.transfer_preset.clear();
+    result.ambient = scene.ambient;
+    result.lights = scene.lights;
+    result.lit = scene.lit;
+    result.background = scene.background;
+    result.effects = scene.effects;
+    result.camera = {{}, camera.eye, {}, camera.direction, camera.up, false, camera.fov_y};
+    result.movie = {};
+    result.quality = {{}, settings, {}};
+    result.output.file.clear();
+    return result;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,58 @@
+#include "engine/scene/transfer_function.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "engine/volume/filters.h"
+
+namespace edgesplat {
+
+TransferPoint transfer_at(std::span<const TransferPoint> points, double value) {
+    const auto above = std::ranges::upper_bound(points, value, {}, &TransferPoint::value);
+    TransferPoint at = above == points.begin() ? points.front() : *(above - 1);
+    if (above != points.begin() && above != points.end()) {
+        const double t = (value - at.value) / (above->value - at.value);
+        at.color = glm::mix(at.color, above->color, t);
+        at.extinction += t * (above->extinction - at.extinction);
+    }
+    at.value = value;
+    return at;
+}
+
+ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
+    if (scene.transfer.empty()) {
+        const double own = scene.materials[material].extinction;
+        return {own, own};
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    const double low = material == 0 ? -infinity : scene.iso_values[material - 1];
+    const double high = material == scene.iso_values.size() ? infinity : scene.iso_values[material];
+    ExtinctionRange range{infinity, 0};
+    const auto add = [&](double extinction) {
+        range.least = std::min(range.least, extinction);
+        range.most = std::max(range.most, extinction);
+    };
+    // Between its points and the interval's ends the function is linear; beyond the outermost it is constant.
+    add(material == 0 ? scene.transfer.front().extinction : transfer_at(scene.transfer, low).extinction);
+    add(high == infinity ? scene.transfer.back().extinction : transfer_at(scene.transfer, high).extinction);
+    for (const TransferPoint& point : scene.transfer)
+        if (point.value > low && point.value < high) add(point.extinction);
+    return range;
+}
+
+std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume) {
+    if (scene.transfer.empty()) return {};
+    if (!(volume.max_value > volume.min_value)) {
+        TransferPoint only = transfer_at(scene.transfer, static_cast<double>(volume.min_value));
+        only.value = 0;
+        return {only};
+    }
+    // Samples lie in 0..1; of points further away than this it does not matter how far.
+    constexpr double far = 1e30;
+    std::vector<TransferPoint> points = scene.transfer;
+    for (TransferPoint& point : points)
+        point.value = static_cast<float>(std::clamp(scaled_value(volume, point.value), -far, far));
+    return points;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,26 @@
+// Colour and extinction by value: piecewise-linear transfer functions, and what materials are where there is none.
+#pragma once
+
+#include <span>
+
+#include "engine/scene/scene.h"
+#include "engine/volume/volume.h"
+
+namespace edgesplat {
+
+/// The function at `value`, exactly; `points` ascending, at least one.
+TransferPoint transfer_at(std::span<const TransferPoint> points, double value);
+
+/// Per mm.
+struct ExtinctionRange {
+    double least = 0, most = 0;
+};
+
+/// Extinctions that occur in a material's interval of values: its own, or what the transfer function has there.
+ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
+
+/// The scene's points with values scaled as samples are (scaled_field), rounded to float32 as the device holds them;
+/// empty without a transfer function. In a constant volume one point: the function at its value.
+std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume);
+
+}  // namespace edgesplat

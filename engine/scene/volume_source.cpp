@@ -1,0 +1,76 @@
+// Where a scene's volume is, and what is done to it before anything is drawn.
+#include <cstdlib>
+#include <sstream>
+
+#include "engine/error.h"
+#include "engine/scene/scene_document.h"
+#include "engine/volume/analytic_volumes.h"
+#include "engine/volume/filters.h"
+#include "engine/volume/load_volume.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif") only the folder can be told.
+bool may_be_opened(const fs::path& path) {
+    std::error_code ignored;
+    if (fs::exists(path, ignored)) return true;
+    const bool pattern = path.filename().string().find('%') != std::string::npos;
+    return pattern && fs::is_directory(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
+}
+
+}  // namespace
+
+std::vector<fs::path> volume_folders(const fs::path& first) {
+    std::vector<fs::path> folders{first};
+    if (const char* text = std::getenv("EDGESPLAT_VOLUMES")) {
+        std::istringstream in(text);
+        for (std::string folder; std::getline(in, folder, ':');)
+            if (!folder.empty()) folders.emplace_back(folder);
+    }
+    return folders;
+}
+
+std::string find_volume(const std::string& path, const std::vector<fs::path>& folders) {
+    if (is_builtin(path)) return path;
+    if (fs::path(path).extension() == ".toml")
+        fail("{}: is a scene file; expected a volume: a file, a folder, a pattern of slices or builtin:NAME", path);
+    std::string places;
+    for (const fs::path& folder : folders) {
+        // An absolute path stands for itself: folder / path is path then.
+        const fs::path candidate = folder / path;
+        if (may_be_opened(candidate)) return candidate.string();
+        if (fs::path(path).is_absolute()) break;
+        places += fmt::format("{}{}", places.empty() ? "" : ", ", folder.empty() ? "." : folder.string());
+    }
+    if (places.empty()) fail("{}: no such file or folder", path);
+    fail("{}: no such file or folder in {}; the environment variable EDGESPLAT_VOLUMES can name more folders", path,
+         places);
+}
+
+Volume load_source(const VolumeSource& source, const std::vector<fs::path>& folders,
+                   const std::function<void(double fraction, std::string_view what)>& progress) {
+    LoadOptions options;
+    options.component = source.component;
+    options.frame = source.frame;
+    options.series = source.series;
+    options.raw = source.raw;
+    options.spacing = source.spacing;
+    options.progress = progress;
+    const std::string path = find_volume(source.path, folders);
+    Volume volume = load_volume(path, options);
+    if (source.threshold) volume = threshold(volume, *source.threshold);
+    if (source.box_filter) volume = box_filter(volume);
+    if (source.crop_low || source.crop_high)
+        volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
+                         source.crop_high.value_or(volume.geometry.dims - 1));
+    const std::string checksum = fmt::format("{:016x}", volume.checksum);
+    if (!source.checksum.empty() && source.checksum != checksum)
+        fail("{}: its samples have the checksum {}, but the scene was made for {} (volume.checksum)", path, checksum,
+             source.checksum);
+    return volume;
+}
+
+}  // namespace edgesplat

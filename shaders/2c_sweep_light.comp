@@ -1,0 +1,30 @@
+// A sheet group of the light's picture -> the optical depth from the light to the far plane of each of its sheets.
+// docs/method.md, 2c_sweep_light.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = BIND_SHEETS) uniform sampler2DArray sheets;
+layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
+layout(push_constant) uniform Push {
+    FrameRef params;
+    uint group;
+};
+
+void main() {
+    ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
+    if (any(greaterThanEqual(pixel, size))) return;
+    ivec4 rect = GroupsRef(params.frame.groups).at[group].rect;
+    bool touched = all(greaterThanEqual(pixel, rect.xy)) && all(lessThan(pixel, rect.zw));
+    int first = int(group * params.frame.sheets_per_group);
+    int count = min(int(params.frame.sheets_per_group), int(params.frame.sheet_count) - first);
+    float tau = texelFetch(accumulated, pixel, 0).a;
+    for (int i = 0; i < count; ++i) {
+        // Beyond the group's rectangle its sheets hold what was there before.
+        float sheet = texelFetch(sheets, ivec3(pixel, i), 0).a;
+        tau += touched ? sheet : 0.0;
+        FloatsRef(params.frame.light_layers).at[((first + i) * size.y + pixel.y) * size.x + pixel.x] = tau;
+    }
+}

@@ -1,0 +1,13 @@
+// What clip planes cut away: method.md, "Clip". The including shader declares CLIP_KEEP and CLIP_REMOVE (specialization constants:
+// without planes nothing of this is left) and CLIP_PARAMS, which holds the planes.
+#ifndef EDGESPLAT_CLIP_GLSL
+#define EDGESPLAT_CLIP_GLSL
+
+// Whether a sphere is cut away whole.
+bool is_cut_away(vec3 centre, float radius) {
+    bool beyond = false, within = CLIP_REMOVE > 0u;
+    for (uint i = 0u; i < CLIP_KEEP; ++i) beyond = beyond || dot(CLIP_PARAMS.clip_keep[i], vec4(centre, 1.0)) > radius;
+    for (uint i = 0u; i < CLIP_REMOVE; ++i) within = within && dot(CLIP_PARAMS.clip_remove[i], vec4(centre, 1.0)) < -radius;
+    return beyond || within;
+}
+#endif

@@ -1,0 +1,10 @@
+// How much of the ambient light reaches a splat: what 2b_occlude_ambient left. The including shader declares the push
+// constant `FrameRef params`. `turned`: of a wall, the face on the other side.
+
+layout(constant_id = SPEC_OCCLUSION) const uint OCCLUSION = 0u;
+
+float ambient_reach(uint splat, bool turned) {
+    if (OCCLUSION == 0u) return 1.0;
+    vec2 reach = unpackUnorm2x16(UintsRef(params.frame.splat_occlusion).at[splat]);
+    return 1.0 - params.frame.occlusion_strength * (1.0 - (turned ? reach.y : reach.x));
+}

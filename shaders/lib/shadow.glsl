@@ -1,0 +1,11 @@
+// How much of a light reaches a splat past what stands in its way: what 2d_shadow_splats left. The including shader declares
+// the push constant `FrameRef params`.
+
+layout(constant_id = SPEC_SHADOWS) const uint SHADOWS = 0u;
+
+float light_reach(uint splat, uint light) {
+    if (SHADOWS == 0u) return 1.0;
+    uint channel = params.frame.shadow_channels >> (4u * light) & 15u;
+    vec2 reach = unpackUnorm2x16(UintsRef(params.frame.splat_shadows).at[splat]);
+    return channel == 0u ? 1.0 : channel == 1u ? reach.x : reach.y;
+}

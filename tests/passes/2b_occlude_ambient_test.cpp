@@ -1,0 +1,235 @@
+// Pass 2b against the reference, and against what closed forms say of planes, corners, boxes and haze.
+#include "engine/reference/2b_occlude_ambient.h"
+
+#include "footprints/kernel.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+struct Reaches {
+    std::vector<reference::SplatRecord> records;
+    std::vector<double> front, back;  ///< the face that the normal looks out of, and the other
+};
+
+Reaches device_reaches(const PassScene& s) {
+    RendererState& state = prepared(s);
+    Reaches out;
+    out.records = device_records(state);
+    for (const std::uint32_t word :
+         download<std::uint32_t>(state, state.volume_resources.occlusion, out.records.size())) {
+        out.front.push_back((word & 0xffffU) / 65535.0);
+        out.back.push_back((word >> 16U) / 65535.0);
+    }
+    return out;
+}
+
+double band(const Settings& settings) {
+    return kKernelRadius + settings.edge_half_width;
+}
+
+/// A volume of f(index), two materials: nothing below 1/2, `extinction` above.
+PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm::dvec3&)>& f, double extinction,
+                   double radius) {
+    PassScene s;
+    s.volume.geometry.dims = dims;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x)
+                s.volume.values.push_back(static_cast<float>(f({x, y, z})));
+    finish_volume(s.volume);
+    s.scene.iso_values = {0.5};
+    s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, extinction}};
+    s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = radius};
+    return s;
+}
+
+double ramp(double inside) {
+    return std::clamp(0.5 + inside, 0.0, 1.0);
+}
+
+TEST(OccludeAmbient, EqualsTheReference) {
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        s.scene.effects.occlusion = AmbientOcclusion{.strength = 0.5, .radius = 6};
+        const Reaches got = device_reaches(s);
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        std::size_t off = 0, walls = 0;
+        double sum = 0, low = 1, high = 0;
+        for (std::size_t i = 0; i < got.records.size(); ++i) {
+            const auto& record = got.records[i];
+            for (const bool turned : {false, true}) {
+                if (turned && !reference::is_wall(record.edge, band(s.settings))) continue;
+                walls += turned ? 1U : 0U;
+                const double want = reference::ambient_reach(record, field, s.scaled(), s.scene, s.volume.geometry,
+                                                             band(s.settings), 6, turned);
+                const double difference = std::abs((turned ? got.back[i] : got.front[i]) - want);
+                // A sample that lies on the border of two voxels to seven digits may be either's.
+                off += difference > 1e-3 ? 1U : 0U;
+                EXPECT_LE(difference, 0.04);
+                sum += difference;
+                low = std::min(low, want);
+                high = std::max(high, want);
+            }
+        }
+        EXPECT_LE(off, got.records.size() / 200);
+        EXPECT_LE(sum / static_cast<double>(got.records.size()), 1e-4);
+        EXPECT_TRUE(low < 0.7 || s.name == "wall from inside") << "nothing is occluded";
+        EXPECT_GT(high, 0.9);
+        EXPECT_TRUE(walls > 100 || s.name != "wall from inside");
+    }
+}
+
+TEST(OccludeAmbient, AFlatPlaneSeesTheWholeSky) {
+    for (const glm::dvec3 normal : {glm::dvec3(0, 0, 1), glm::dvec3(0.3, -0.5, 0.8), glm::dvec3(-1, 1, 0.02)}) {
+        const glm::dvec3 n = glm::normalize(normal), middle(11.5);
+        const PassScene s = scene_of(
+            glm::ivec3(24), [&](const glm::dvec3& p) { return ramp(glm::dot(middle - p, n)); }, 5, 8);
+        const Reaches got = device_reaches(s);
+        std::size_t surface = 0;
+        for (std::size_t i = 0; i < got.records.size(); ++i) {
+            if (!got.records[i].edge.has_edge) continue;
+            ++surface;
+            // 16 bits of 1 are 1.
+            EXPECT_GT(got.front[i], 0.99999);
+        }
+        EXPECT_GT(surface, 1000U);
+    }
+}
+
+/// Share of the sky seen from `height` away from an infinite wall at right angles, nothing counting beyond `radius`:
+/// the cosine-weighted share of directions whose way to the wall is longer.
+double open_beside_wall(double height, double radius) {
+    double open = 0;
+    const int n = 400;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const double across = std::sqrt((i + 0.5) / n), angle = 2 * M_PI * (j + 0.5) / n;
+            const double towards = across * std::cos(angle);
+            open += towards > 0 && height / towards < radius ? 0 : 1;
+        }
+    return open / n / n;
+}
+
+TEST(OccludeAmbient, AnInnerCornerIsAsOpenAsItsFormFactorSays) {
+    // A floor z < 9.25 and a wall x < 9.25, both opaque.
+    const double radius = 8;
+    const PassScene s = scene_of(
+        {28, 28, 28}, [](const glm::dvec3& p) { return std::max(ramp(9.25 - p.z), ramp(9.25 - p.x)); }, 20, radius);
+    const Reaches got = device_reaches(s);
+    double worst = 0, sum = 0, count = 0;
+    for (std::size_t i = 0; i < got.records.size(); ++i) {
+        const auto& e = got.records[i].edge;
+        const int v = static_cast<int>(got.records[i].voxel), x = v % 28, y = v / 28 % 28, z = v / 784;
+        if (!e.has_edge || z > 9 || x < 12 || x > 20 || y < 10 || y > 17 || e.n.z < 0.99) continue;
+        const double want = open_beside_wall(x - 9.25, radius);
+        worst = std::max(worst, std::abs(got.front[i] - want));
+        sum += got.front[i] - want;
+        ++count;
+    }
+    ASSERT_GT(count, 100);
+    EXPECT_LE(worst, 0.05) << "bound of method.md for the rays that are cast";
+    EXPECT_LE(std::abs(sum / count), 0.02);
+}
+
+TEST(OccludeAmbient, InsideAClosedBoxItIsDark) {
+    const PassScene s = scene_of(
+        glm::ivec3(24),
+        [](const glm::dvec3& p) {
+            const glm::dvec3 q = glm::abs(p - 11.5);
+            return ramp(std::max({q.x, q.y, q.z}) - 5.75);
+        },
+        20, 25);
+    const Reaches got = device_reaches(s);
+    std::size_t inner = 0;
+    for (std::size_t i = 0; i < got.records.size(); ++i) {
+        const int v = static_cast<int>(got.records[i].voxel);
+        const glm::dvec3 q = glm::abs(glm::dvec3(v % 24, v / 24 % 24, v / 576) - 11.5);
+        if (!got.records[i].edge.has_edge || std::max({q.x, q.y, q.z}) > 7) continue;
+        ++inner;
+        EXPECT_LE(got.front[i], 1e-3);
+    }
+    EXPECT_GT(inner, 300U);
+}
+
+TEST(OccludeAmbient, BetweenTwoPlanesOnlyTheGrazingRaysGetOut) {
+    // Planes 8 apart, rays of 16: those within 60 degrees of the normal meet the other plane; cos^2 60 = 1/4 are left.
+    const PassScene s = scene_of(
+        glm::ivec3(40, 40, 24), [](const glm::dvec3& p) { return ramp(std::abs(p.z - 11.5) - 4.0); }, 20, 16);
+    const Reaches got = device_reaches(s);
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < got.records.size(); ++i) {
+        const int v = static_cast<int>(got.records[i].voxel), x = v % 40, y = v / 40 % 40;
+        if (!got.records[i].edge.has_edge || x < 15 || x > 24 || y < 15 || y > 24) continue;
+        EXPECT_NEAR(got.front[i], 0.25, 0.08);
+        sum += got.front[i];
+        ++count;
+    }
+    ASSERT_GT(count, 100);
+    // From a little above the surface the other plane is nearer: cos^2 of what meets it after 16 - 1.25 is .19 to .25.
+    EXPECT_NEAR(sum / count, 0.21, 0.04);
+}
+
+TEST(OccludeAmbient, HazeLetsThroughWhatItsThicknessSays) {
+    // Everywhere the same matter but for one voxel, so that no splat far from it has a normal.
+    const double radius = 6;
+    for (const double extinction : {0.02, 0.1, 0.3}) {
+        PassScene s = scene_of(
+            glm::ivec3(24), [](const glm::dvec3& p) { return p == glm::dvec3(0) ? 0.9 : 1; }, extinction, radius);
+        const Reaches got = device_reaches(s);
+        std::size_t deep = 0;
+        for (std::size_t i = 0; i < got.records.size(); ++i) {
+            const int v = static_cast<int>(got.records[i].voxel);
+            const glm::ivec3 p(v % 24, v / 24 % 24, v / 576);
+            if (glm::any(glm::lessThan(p, glm::ivec3(7))) || glm::any(glm::greaterThan(p, glm::ivec3(16)))) continue;
+            ++deep;
+            EXPECT_NEAR(got.front[i], std::exp(-extinction * radius), 1e-4);
+        }
+        EXPECT_EQ(deep, 1000U);
+    }
+}
+
+TEST(OccludeAmbient, WhatIsCutAwayIsInNoOnesWay) {
+    PassScene s = scene_of(
+        {28, 28, 28}, [](const glm::dvec3& p) { return std::max(ramp(9.25 - p.z), ramp(9.25 - p.x)); }, 20, 8);
+    const auto mean_beside_wall = [&] {
+        const Reaches got = device_reaches(s);
+        double sum = 0, count = 0;
+        for (std::size_t i = 0; i < got.records.size(); ++i) {
+            const int v = static_cast<int>(got.records[i].voxel), x = v % 28, y = v / 28 % 28, z = v / 784;
+            if (!got.records[i].edge.has_edge || z > 9 || z < 7 || x < 12 || x > 14 || y < 10 || y > 17) continue;
+            sum += got.front[i];
+            ++count;
+        }
+        EXPECT_GT(count, 20);
+        return sum / count;
+    };
+    EXPECT_LT(mean_beside_wall(), 0.85);
+    s.scene.effects.clip.keep = {Plane{{10, 0, 0}, {-1, 0, 0}}};
+    EXPECT_GT(mean_beside_wall(), 0.999);
+    s.scene.effects.clip = {};
+    s.scene.effects.clip.remove = {Plane{{10, 0, 0}, {1, 0, 0}}, Plane{{0, 0, 11}, {0, 0, -1}}};
+    EXPECT_GT(mean_beside_wall(), 0.97);
+}
+
+TEST(OccludeAmbient, NothingIsThereWithoutIt) {
+    PassScene s = pass_scenes()[0];
+    RendererState& state = prepared(s);
+    EXPECT_FALSE(state.volume_resources.occlusion);
+    for (const PassTime& time : state.collection_times)
+        EXPECT_NE(time.name, "2b_occlude_ambient");
+    s.scene.effects.occlusion = AmbientOcclusion{};
+    state.collect(s.scene, s.settings, false);
+    EXPECT_EQ(state.volume_resources.occlusion.bytes(), 4 * state.volume_resources.splat_count);
+    s.scene.effects.occlusion->strength = 0.25;
+    EXPECT_EQ(state.collect(s.scene, s.settings, false), 0) << "only colour depends on the strength";
+    s.scene.effects.occlusion->radius = 3;
+    EXPECT_GT(state.collect(s.scene, s.settings, false), 0);
+    s.scene.lights.clear();
+    state.collect(s.scene, s.settings, false);
+    EXPECT_FALSE(state.volume_resources.occlusion) << "colours are shown as they are";
+}
+
+}  // namespace
+}  // namespace edgesplat::test

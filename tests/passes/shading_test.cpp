@@ -1,0 +1,278 @@
+// Light, materials' response, silhouettes, fog and transfer functions: passes 2 and 5 against the reference.
+#include <algorithm>
+
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr glm::ivec2 kSize{56, 48};
+constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+
+Light point_light(const glm::dvec3& position, const glm::dvec3& color = glm::dvec3(1), double intensity = 0.85) {
+    Light light;
+    light.kind = Light::Kind::Point;
+    light.position = position;
+    light.color = color;
+    light.intensity = intensity;
+    return light;
+}
+
+/// Colour and extinction ramps over the orbital's values, with so many iso-values.
+void ramp(PassScene& s, std::size_t iso_count) {
+    const double top = static_cast<double>(s.volume.max_value);
+    s.scene.transfer = {{0.05 * top, {0.1, 0.3, 1}, 0},
+                        {0.2 * top, {0.2, 0.9, 0.4}, 0.3},
+                        {0.4 * top, {1, 0.9, 0.2}, 1},
+                        {0.7 * top, {1, 0.2, 0.1}, 3}};
+    s.scene.iso_values.resize(iso_count);
+    s.scene.materials.resize(iso_count + 1);
+    s.settings = drawn_as(s.settings, s.scene);
+}
+
+struct Variant {
+    const char* name;
+    void (*change)(PassScene&);
+    std::vector<std::size_t> scenes = {0, 1};
+};
+
+void PrintTo(const Variant& variant, std::ostream* out) {
+    *out << variant.name;
+}
+
+glm::dvec3 beside(const PassScene& s) {
+    return s.volume.geometry.to_world({30, -6, 25});
+}
+
+const std::vector<Variant>& variants() {
+    static const std::vector<Variant> all{
+        {"unlit", [](PassScene& s) { s.scene.lights.clear(); }},
+        {"point_light", [](PassScene& s) { s.scene.lights = {point_light(beside(s))}; }, {0, 1, 2}},
+        {"point_light_in_the_volume",
+         [](PassScene& s) {
+             s.scene.lights = {point_light(s.volume.geometry.to_world({12, 12, 9}))};
+         }},
+        {"point_light_far_away",
+         [](PassScene& s) {
+             s.scene.lights = {point_light({1e30, -3e30, 2e30})};
+         }},
+        {"two_colours",
+         [](PassScene& s) {
+             s.scene.lights = {directional_light({1, -1, 2}), point_light(beside(s), {0.2, 0.4, 1}, 1.5)};
+             s.scene.lights[0].color = {1, 0.3, 0};
+         }},
+        {"four_lights",
+         [](PassScene& s) {
+             s.scene.lights = {Light{}, directional_light({1, 0, 0}), point_light(beside(s)),
+                               directional_light({0, 1e-200, 1e-200})};
+             for (Light& light : s.scene.lights)
+                 light.intensity = 0.4;
+         }},
+        {"response",
+         [](PassScene& s) {
+             for (Material& m : s.scene.materials)
+                 m.response = {.ambient = 2, .diffuse = 0.3};
+         }},
+        {"gloss",
+         [](PassScene& s) {
+             s.scene.lights = {point_light(beside(s)), Light{}};
+             double specular = 0.2;
+             for (Material& m : s.scene.materials) {
+                 m.response = {.ambient = 1, .diffuse = 0.6, .specular = specular, .shininess = 10 + 100 * specular};
+                 specular += 0.3;
+             }
+         },
+         {0, 1, 2}},
+        {"lit_edges", [](PassScene& s) { s.scene.lit = Lit::Edges; }},
+        {"lit_edges_without_edges",
+         [](PassScene& s) {
+             s.scene.lit = Lit::Edges;
+             s.settings.edges = EdgeEstimator::Off;
+             s.settings = drawn_as(s.settings);
+         }},
+        {"fog",
+         [](PassScene& s) {
+             s.scene.effects.fog = Fog{{0.5, 0.6, 0.7}, 0.05, 20};
+         }},
+        {"fog_sliced",
+         [](PassScene& s) {
+             s.scene.effects.fog = Fog{{0.5, 0.6, 0.7}, 0.05, 20};
+             s.settings.sheets = SheetCut::Sliced;
+         }},
+        {"silhouette",
+         [](PassScene& s) {
+             s.scene.effects.silhouette = Silhouette{{0.1, 0, 0.3}, 0.9, 2};
+         },
+         {0, 1, 2}},
+        {"silhouette_unlit_plain",
+         [](PassScene& s) {
+             s.scene.lights.clear();
+             s.scene.effects.silhouette = Silhouette{{1, 0, 0}, 1, 0.25};
+             s.settings.edges = EdgeEstimator::Off;
+             s.settings = drawn_as(s.settings);
+         }},
+        {"everything",
+         [](PassScene& s) {
+             s.scene.lights = {point_light(beside(s), {1, 0.5, 0.2}), Light{}};
+             s.scene.materials.back().response = {.ambient = 0.5, .diffuse = 0.8, .specular = 0.7, .shininess = 60};
+             s.scene.effects.silhouette = Silhouette{};
+             s.scene.effects.fog = Fog{{0.2, 0.2, 0.3}, 0.02, 10};
+             s.scene.lit = Lit::Edges;
+         }},
+        {"transfer_without_iso_values", [](PassScene& s) { ramp(s, 0); }, {1}},
+        {"transfer_with_one_iso_value", [](PassScene& s) { ramp(s, 1); }, {1}},
+        {"transfer_with_two_iso_values", [](PassScene& s) { ramp(s, 2); }, {1}},
+        {"transfer_sliced_glossy",
+         [](PassScene& s) {
+             ramp(s, 2);
+             s.settings.sheets = SheetCut::Sliced;
+             s.scene.materials[1].response.specular = 0.8;
+         },
+         {1}},
+    };
+    return all;
+}
+
+PassScene changed(const Variant& variant, std::size_t number) {
+    PassScene s = pass_scenes()[number];
+    // Thick sheets, so that all of them are in one group and still on the device after the frame.
+    s.settings.sheet_spacing = 6;
+    s.settings.saturation = 1;
+    variant.change(s);
+    return s;
+}
+
+class Shading : public testing::TestWithParam<Variant> {};
+
+TEST_P(Shading, SheetsAgreeWithTheReference) {
+    for (const std::size_t number : GetParam().scenes) {
+        const PassScene s = changed(GetParam(), number);
+        SCOPED_TRACE(s.name);
+        RendererState& state = prepared(s);
+        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        ASSERT_EQ(state.plan.params.group_count, 1U);
+        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
+        const auto records = device_records(state);
+        const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
+
+        const auto values = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, values, {}};
+        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
+        const reference::Footprints footprints(s.settings);
+        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
+        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
+        const int base = reference::first_sheet(records, field, view, s.settings, footprints);
+        const double thickness = reference::sheet_thickness(view, s.settings);
+        double peak = 0, worst = 0;
+        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+            const int place = static_cast<int>(sheet) + state.plan.params.sheet_base - base;
+            std::vector<std::uint32_t> splats;
+            for (std::uint32_t i = 0; i < records.size(); ++i) {
+                if (selected[i].kept && selected[i].sheet <= place && place <= selected[i].last_sheet)
+                    splats.push_back(i);
+            }
+            std::optional<reference::DepthRange> cut;
+            const double first = base + static_cast<double>(place);
+            if (s.settings.sheets == SheetCut::Sliced) cut = {thickness * first, thickness * (first + 1)};
+            std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
+            drawer.draw(splats, reference::Payload::Color, {}, want, cut);
+            for (std::size_t i = 0; i < kPixels; ++i) {
+                const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+                const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
+                const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
+                for (int c = 0; c < 4; ++c) {
+                    peak = std::max(peak, want[i][c]);
+                    worst = std::max(worst, std::abs(got[c] - want[i][c]));
+                }
+            }
+        }
+        EXPECT_GT(peak, 0.2);
+        // Tens of float32 splats, each good to 1e-4 of its peak.
+        EXPECT_LE(worst, 5e-4 * peak);
+        std::printf("%-30s %-18s worst of peak %.1e\n", GetParam().name, s.name.c_str(), worst / peak);
+    }
+}
+
+TEST_P(Shading, ChangesThePicture) {
+    if (std::string(GetParam().name) == "lit_edges_without_edges") GTEST_SKIP() << "is what it is without";
+    if (std::string(GetParam().name) == "lit_edges") GTEST_SKIP() << "only splats near an edge are seen";
+    const std::size_t number = GetParam().scenes.front();
+    const auto picture = [](const PassScene& s) {
+        RendererState& state = prepared(s);
+        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto pixels = state.targets.output.mapped<glm::vec4>(kPixels);
+        return std::vector<glm::vec4>(pixels.begin(), pixels.end());
+    };
+    const auto usual = picture(changed({"usual", [](PassScene&) {}}, number));
+    const auto other = picture(changed(GetParam(), number));
+    float most = 0;
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        for (int c = 0; c < 4; ++c) {
+            ASSERT_TRUE(std::isfinite(other[i][c]));
+            most = std::max(most, std::abs(other[i][c] - usual[i][c]));
+        }
+    }
+    EXPECT_GT(most, 0.01F);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, Shading, testing::ValuesIn(variants()),
+                         [](const auto& test) { return std::string(test.param.name); });
+
+TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
+    for (const std::size_t iso_count : {0U, 1U, 2U}) {
+        SCOPED_TRACE(iso_count);
+        PassScene s = pass_scenes()[1];
+        ramp(s, iso_count);
+        RendererState& state = prepared(s);
+        const auto got = device_records(state);
+        std::vector<reference::VoxelEdge> edges;
+        for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges))
+            edges.push_back(decode_edge(words.x, words.y));
+        const auto samples = scaled_field(s.volume);
+        const reference::Field field{s.volume.geometry.dims, samples, {}};
+        const auto values = reference::classified_values(field, s.scaled(), edges);
+        const auto want = reference::collect_splats(field, s.scaled(), edges, s.scene, s.volume.geometry, s.settings,
+                                                    s.camera.eye, false, values);
+        ASSERT_EQ(got.size(), want.size());
+        std::size_t moved = 0;
+        for (std::size_t i = 0; i < want.size(); ++i) {
+            ASSERT_EQ(got[i].voxel, want[i].voxel);
+            moved += std::abs(values[want[i].voxel] - static_cast<double>(samples[want[i].voxel])) > 1e-3 ? 1U : 0U;
+            ASSERT_NEAR(got[i].classified->value, want[i].classified->value, 2e-6);
+            ASSERT_NEAR(got[i].classified->extinction, want[i].classified->extinction, 5e-5);
+        }
+        if (iso_count > 0)
+            EXPECT_GT(moved, 100U) << "no voxel was classified from further on";
+        else
+            EXPECT_EQ(moved, 0U);
+    }
+}
+
+TEST(TransferFunction, WithoutOneNothingIsThereForIt) {
+    PassScene s = pass_scenes()[1];
+    RendererState& state = prepared(s);
+    EXPECT_FALSE(state.volume_resources.values);
+    EXPECT_FALSE(state.volume_resources.transfer);
+    ramp(s, 2);
+    prepared(s);
+    EXPECT_TRUE(state.volume_resources.values);
+    s.scene.transfer.clear();
+    s.scene.materials.back().extinction = 1;
+    state.collect(s.scene, s.settings, false);
+    EXPECT_FALSE(state.volume_resources.values);
+    EXPECT_FALSE(state.volume_resources.transfer);
+}
+
+TEST(TransferFunction, AChangedPointIsSeen) {
+    PassScene s = pass_scenes()[1];
+    ramp(s, 1);
+    RendererState& state = prepared(s);
+    const auto before = state.volume_resources.splat_count;
+    s.scene.transfer[0].value *= 2;
+    EXPECT_GT(state.collect(s.scene, s.settings, false), 0.0);
+    EXPECT_LT(state.volume_resources.splat_count, before);
+    EXPECT_EQ(state.collect(s.scene, s.settings, false), 0.0);
+}
+
+}  // namespace
+}  // namespace edgesplat::test

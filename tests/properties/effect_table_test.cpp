@@ -1,0 +1,54 @@
+// Every row of the table of effects says when it is called for, and only then.
+#include <gmock/gmock.h>
+
+#include <set>
+
+#include "engine/effect_table.h"
+#include "engine/error.h"
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+FrameRequest torus_request() {
+    const Shot shot = torus_shot();
+    return {shot.volume, shot.scene, shot.camera, shot.settings, {48, 48}, {}};
+}
+
+TEST(EffectTable, APlainRequestCallsForNothing) {
+    const FrameRequest plain = plain_request(torus_request());
+    validate(plain.scene);
+    validate(plain.settings);
+    for (const Effect& effect : effect_table())
+        EXPECT_EQ(effect.reason(plain), "") << effect.name;
+}
+
+TEST(EffectTable, EachIsCalledForByItsOwnSwitchAlone) {
+    std::set<std::string_view> names;
+    for (const Effect& effect : effect_table()) {
+        EXPECT_TRUE(names.insert(effect.name).second) << effect.name;
+        EXPECT_NE(effect.help, "") << effect.name;
+        EXPECT_NE(effect.call, "") << effect.name;
+        FrameRequest request = plain_request(torus_request());
+        if (effect.base != nullptr) effect.base(request);
+        EXPECT_EQ(effect.reason(request), "") << effect.name;
+        const auto called_for = [&] {
+            std::set<std::string_view> on;
+            for (const Effect& other : effect_table())
+                if (!other.reason(request).empty()) on.insert(other.name);
+            return on;
+        };
+        auto expected = called_for();
+        expected.insert(effect.name);
+        effect.turn_on(request);
+        validate(request.scene);
+        validate(request.settings);
+        EXPECT_NE(effect.reason(request), "") << effect.name;
+        EXPECT_EQ(called_for(), expected) << effect.name;
+    }
+    EXPECT_THROW(effect_named("bloom"), Error);
+    EXPECT_EQ(&effect_named("light"), &*std::ranges::find(effect_table(), "light", &Effect::name));
+}
+
+}  // namespace
+}  // namespace edgesplat::test

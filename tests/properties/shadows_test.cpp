@@ -1,0 +1,145 @@
+// Shadows and ambient occlusion as pictures show them.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr double kTop = 5.4, kRadius = 8;
+const glm::dvec3 kBall(22, 24, 18);
+
+/// What a pixel's ray meets first in ball_over_plate_shot().
+struct Hit {
+    bool ball = false, plate = false;
+    glm::dvec3 place{0}, normal{0};
+    double to_silhouette = 0;  ///< of the ball: how far the ray passes inside (< 0) or outside, mm
+};
+
+Hit first_hit(const Shot& shot, int x, int y) {
+    const CameraFrame frame = camera_frame(shot.camera);
+    const double side = 2 * frame.tan_half_y / shot.height;
+    const glm::dvec3 u = glm::normalize(frame.forward + (x + 0.5 - 0.5 * shot.width) * side * frame.right -
+                                        (y + 0.5 - 0.5 * shot.height) * side * frame.up);
+    const glm::dvec3 v = kBall - frame.eye;
+    const double along = glm::dot(v, u), off = glm::length(v - along * u);
+    Hit hit;
+    hit.to_silhouette = off - kRadius;
+    if (off < kRadius) {
+        hit.ball = true;
+        hit.place = frame.eye + (along - std::sqrt(kRadius * kRadius - off * off)) * u;
+        hit.normal = (hit.place - kBall) / kRadius;
+        return hit;
+    }
+    hit.place = frame.eye + (kTop - frame.eye.z) / u.z * u;
+    hit.plate = u.z < 0 && std::min({hit.place.x, hit.place.y, 47 - hit.place.x, 47 - hit.place.y}) > 3;
+    hit.normal = {0, 0, 1};
+    return hit;
+}
+
+TEST(Shadows, FallWhereTheyShouldAndDarkenNothingElse) {
+    for (const bool point : {false, true}) {
+        Shot shot = ball_over_plate_shot();
+        Light& light = shot.scene.lights[0];
+        if (point) {
+            light.kind = Light::Kind::Point;
+            light.position = kBall - glm::dvec3(30, 9, -36);
+        }
+        const Image with = render(shot).color;
+        light.shadows = false;
+        const Image without = render(shot).color;
+        int shadow = 0, lit = 0, ball = 0;
+        for (int y = 0; y < shot.height; ++y)
+            for (int x = 0; x < shot.width; ++x) {
+                const Hit hit = first_hit(shot, x, y);
+                ASSERT_LE(with.at(x, y, 0), without.at(x, y, 0) + 1e-4F);
+                if (!(hit.ball || hit.plate) || std::abs(hit.to_silhouette) < 1.5) continue;
+                const glm::dvec3 l = glm::normalize(point ? light.position - hit.place : light.direction);
+                const double cosine = glm::dot(hit.normal, l);
+                const double share =
+                    static_cast<double>(with.at(x, y, 0)) / std::max(static_cast<double>(without.at(x, y, 0)), 1e-6);
+                if (hit.ball) {
+                    if (cosine < 0.25) continue;
+                    ++ball;
+                    EXPECT_NEAR(static_cast<double>(with.at(x, y, 0)), light.intensity * cosine, 0.04);
+                    continue;
+                }
+                const glm::dvec3 v = kBall - hit.place;
+                const double from_border = glm::length(v - glm::dot(v, l) * l) - kRadius;
+                // Light arrives 1.5 voxels over the plate, and kernels reach as far again.
+                if (from_border > 3.2) {
+                    ++lit;
+                    EXPECT_GT(share, 0.98) << x << ' ' << y;
+                } else if (from_border < -3.2) {
+                    ++shadow;
+                    EXPECT_LT(share, 0.05) << x << ' ' << y;
+                }
+            }
+        EXPECT_GT(lit, 1000);
+        EXPECT_GT(shadow, 100);
+        EXPECT_GT(ball, 300);
+    }
+}
+
+TEST(Shadows, AreFoundOnceForEveryEye) {
+    Shot shot = ball_over_plate_shot();
+    const auto swept = [](const RenderResult& r) {
+        return std::ranges::any_of(r.stats.passes, [](const PassTime& p) { return p.name == "2c_sweep_light"; });
+    };
+    shot.scene.lights[0].direction.x = -0.9;
+    EXPECT_TRUE(swept(render(shot)));
+    shot.camera.eye.x += 20;
+    const RenderResult again = render(shot);
+    EXPECT_FALSE(swept(again));
+    EXPECT_EQ(again.stats.setup_milliseconds, 0);
+    EXPECT_EQ(again.stats.validation_messages, 0U);
+    shot.scene.lights[0].direction.x = -0.8;
+    EXPECT_TRUE(swept(render(shot)));
+}
+
+TEST(Shadows, OfTwoColouredLightsAddUp) {
+    Shot shot = ball_over_plate_shot();
+    Light red = shot.scene.lights[0], blue = red;
+    red.color = {1, 0, 0};
+    blue.color = {0, 0, 1};
+    blue.direction = {1, 0.4, 1};
+    shot.scene.lights = {red, blue};
+    const Image both = render(shot).color;
+    shot.scene.lights = {red};
+    const Image first = render(shot).color;
+    shot.scene.lights = {blue};
+    const Image second = render(shot).color;
+    float largest = 0;
+    for (std::size_t i = 0; i < both.pixels.size(); i += 4) {
+        largest = std::max(
+            {largest, std::abs(both.pixels[i] - first.pixels[i]), std::abs(both.pixels[i + 2] - second.pixels[i + 2])});
+    }
+    EXPECT_LE(largest, 1e-5F);
+}
+
+TEST(Occlusion, ShowsAsMuchAsItsStrength) {
+    Shot shot = ball_over_plate_shot();
+    shot.scene.ambient = 1;
+    shot.scene.lights = {Light{}};
+    shot.scene.lights[0].intensity = 0;
+    const Image open = render(shot).color;
+    const auto occluded = [&](double strength) {
+        shot.scene.effects.occlusion = AmbientOcclusion{.strength = strength, .radius = 12};
+        return render(shot).color;
+    };
+    const Image none = occluded(0), half = occluded(0.5), full = occluded(1);
+    EXPECT_EQ(none.pixels, open.pixels);
+    float darkest = 1, off = 0;
+    for (std::size_t i = 0; i < open.pixels.size(); ++i) {
+        EXPECT_LE(full.pixels[i], open.pixels[i] + 1e-5F);
+        off = std::max(off, std::abs(half.pixels[i] - 0.5F * (full.pixels[i] + open.pixels[i])));
+        if (open.pixels[i] > 0.5F) darkest = std::min(darkest, full.pixels[i] / open.pixels[i]);
+    }
+    EXPECT_LE(off, 1e-4F);
+    EXPECT_LT(darkest, 0.6F) << "under the ball";
+}
+
+}  // namespace
+}  // namespace edgesplat::test

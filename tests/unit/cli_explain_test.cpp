@@ -1,0 +1,76 @@
+// --explain, --memory-budget and the command that measures effects, as a user meets them.
+#include <gmock/gmock.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/unit/cli_program.h"
+
+namespace edgesplat {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class CliExplain : public CliTest {};
+
+TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
+    const ProgramRun plan = run("render builtin:sphere:24 --size 40x30 --explain");
+    ASSERT_EQ(plan.status, 0) << plan.err;
+    for (const char* text : {"5_draw_splats", "edge field", "light: lights[0] is a headlight", "at most at once",
+                             "splat record, 12 bytes", "left out", "curved edges", "--edge-shape curved"})
+        EXPECT_THAT(plan.out, HasSubstr(text));
+    EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+TEST_F(CliExplain, WithAnOutputIsMeasuredToo) {
+    const ProgramRun done = run("render builtin:sphere:24 --size 40x30 --explain -o a.png --json a.json -q");
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("ms measured"));
+    const auto json = nlohmann::json::parse(text_of(folder_ / "a.json"));
+    const auto& plan = json["plan"];
+    std::uint64_t sum = 0;
+    for (const auto& resource : plan["resources"]) {
+        EXPECT_EQ(resource["device_bytes"], resource["allocated_bytes"]) << resource["name"];
+        if (resource["held"] == "always" || resource["held"] == "while drawing")
+            sum += resource["allocated_bytes"].get<std::uint64_t>();
+    }
+    EXPECT_EQ(sum, json["frames"][0]["device_bytes"].get<std::uint64_t>());
+    EXPECT_EQ(plan["passes"].size(), json["frames"][0]["passes_ms"].size());
+    EXPECT_TRUE(plan["effects"].contains("light"));
+}
+
+TEST_F(CliExplain, NeitherOutputNorExplainIsAnError) {
+    const ProgramRun wrong = run("render builtin:sphere:24");
+    EXPECT_EQ(wrong.status, 2);
+    EXPECT_THAT(wrong.err, HasSubstr("--output"));
+}
+
+TEST_F(CliExplain, APictureBeyondTheBudgetIsRefusedWithWhatWouldFit) {
+    const ProgramRun refused = run("render builtin:sphere:24 --size 400x300 --memory-budget 6 -o a.png --json a.json");
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_THAT(refused.err, HasSubstr("6.00 MiB are available (the memory budget)"));
+    EXPECT_THAT(refused.err, HasSubstr("sheet group"));
+    EXPECT_TRUE(std::filesystem::is_empty(folder_));
+    const auto at = refused.err.find("--size ");
+    ASSERT_NE(at, std::string::npos) << refused.err;
+    const std::string offer = refused.err.substr(at, refused.err.find('\n', at) - at);
+    const ProgramRun fits = run("render builtin:sphere:24 --memory-budget 6 -o a.png -q " + offer);
+    EXPECT_EQ(fits.status, 0) << offer << ": " << fits.err;
+}
+
+TEST_F(CliExplain, EffectsAreMeasured) {
+    const ProgramRun done =
+        run("effects builtin:sphere:20 --size 24x24 --repeats 1 --only light,fog,'half sheets' --markdown -q");
+    ASSERT_EQ(done.status, 0) << done.err;
+    EXPECT_THAT(done.out, HasSubstr("| effect"));
+    EXPECT_THAT(done.out, HasSubstr("| light "));
+    EXPECT_THAT(done.out, HasSubstr("| fog "));
+    EXPECT_THAT(done.out, HasSubstr("medians of 1"));
+    const ProgramRun unknown = run("effects builtin:sphere:20 --only bloom");
+    EXPECT_EQ(unknown.status, 1);
+    EXPECT_THAT(unknown.err, HasSubstr("unknown effect 'bloom'"));
+}
+
+}  // namespace
+}  // namespace edgesplat

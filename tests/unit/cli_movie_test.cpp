@@ -1,0 +1,203 @@
+// `edgesplat movie`: its frames are pictures like any other, and whatever stops it, it goes on where it was.
+#include <gmock/gmock.h>
+#include <signal.h>
+
+#include <chrono>
+#include <map>
+#include <thread>
+
+#include "engine/image_file.h"
+#include "tests/unit/cli_program.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::Not;
+
+constexpr const char* kFlight = "movie builtin:torus:20 --orbit 90 --seconds 0.4 ";
+const std::string kMovie = std::string(kFlight) + "--size 32x24 ";  // 10 frames
+constexpr int kFrames = 10;
+
+class CliMovie : public CliTest {
+  protected:
+    std::string good(const std::string& arguments) const {
+        const ProgramRun result = run(arguments);
+        EXPECT_EQ(result.status, 0) << arguments << '\n' << result.err;
+        return result.out;
+    }
+    std::vector<std::string> names(const std::string& folder) const {
+        std::vector<std::string> all;
+        for (const auto& entry : fs::directory_iterator(folder_ / folder))
+            all.push_back(entry.path().filename().string());
+        std::sort(all.begin(), all.end());
+        return all;
+    }
+    std::map<std::string, std::string> frames(const std::string& folder) const {
+        std::map<std::string, std::string> all;
+        for (const std::string& name : names(folder))
+            if (name != "movie.json") all[name] = text_of(folder_ / folder / name);
+        return all;
+    }
+    std::map<std::string, fs::file_time_type> times(const std::string& folder) const {
+        std::map<std::string, fs::file_time_type> all;
+        for (const std::string& name : names(folder))
+            if (name.ends_with(".png") && !name.starts_with('.'))
+                all[name] = fs::last_write_time(folder_ / folder / name);
+        return all;
+    }
+    /// Starts a movie, waits for `count` frames, sends the signal, and returns how the shell saw it end.
+    int signalled(const std::string& arguments, const std::string& folder, std::size_t count, int signal) const {
+        const pid_t child = fork();
+        if (child == 0) {
+            const std::string command =
+                "cd '" + folder_.string() + "' && exec '" EDGESPLAT_PROGRAM "' " + arguments + " >said 2>&1 </dev/null";
+            execl("/bin/sh", "sh", "-c", command.c_str(), nullptr);
+            _exit(127);
+        }
+        for (int i = 0; i < 6000; ++i) {
+            if (fs::exists(folder_ / folder) && times(folder).size() >= count) break;
+            std::this_thread::sleep_for(std::chrono::milliseconds(5));
+        }
+        kill(child, signal);
+        int status = 0;
+        waitpid(child, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
+    }
+};
+
+TEST_F(CliMovie, FramesArePicturesLikeAnyOther) {
+    EXPECT_THAT(good(kMovie + "-o all/frame_%04d.png"), HasSubstr("10 frames, 0.4 s at 25"));
+    const auto all = frames("all");
+    ASSERT_EQ(all.size(), std::size_t{kFrames});
+    // One of them alone, in a process of its own: the same bytes.
+    good(kMovie + "-o one/frame_%04d.png --frames 7:7");
+    const auto one = frames("one");
+    ASSERT_EQ(one.size(), 1U);
+    EXPECT_EQ(one.begin()->first, "frame_0007.png");
+    EXPECT_EQ(one.begin()->second, all.at("frame_0007.png"));
+    EXPECT_NE(all.at("frame_0000.png"), all.at("frame_0007.png"));
+    // The first one is what `render` shows.
+    good("render builtin:torus:20 --size 32x24 -o still.png");
+    EXPECT_EQ(read_image(folder_ / "still.png").image.pixels, read_image(folder_ / "all/frame_0000.png").image.pixels);
+    good(kMovie + "-o linear/f%d.exr --frames 0:1");
+    EXPECT_THAT(names("linear"), testing::ElementsAre("f0.exr", "f1.exr", "movie.json"));
+}
+
+TEST_F(CliMovie, KilledItGoesOnWhereItWas) {
+    good(kMovie + "-o whole/frame_%05d.png");
+    EXPECT_EQ(signalled(kMovie + "-o film.mp4 --keep-frames", "film.mp4.frames", 4, SIGKILL), -SIGKILL);
+    const auto before = times("film.mp4.frames");
+    ASSERT_GE(before.size(), 4U);
+    ASSERT_LT(before.size(), std::size_t{kFrames}) << "it was quicker than the kill";
+    for (const auto& [name, time] : before)
+        EXPECT_EQ(text_of(folder_ / "film.mp4.frames" / name), text_of(folder_ / "whole" / name)) << "half a frame";
+    std::ofstream(folder_ / "film.mp4.frames/.frame_00009.png.1-1.tmp") << "half";
+    EXPECT_THAT(good(kMovie + "-o film.mp4 --keep-frames"),
+                HasSubstr(std::to_string(before.size()) + " of 10 frames are there already"));
+    const auto after = times("film.mp4.frames");
+    for (const auto& [name, time] : before)
+        EXPECT_EQ(after.at(name), time) << name << " was made again";
+    EXPECT_EQ(frames("film.mp4.frames"), frames("whole"));
+    EXPECT_GT(fs::file_size(folder_ / "film.mp4"), 1000U);
+}
+
+TEST_F(CliMovie, CtrlCFinishesTheFrame) {
+    EXPECT_EQ(signalled(kMovie + "-o f/frame_%04d.png", "f", 3, SIGINT), 130);
+    EXPECT_THAT(text_of(folder_ / "said"), HasSubstr("the same command goes on from there"));
+    const auto before = times("f");
+    EXPECT_GE(before.size(), 3U);
+    EXPECT_LT(before.size(), std::size_t{kFrames});
+    for (const std::string& name : names("f"))
+        EXPECT_THAT(name, Not(HasSubstr(".tmp")));
+    good(kMovie + "-o f/frame_%04d.png -q");
+    EXPECT_EQ(times("f").size(), std::size_t{kFrames});
+}
+
+TEST_F(CliMovie, AnotherSceneIsNotMixedIn) {
+    good(kMovie + "-o f/frame_%04d.png --frames 0:1");
+    const auto before = frames("f");
+    for (const auto& [change, named] :
+         std::map<std::string, std::string>{{"--size 32x24 --color 1,0,0", "scene"},
+                                            {"--size 32x24 --fps 30", "frames per second"},
+                                            {"--size 34x24", "size"}}) {
+        const ProgramRun other = run(std::string(kFlight) + "-o f/frame_%04d.png --frames 0:1 " + change);
+        EXPECT_EQ(other.status, 1);
+        EXPECT_THAT(other.err, HasSubstr(named));
+        EXPECT_THAT(other.err, HasSubstr("--restart"));
+    }
+    EXPECT_EQ(frames("f"), before);
+    good(kMovie + "-o f/frame_%04d.png --frames 1:1 --color 1,0,0 --restart");
+    EXPECT_EQ(names("f"), (std::vector<std::string>{"frame_0001.png", "movie.json"}));
+    // Frames of unknown origin are left alone too.
+    fs::remove(folder_ / "f/movie.json");
+    EXPECT_THAT(run(kMovie + "-o f/frame_%04d.png").err, HasSubstr("nothing is known of"));
+}
+
+TEST_F(CliMovie, FilmsAreWholeAndLeaveNothing) {
+    for (const char* film : {"a.mp4", "b.webm"}) {
+        good(kMovie + "--frames 2:7 -o " + film);
+        EXPECT_FALSE(fs::exists(folder_ / (std::string(film) + ".frames")));
+        const std::string probe =
+            "ffprobe -v error -count_frames -show_entries stream=nb_read_frames,width,height "
+            "-of csv=p=0 '" +
+            (folder_ / film).string() + "' > '" + (folder_ / "probe").string() + "'";
+        ASSERT_EQ(std::system(probe.c_str()), 0);  // NOLINT: a shell is wanted here
+        EXPECT_EQ(text_of(folder_ / "probe"), "32,24,6\n");
+    }
+    // Without the encoder nothing is rendered, and it says what to install.
+    const std::string nowhere = folder_.string();
+    const std::string path = std::getenv("PATH");
+    setenv("PATH", nowhere.c_str(), 1);
+    const ProgramRun none = run(kMovie + "-o c.mp4");
+    setenv("PATH", path.c_str(), 1);
+    EXPECT_EQ(none.status, 1);
+    EXPECT_THAT(none.err, HasSubstr("Debian: ffmpeg"));
+    EXPECT_FALSE(fs::exists(folder_ / "c.mp4.frames"));
+}
+
+TEST_F(CliMovie, NumbersChangeWithTime) {
+    std::ofstream(folder_ / "s.toml") << R"(
+[volume]
+path = "builtin:torus:20"
+[effects.fog]
+color = [0, 0, 0.2]
+density = 0
+[output]
+size = [32, 24]
+[movie]
+fps = 10
+[[movie.animate]]
+key = "effects.fog.density"
+times = [0, 0.5]
+values = [0, 0.05]
+)";
+    good("movie s.toml -o f/%d.png");
+    EXPECT_EQ(frames("f").size(), 5U);
+    good("render s.toml -o first.png");
+    good("render s.toml -o third.png --set effects.fog.density=0.02");
+    const auto pixels = [&](const char* name) { return read_image(folder_ / name).image.pixels; };
+    EXPECT_EQ(pixels("f/0.png"), pixels("first.png"));
+    EXPECT_EQ(pixels("f/2.png"), pixels("third.png"));
+    EXPECT_NE(pixels("f/2.png"), pixels("first.png"));
+}
+
+TEST_F(CliMovie, RefusesWhatIsNoMovie) {
+    const auto says = [&](const std::string& arguments, const char* what) {
+        const ProgramRun result = run(arguments);
+        EXPECT_NE(result.status, 0) << arguments;
+        EXPECT_THAT(result.err, HasSubstr(what)) << arguments;
+    };
+    says("movie builtin:torus:20 -o f/%d.png", "how long the movie is");
+    says(kMovie + "-o film.avi", "expected a film (.mp4 or .webm)");
+    says(kMovie + "-o f/frame.png", "one number in it");
+    says(kMovie + "-o f/%d.png --frames 5:20", "last frame is 9, not 20");
+    says(kMovie + "-o f/%d.png --frames 5", "FIRST:LAST");
+    says(kMovie + "-o f/%d.png --aov tau", "--aov");
+    says("movie builtin:torus:20 --orbit 0 -o f/%d.png", "orbit degrees: 0");
+}
+
+}  // namespace
+}  // namespace edgesplat

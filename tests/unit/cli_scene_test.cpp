@@ -1,0 +1,320 @@
+// `edgesplat scene`, `render SCENE.toml` and `rerun` from end to end.
+#include <gmock/gmock.h>
+
+#include <cstring>
+
+#include "engine/image_file.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_keys.h"
+#include "tests/unit/cli_program.h"
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::Pair;
+using testing::StartsWith;
+
+const fs::path kScenes = EDGESPLAT_SOURCE_DIR "/tests/scenes";
+
+std::vector<std::string> scenes_in(const char* folder) {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(kScenes / folder))
+        names.push_back(entry.path().stem().string());
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& parameter) {
+    return parameter.param;
+}
+
+class CliScene : public CliTest {
+  protected:
+    void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
+    void copy(const fs::path& scene) const { fs::copy_file(scene, folder_ / scene.filename()); }
+    /// Runs what must succeed.
+    std::string good(const std::string& arguments) const {
+        const ProgramRun result = run(arguments);
+        EXPECT_EQ(result.status, 0) << arguments << '\n' << result.err;
+        return result.out;
+    }
+    Image picture(const std::string& name) const { return read_image(folder_ / name).image; }
+};
+
+class CliBrokenScene : public CliScene, public testing::WithParamInterface<std::string> {};
+
+TEST_P(CliBrokenScene, SaysWhatIsWrongAndWhere) {
+    const std::string file = GetParam() + ".toml";
+    copy(kScenes / "broken" / file);
+    const std::string text = text_of(folder_ / file), mark = "# expect: ";
+    ASSERT_TRUE(text.starts_with(mark));
+    const std::string expected = text.substr(mark.size(), text.find('\n') - mark.size());
+    ASSERT_THAT(expected, StartsWith(file + ":")) << "file and line belong to every message";
+    const ProgramRun check = run("scene check " + file);
+    EXPECT_EQ(check.status, 1);
+    EXPECT_THAT(check.err, HasSubstr(expected));
+    EXPECT_THAT(check.out, IsEmpty());
+    std::istringstream lines(check.err);
+    for (std::string line; std::getline(lines, line);)
+        EXPECT_THAT(line, StartsWith(file + ":")) << "one line a problem";
+    const ProgramRun render = run("render " + file + " -o a.png");
+    EXPECT_EQ(render.status, 1);
+    EXPECT_THAT(render.err, AllOf(StartsWith("edgesplat: error: "), HasSubstr(expected)));
+    EXPECT_THAT(files(), ElementsAre(file)) << "nothing is written";
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, CliBrokenScene, testing::ValuesIn(scenes_in("broken")), test_name);
+
+TEST_F(CliScene, TheCorpusIsLarge) {
+    EXPECT_GE(scenes_in("broken").size(), 40U);
+}
+
+TEST_F(CliScene, WhatIsNoFile) {
+    fs::create_directories(folder_ / "folder.toml");
+    fs::create_symlink("loop.toml", folder_ / "loop.toml");
+    EXPECT_THAT(run("scene check none.toml").err, AllOf(HasSubstr("none.toml"), HasSubstr("no such file")));
+    EXPECT_THAT(run("scene check folder.toml").err, AllOf(HasSubstr("folder.toml"), HasSubstr("is a folder")));
+    EXPECT_THAT(run("scene check loop.toml").err, AllOf(HasSubstr("loop.toml"), HasSubstr("symbolic links")));
+    for (const char* name : {"none", "folder", "loop"})
+        EXPECT_EQ(run(std::string("scene check ") + name + ".toml").status, 1);
+    write("a.toml", "[volume]\npath = \"loop.toml/x.nhdr\"\n");
+    EXPECT_THAT(run("scene check a.toml").err, HasSubstr("a.toml:2: volume.path"));
+}
+
+class CliGoodScene : public CliScene, public testing::WithParamInterface<std::string> {};
+
+TEST_P(CliGoodScene, RendersAndRendersAgain) {
+    const std::string name = GetParam();
+    copy(kScenes / "good" / (name + ".toml"));
+    EXPECT_THAT(good("scene check " + name + ".toml"), HasSubstr("good"));
+    for (const char* extension : {".png", ".exr"}) {
+        good("render " + name + ".toml -o a" + extension);
+        EXPECT_THAT(good(std::string("rerun a") + extension + " -o b" + extension + " --check"), HasSubstr("the same"));
+        EXPECT_EQ(picture(std::string("a") + extension).pixels, picture(std::string("b") + extension).pixels);
+        // The scene in the picture is a scene file.
+        const LoadedImage a = read_image(folder_ / (std::string("a") + extension));
+        for (const auto& [key, text] : a.metadata)
+            if (key == "edgesplat:scene") write("again.toml", text);
+        good(std::string("render again.toml -o c") + extension);
+        EXPECT_EQ(picture(std::string("c") + extension).pixels, a.image.pixels);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Cli, CliGoodScene, testing::ValuesIn(scenes_in("good")), test_name);
+
+TEST_F(CliScene, ASceneSaysWhatOptionsSay) {
+    const std::string options =
+        "--iso 0.4,0.6 --color 1,0,0 --color 0,1,0 --extinction 0.1,5 --background 0.1,0.1,0.2 --light 1,-1,1 "
+        "--ambient 0.3 --eye 40,-50,30 --target 12,12,12 --up 0,0.1,1 --fov 35 --size 24x20 --edges quadratic "
+        "--sheets sliced --sheet-spacing 0.5 --keep-buried --samples 1 --threshold 0.3 --box-filter";
+    good("render builtin:sphere:24 -o a.exr " + options);
+    write("a.toml", R"(iso_values = [0.4, 0.6]
+background = [0.1, 0.1, 0.2]
+ambient = 0.3
+[volume]
+path = "builtin:sphere:24"
+threshold = 0.3
+box_filter = true
+[[materials]]
+color = [1, 0, 0]
+extinction = 0.1
+[[materials]]
+color = [0, 1, 0]
+extinction = 5
+[[lights]]
+kind = "directional"
+direction = [1, -1, 1]
+[camera]
+eye = [40, -50, 30]
+target = [12, 12, 12]
+up = [0, 0.1, 1]
+fov = 35
+[quality]
+edges = "quadratic"
+sheets = "sliced"
+sheet_spacing = 0.5
+cull_buried = false
+[output]
+size = [24, 20]
+file = "b.exr"
+)");
+    good("render a.toml");
+    EXPECT_EQ(picture("a.exr").pixels, picture("b.exr").pixels);
+    good(
+        "render builtin:sphere:24 -o c.exr --set iso_values=0.4,0.6 --set background=0.1,0.1,0.2 --set ambient=0.3 "
+        "--set volume.threshold=0.3 --set volume.box_filter=true --set materials[0].color=1,0,0 "
+        "--set materials[0].extinction=0.1 --set materials[1].color=0,1,0 --set materials[1].extinction=5 "
+        "--set lights[0].kind=directional --set lights[0].direction=1,-1,1 --set camera.eye=40,-50,30 "
+        "--set camera.target=12,12,12 --set camera.up=0,0.1,1 --set camera.fov=35 --set quality.edges=quadratic "
+        "--set quality.sheets=sliced --set quality.sheet_spacing=0.5 --set quality.cull_buried=false "
+        "--set output.size=24,20");
+    EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
+}
+
+TEST_F(CliScene, OptionsOverrideTheScene) {
+    write("a.toml",
+          "background = [0, 0, 1]\n[volume]\npath = \"builtin:sphere:24\"\n[camera]\neye = [12, -40, 12]\n"
+          "[output]\nsize = [16, 16]\nfile = \"a.exr\"\n");
+    good("render a.toml -o b.exr --background 1,0,0 --size 20x10 --view top");
+    EXPECT_THAT(files(), ElementsAre("a.toml", "b.exr"));
+    const Image b = picture("b.exr");
+    EXPECT_EQ(b.width, 20);
+    EXPECT_EQ(b.at(0, 0, 0), 1.0F);
+    good("render a.toml --set output.size=8,8");
+    EXPECT_EQ(picture("a.exr").width, 8);
+    EXPECT_EQ(picture("a.exr").at(0, 0, 2), 1.0F);
+    EXPECT_THAT(run("render a.toml --set output.sice=8,8").err, HasSubstr("did you mean output.size?"));
+    EXPECT_THAT(run("render a.toml --target 1,2,3 --direction 1,0,0").err, HasSubstr("--direction"));
+    EXPECT_THAT(run("render a.toml --color 1,0,0 --color 0,1,0").err, HasSubstr("--color"));
+}
+
+TEST_F(CliScene, EffectOptionsArriveInThePicture) {
+    good(
+        "render builtin:sphere:24 -o a.png --size 8x8 --fog 0.01 --silhouette --occlusion 4 --light 1,0,1 --shadows "
+        "--clip-plane 1,2,3,0,0,1 --clip-plane 4,5,6,1,0,0 --cut-box 0,0,0,5,6,7 --antialias --samples 2 "
+        "--background-top 0,0,1 --overlay orientation,scale-bar,legend --ambient 0.4");
+    SceneDocument d;
+    for (const auto& [key, text] : read_image(folder_ / "a.png").metadata)
+        if (key == "edgesplat:scene") d = parse_scene(text, "a.png", {});
+    EXPECT_EQ(d.effects.fog->density, 0.01);
+    EXPECT_EQ(d.effects.silhouette, Silhouette{});
+    EXPECT_EQ(d.effects.occlusion->radius, 4);
+    ASSERT_EQ(d.lights.size(), 1U);
+    EXPECT_TRUE(d.lights[0].shadows);
+    ASSERT_EQ(d.effects.clip.keep.size(), 2U);
+    EXPECT_EQ(d.effects.clip.keep[1].point, glm::dvec3(4, 5, 6));
+    EXPECT_EQ(d.effects.clip.remove.size(), 6U);
+    EXPECT_TRUE(d.effects.antialias);
+    EXPECT_EQ(d.effects.samples, 2);
+    EXPECT_EQ(d.effects.background_top, glm::dvec3(0, 0, 1));
+    EXPECT_TRUE(d.effects.overlays.orientation && d.effects.overlays.scale_bar && d.effects.overlays.legend);
+    EXPECT_EQ(d.ambient, 0.4);
+    for (const char* wrong : {"--clip-plane 1,2,3,0,0", "--clip-plane 1,2,3,0,0,0", "--clip-box 1,0,0,0,1,1",
+                              "--samples 1.5", "--fog -1", "--occlusion 0", "--overlay scale"})
+        EXPECT_EQ(run(std::string("render builtin:sphere:24 -o b.png ") + wrong).status, 2) << wrong;
+    EXPECT_THAT(run("render builtin:sphere:24 -o b.png --shadows").err, HasSubstr("--light X,Y,Z"));
+}
+
+TEST_F(CliScene, NewWritesASceneWithEveryKey) {
+    const std::string printed = good("scene new builtin:orbital:24");
+    good("scene new builtin:orbital:24 -o a.toml");
+    EXPECT_EQ(text_of(folder_ / "a.toml"), printed);
+    good("scene check a.toml");
+    for (const SceneKey& key : scene_keys()) {
+        const std::string leaf =
+            key.path.substr(key.path.rfind('.') == std::string::npos ? 0 : key.path.rfind('.') + 1);
+        EXPECT_THAT(printed,
+                    HasSubstr("\n" + std::string(printed.find("\n" + leaf + " = ") == std::string::npos ? "# " : "") +
+                              leaf + " = "));
+    }
+    const SceneDocument d = read_scene_file(folder_ / "a.toml");
+    EXPECT_EQ(d.iso_values.size(), 2U) << "the builtin scene's own";
+    EXPECT_TRUE(d.camera.eye && d.camera.target);
+    good("render builtin:orbital:24 -o a.exr --size 16x16 --view oblique");
+    good("render a.toml -o b.exr --size 16x16");
+    const Image a = picture("a.exr"), b = picture("b.exr");
+    EXPECT_GT(a.at(8, 8, 0), 0.05F);
+    EXPECT_NEAR(a.at(8, 8, 0), b.at(8, 8, 0), 1e-4);
+    // Every line that is commented out can be had: all of it together is TOML.
+    std::istringstream lines(printed);
+    std::string all;
+    for (std::string line; std::getline(lines, line);) {
+        const std::string rest = line.starts_with("# ") ? line.substr(2) : "";
+        const std::size_t word = rest.find_first_not_of("abcdefghijklmnopqrstuvwxyz_");
+        const bool key = word != std::string::npos && word > 0 && word == rest.find(" = ");
+        const bool commented = rest.starts_with('[') || key;
+        all += (commented ? rest : line) + "\n";
+    }
+    write("all.toml", all);
+    const std::string problems = run("scene check all.toml").err;
+    EXPECT_THAT(problems, Not(HasSubstr("no valid TOML")));
+    EXPECT_THAT(problems, Not(HasSubstr("unknown key")));
+}
+
+TEST_F(CliScene, ListsForPeople) {
+    EXPECT_THAT(good("scene keys"), AllOf(HasSubstr("effects.fog.density"), HasSubstr("per mm")));
+    EXPECT_THAT(good("scene keys --markdown"), HasSubstr("| `density` |"));
+    EXPECT_THAT(good("scene presets"), AllOf(HasSubstr("ct-bone"), HasSubstr("built in")));
+    EXPECT_EQ(run("scene").status, 2);
+    EXPECT_THAT(run("scene chek a.toml").err, HasSubstr("Did you mean check?"));
+}
+
+/// A volume of 8^3 floats that a picture can be made of.
+std::string small_volume(float inside) {
+    std::string bytes;
+    for (int i = 0; i < 512; ++i) {
+        const glm::dvec3 p(i % 8 - 3.5, i / 8 % 8 - 3.5, i / 64 - 3.5);
+        const float value = glm::length(p) < 3 ? inside : 0.0F;
+        bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    return bytes;
+}
+
+TEST_F(CliScene, VolumesAreFoundBesideTheSceneAndInTheFolders) {
+    fs::create_directories(folder_ / "scenes");
+    fs::create_directories(folder_ / "data");
+    const std::string scene =
+        "iso_values = [0.5]\n[volume]\npath = \"v.raw\"\nraw = \"8x8x8:float32:little\"\n[output]\nsize = [8, 8]\n";
+    write("scenes/a.toml", scene);
+    write("data/v.raw", small_volume(1));
+    EXPECT_THAT(run("scene check scenes/a.toml").err,
+                AllOf(HasSubstr("a.toml:3"), HasSubstr("v.raw"), HasSubstr("scenes")));
+    setenv("EDGESPLAT_VOLUMES", ("/nonexistent:" + (folder_ / "data").string()).c_str(), 1);
+    good("render scenes/a.toml -o a.png");
+    good("rerun a.png --check");
+    unsetenv("EDGESPLAT_VOLUMES");
+    EXPECT_THAT(run("rerun a.png --check").err, AllOf(HasSubstr("v.raw"), HasSubstr("EDGESPLAT_VOLUMES")));
+    fs::rename(folder_ / "data" / "v.raw", folder_ / "scenes" / "v.raw");
+    good("render scenes/a.toml -o b.png");
+    good("rerun b.png --check");
+    good("rerun b.png -o c.png");
+    EXPECT_EQ(picture("a.png").pixels, picture("c.png").pixels);
+    // Other samples under the same name.
+    write("scenes/v.raw", small_volume(2));
+    const ProgramRun other = run("rerun b.png -o d.png");
+    EXPECT_EQ(other.status, 1);
+    EXPECT_THAT(other.err, HasSubstr("checksum"));
+    std::string checksum;
+    for (const auto& [key, text] : read_image(folder_ / "b.png").metadata)
+        if (key == "edgesplat:checksum") checksum = text;
+    EXPECT_THAT(other.err, HasSubstr(checksum));
+    EXPECT_FALSE(fs::exists(folder_ / "d.png"));
+}
+
+TEST_F(CliScene, RerunChecksEveryPixel) {
+    good("render builtin:sphere:24 -o a.exr --size 16x16 --aov tau,normal");
+    good("rerun a.exr --check");
+    good("rerun a.exr -o b.png --check");
+    LoadedImage a = read_image(folder_ / "a.exr");
+    a.image.at(3, 4, 0) += 0.001F;
+    const ImageLayer layer{&a.image, a.channel_names};
+    const FileContent file{folder_ / "changed.exr", encode_exr({&layer, 1}, a.metadata)};
+    write_files({&file, 1});
+    const ProgramRun changed = run("rerun changed.exr --check");
+    EXPECT_EQ(changed.status, 1);
+    EXPECT_THAT(changed.err, HasSubstr("pixel 3,4"));
+    write_image(folder_ / "plain.png", Image(4, 4, 3));
+    EXPECT_THAT(run("rerun plain.png --check").err, HasSubstr("does not say how it was made"));
+    EXPECT_THAT(run("rerun a.exr").err, HasSubstr("--check"));
+    EXPECT_EQ(run("rerun none.png --check").status, 1);
+}
+
+TEST_F(CliScene, RerunOfEveryRenderer) {
+    for (const char* options :
+         {"--renderer raycast", "--renderer raycast-warped --raycast-step 0.3",
+          "--renderer reference --tolerance 0.01 --aov tau", "--renderer truth --tolerance 0.01",
+          "--compare plain --preset draft", "--compare plain --renderer raycast-warped", "--max-error 0.05"}) {
+        good(std::string("render builtin:cube-hole:16 --size 8x8 -o a.exr --view oblique ") + options);
+        good("rerun a.exr --check");
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat
