@@ -99,7 +99,7 @@ std::string scene_of_picture(const PictureRequest& request, const edgesplat::Vol
 
 }  // namespace
 
-void make_picture(PictureRequest request) {
+void make_picture(const PictureRequest& request) {
     check(request);
     const edgesplat::OutputChoice& output = request.document.output;
     edgesplat::Settings settings = request.document.quality.settings;

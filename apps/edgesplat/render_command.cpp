@@ -43,7 +43,7 @@ void run(const RenderCommand& command, const std::string& command_line) {
     apply(command.volume, request.document.volume);
     command.edits.apply(request.document);
     if (request.document.output.file.empty() && !command.explain.explain) throw CLI::RequiredError("--output");
-    make_picture(std::move(request));
+    make_picture(request);
 }
 
 void add_output_options(CLI::App& app, RenderCommand& command) {

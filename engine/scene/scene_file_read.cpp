@@ -1,4 +1,5 @@
 // From TOML to a SceneDocument, key by key.
+#include <fmt/format.h>
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -46,9 +47,8 @@ class Reader {
     void read_table(const toml::table& table, const std::string& concrete, const std::string& generic,
                     std::size_t index) {
         for (auto&& [key, node] : table) {
-            const std::string name(key.str());
-            const std::string separator = generic.empty() ? "" : ".";
-            read_node(node, concrete + separator + name, generic + separator + name, index, line_of(key));
+            const std::string inside = fmt::format("{}{}", generic.empty() ? "" : ".", key.str());
+            read_node(node, concrete + inside, generic + inside, index, line_of(key));
         }
     }
 

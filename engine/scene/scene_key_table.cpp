@@ -106,7 +106,7 @@ class Table {
 // One access function per member; works on a document that may be changed and on one that may not.
 #define MEMBER(expression)                                 \
     [](auto& d, [[maybe_unused]] std::size_t i) -> auto& { \
-        return d.expression;                               \
+        return (d.expression);                             \
     }
 
 void add_top(Table& t) {

@@ -74,7 +74,7 @@ std::string SceneKey::path_at(std::size_t index) const {
 }
 
 std::string SceneKey::expectation() const {
-    const auto with_unit = [this](std::string text) { return unit.empty() ? text : text + " (" + unit + ")"; };
+    const auto with_unit = [this](const std::string& text) { return unit.empty() ? text : text + " (" + unit + ")"; };
     const std::string one_of = fmt::format("{}", fmt::join(choices, ", "));
     switch (type) {
         case KeyType::Flag:
