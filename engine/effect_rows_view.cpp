@@ -36,6 +36,23 @@ std::vector<Effect> view_effects() {
          .constants = {{shader::SPEC_CLIP_KEEP, "SPEC_CLIP_KEEP"}, {shader::SPEC_CLIP_REMOVE, "SPEC_CLIP_REMOVE"}},
          .frame_fields = {"clip_keep", "clip_remove"},
          .scene_fields = {"clip_keep", "clip_remove"}});
+    rows.push_back({.name = "antialias",
+                    .help = "no footprint is narrower than a pixel, and what it holds is kept",
+                    .call = "effects.antialias; --antialias",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return r.scene.effects.antialias ? "effects.antialias is true" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.antialias = true; },
+                    .constants = {{shader::SPEC_ANTIALIAS, "SPEC_ANTIALIAS"}},
+                    .frame_fields = {"pixel"}});
+    rows.push_back({.name = "samples",
+                    .help = "a pixel is the mean of n x n rays, each a picture of its own",
+                    .call = "effects.samples; --samples",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const int n = r.scene.effects.samples;
+                        return n > 1 ? fmt::format("effects.samples is {}: {} pictures", n, n * n) : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.samples = 2; }});
     rows.push_back({.name = "background of two colours",
                     .help = "the background goes from one colour at the bottom to another at the top",
                     .call = "effects.background_top",

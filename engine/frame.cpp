@@ -155,9 +155,8 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
     commands.run([&] {
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        timed("3_select_footprints", [&] {
-            passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant.sliced, plan.variant.clip);
-        });
+        timed("3_select_footprints",
+              [&] { passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant); });
         timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame, plan.variant.sliced); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });

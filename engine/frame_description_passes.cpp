@@ -7,7 +7,7 @@
 #include "engine/frame.h"
 #include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
-#include "engine/passes/5_draw_splats.h"
+#include "engine/passes/3_select_footprints.h"
 
 namespace edgesplat {
 namespace {
@@ -23,10 +23,10 @@ constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4
 // No GPU was measured: how much faster one may be.
 constexpr double kGpuFactor = 200;
 
-constexpr std::array<const char*, 26> kConstants{
-    "ESTIMATOR", "FOOTPRINTS",  "WARP",      "PAYLOAD", "LIGHT",     "AXIS",      "EDGES",    "BURIED",     "SMOOTH",
-    "SLICED",    "CURVED",      "WEIGHTED",  "NODES",   "GLOSS",     "LIT_EDGES", "FOG",      "SILHOUETTE", "TRANSFER",
-    "CLIP_KEEP", "CLIP_REMOVE", "ANTIALIAS", "SAMPLES", "OCCLUSION", "SHADOWS",   "GRADIENT", "RESPONSE"};
+constexpr std::array<const char*, 25> kConstants{
+    "ESTIMATOR", "FOOTPRINTS",  "WARP",      "PAYLOAD",  "LIGHT",     "AXIS",      "EDGES",   "BURIED",     "SMOOTH",
+    "SLICED",    "CURVED",      "WEIGHTED",  "NODES",    "GLOSS",     "LIT_EDGES", "FOG",     "SILHOUETTE", "TRANSFER",
+    "CLIP_KEEP", "CLIP_REMOVE", "ANTIALIAS", "RESPONSE", "OCCLUSION", "SHADOWS",   "GRADIENT"};
 
 std::string variant(const char* shader, const gpu::Specialization& constants) {
     std::string text = shader;
@@ -55,7 +55,7 @@ class Passes {
     explicit Passes(bool software) : milliseconds_per_(software ? 1e-6 : 1e-6 / kGpuFactor) {}
 
     void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
-        out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_, {}});
+        out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
     }
 
     void add_setup(const FrameForecast& f) {
@@ -115,11 +115,11 @@ class Passes {
         const double splats = p.splat_count, pixels = static_cast<double>(p.size.x) * p.size.y;
         const double entries = splats * (plan.variant.sliced ? 0.6 * plan.sheets_per_splat : 1);
         const char* name = draw.name.c_str();
+        const int samples = plan.variant.payload == shader::PAYLOAD_COLOR ? request.scene.effects.samples : 1;
+        again_ = samples * samples;
         const gpu::Specialization sliced{{shader::SPEC_SLICED, plan.variant.sliced ? 1U : 0U}};
         add(name, "3_select_footprints", kRates.select_splat * splats,
-            {variant("3_select_footprints.comp", {{shader::SPEC_SLICED, plan.variant.sliced ? 1U : 0U},
-                                                  {shader::SPEC_CLIP_KEEP, plan.variant.clip.keep},
-                                                  {shader::SPEC_CLIP_REMOVE, plan.variant.clip.remove}})});
+            {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
             {variant("4a_count_sheets.comp", sliced), variant("4b_scan_sheets.comp", {}),
              variant("4c_scatter_splats.comp", sliced)});
@@ -140,6 +140,7 @@ class Passes {
 
   private:
     double milliseconds_per_;
+    int again_ = 1;  ///< how often a pass runs
     std::vector<PassDescription> out_;
 };
 

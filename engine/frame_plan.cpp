@@ -224,6 +224,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double thickness = settings.sheet_spacing * voxel_along_view;
 
     FramePlan plan;
+    // Several samples are of the picture alone; a light's picture is the scene without effects.
+    const int samples = payload == shader::PAYLOAD_COLOR ? scene.effects.samples : 1;
     // Optical depth is a plain sum: sheets would change nothing.
     const bool sliced = settings.sheets == SheetCut::Sliced && payload != shader::PAYLOAD_TAU;
     const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
@@ -274,7 +276,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
-    p.edge_warped = draws_warped(settings) ? 1 : 0;
+    plan.variant.antialias = scene.effects.antialias;
+    if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
@@ -314,6 +317,17 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.saturation =
         payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
     return plan;
+}
+
+void shift_rays(FramePlan& plan, const glm::dvec2& offset) {
+    // A sheared view: slopes as drawn are those of the rays less those of the offset.
+    auto& p = plan.params;
+    const glm::vec2 slopes = glm::vec2(offset) * 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(p.size);
+    p.view_x -= slopes.x * p.view_z;
+    p.view_y -= slopes.y * p.view_z;
+    p.anchor_x -= slopes.x * p.anchor_z;
+    p.anchor_y -= slopes.y * p.anchor_z;
+    p.ray_z += slopes.x * p.ray_x + slopes.y * p.ray_y;
 }
 
 }  // namespace edgesplat

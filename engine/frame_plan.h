@@ -58,4 +58,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
 
+/// Moves the rays of a plan: pixel (x, y) is then of the ray through (x + offset.x, y + offset.y), in pixels.
+void shift_rays(FramePlan& plan, const glm::dvec2& offset);
+
 }  // namespace edgesplat

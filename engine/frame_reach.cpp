@@ -234,7 +234,7 @@ std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& 
         commands.begin_span("2c_sweep_light");
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant.sliced, plan.variant.clip);
+        passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant);
         passes::sort_sheets(commands, frame, plan.variant.sliced);
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             passes::draw_splats(commands, draw, group);

@@ -6,6 +6,7 @@
 #include "engine/error.h"
 #include "engine/overlays.h"
 #include "engine/renderer_state.h"
+#include "engine/sample_mean.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
 #include "footprints/paper_warp.h"
@@ -43,6 +44,16 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
         }
     }
     return image;
+}
+
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
+    for (const PassTime& time : times) {
+        const auto same = std::ranges::find(sums, time.name, &PassTime::name);
+        if (same == sums.end())
+            sums.push_back(time);
+        else
+            same->milliseconds += time.milliseconds;
+    }
 }
 
 }  // namespace
@@ -244,10 +255,11 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
 }
 
 void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
-                         std::uint32_t payload) {
+                         std::uint32_t payload, const glm::dvec2& offset) {
     plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                       volume_resources.box_low, volume_resources.box_high,
                       draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
+    if (offset != glm::dvec2(0)) shift_rays(plan, offset);
     provide_targets(plan);
     run_frame(commands, plan, targets);
 }
@@ -315,14 +327,19 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
                                                                             static_cast<std::size_t>(height) * 4));
         };
         const auto start = Clock::now();
-        self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR);
+        std::vector<PassTime> times;
+        SampleMean mean(size);
+        for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
+            self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
+            add_times(times, self.commands.span_times());
+            if (scene.effects.samples > 1) mean.add(pixels());
+        }
         result.stats.frame_milliseconds = milliseconds_since(start);
-        const auto times = self.commands.span_times();
         result.stats.passes.insert(result.stats.passes.end(), times.begin(), times.end());
         result.stats.splats_drawn = self.targets.drawn.mapped<std::uint32_t>(1)[0];
         result.stats.sheets = self.plan.params.sheet_count;
         result.stats.sheet_groups = self.plan.params.group_count;
-        result.color = take(pixels(), size, 0, 4);
+        result.color = scene.effects.samples > 1 ? mean.image() : take(pixels(), size, 0, 4);
 
         const auto draw_output = [&](const char* name, std::uint32_t payload) {
             self.draw(scene, camera, settings, size, payload);

@@ -41,9 +41,10 @@ struct RendererState {
     void provide_footprints(const Settings& settings);
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
-    /// Passes 3 to 7 with one payload; the picture is left in targets.output.
+    /// Passes 3 to 7 with one payload; the picture is left in targets.output. `offset`: of its rays from the pixels'
+    /// centres, in pixels.
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
-              std::uint32_t payload);
+              std::uint32_t payload, const glm::dvec2& offset = {0, 0});
 
     gpu::Device device;
     gpu::Pipelines pipelines{device};

@@ -6,9 +6,11 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(push_constant) uniform Push { FrameRef params; };
 #include "shaders/lib/splat_projection.glsl"
 #define CLIP_PARAMS params.frame
@@ -31,7 +33,7 @@ void main() {
     project_support(p);
     ivec4 box = pixel_box(p);
     bool drawn = p.visible && box.x < box.z && box.y < box.w;
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, p.radius);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
         // Depths relative to the first sheet, where a far eye costs no digits.

@@ -12,6 +12,7 @@ layout(constant_id = SPEC_NODES) const uint NODES = 10u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
 const uint EDGE = 0u, PAPER = 1u;
 #include "shaders/lib/footprint.glsl"
@@ -28,8 +29,10 @@ layout(location = 1) flat in vec3 from_eye;
 layout(location = 2) flat in vec4 color_sigma;
 layout(location = 3) flat in vec4 normal_distance;
 layout(location = 4) flat in vec4 shape;
+layout(location = 5) in vec2 pixels;
 layout(location = 6) flat in vec3 matter;
 layout(location = 7) flat in uvec2 number_material;
+layout(location = 8) flat in vec4 filtered;
 layout(location = 0) out vec4 sheet;
 
 #define CLIP_PARAMS params.frame
@@ -67,6 +70,22 @@ float footprint(float rho2, float pn, float un, Slice slice) {
                                : footprint_table_lerp(table, rho2, pn, un, d, params.frame.footprint);
 }
 
+// |x|^2 of the widened kernel where the ray passes it.
+float filtered_rho2(float rho2) { return filtered.y * dot(pixels, pixels) + filtered.z * rho2; }
+
+// Where the ray passes the voxel's depth, z from p: the pixel's filter lies across the view, and so its kernels keep their depths.
+float voxel_depth_on_ray(vec3 p, vec3 u) { return -dot(params.frame.view_z, p) / dot(params.frame.view_z, u); }
+
+// The footprint, or as much of the widened one as the pixel's size calls for. `z`: voxel_depth_on_ray.
+float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
+    float value = footprint(rho2, pn, un, slice);
+    if (ANTIALIAS == 1u) {
+        float wide = filtered.w * footprint_isotropic(filtered_rho2(rho2), Slice(slice.low - z, slice.high - z));
+        value = filtered.x > 0.0 ? mix(value, wide, filtered.x) : value;
+    }
+    return value;
+}
+
 // What a splat carries where a ray enters its matter through a clip plane, z from p.
 vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     vec3 world_normal = normalize(params.frame.normal_to_world * face);
@@ -83,25 +102,28 @@ vec4 clipped_footprint(vec3 p, vec3 u, Slice slice) {
     float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
     Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
     // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
-    const float FAR = 8.0;
+    float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
+    float far = ANTIALIAS == 1u ? 8.0 + abs(z) : 8.0;
     int faces = footprint_faces(normal_distance.w, shape.x, params.frame.footprint);
     faces = FOOTPRINTS == WARP2D ? 1 : faces;
     vec4 sum = vec4(0.0);
-    bool some = kept.before.low < kept.before.high && kept.before.low < FAR && kept.before.high > -FAR;
-    bool more = CLIP_REMOVE > 0u && kept.behind.low < kept.behind.high && kept.behind.low < FAR && kept.behind.high > -FAR;
+    bool some = kept.before.low < kept.before.high && kept.before.low < far && kept.before.high > -far;
+    bool more = CLIP_REMOVE > 0u && kept.behind.low < kept.behind.high && kept.behind.low < far && kept.behind.high > -far;
     int first = some ? 0 : 1, last = more ? 2 : 1;
     for (int i = first; i < last; ++i) {
         Slice piece = CLIP_REMOVE > 0u && i == 1 ? kept.behind : kept.before;
         vec3 face = CLIP_REMOVE > 0u && i == 1 ? kept.behind_face : kept.before_face;
         float t = pn + piece.low * un;
+        float matter2 = rho2 + piece.low * piece.low;
+        if (ANTIALIAS == 1u && filtered.x >= 1.0) matter2 = filtered_rho2(rho2) + (piece.low - z) * (piece.low - z);
         bool cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 &&
-                   is_in_matter(rho2 + piece.low * piece.low, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
+                   is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
                                 CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
         vec3 payload = color_sigma.rgb;
         for (int run = cap ? 1 : 0; run > 0; --run) payload = cap_payload(face, p, u, piece.low);
-        Slice cut = Slice(piece.low < -FAR ? -1e9 : piece.low, piece.high > FAR ? 1e9 : piece.high);
+        Slice cut = Slice(piece.low < -far ? -1e9 : piece.low, piece.high > far ? 1e9 : piece.high);
         cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
-        float value = cut.low < cut.high ? footprint(rho2, pn, un, cut) : 0.0;
+        float value = cut.low < cut.high ? drawn_footprint(rho2, pn, un, z, cut) : 0.0;
         sum += value * vec4(payload, 1.0);
     }
     return sum;
@@ -124,7 +146,8 @@ void main() {
         sheet = color_sigma.a * length(params.frame.index_to_world * u) * clipped_footprint(p, u, slice);
         return;
     }
-    float value = footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), slice);
+    float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
+    float value = drawn_footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), z, slice);
     float tau = color_sigma.a * length(params.frame.index_to_world * u) * value * in_front;
     sheet = vec4(tau * color_sigma.rgb, tau);
 }

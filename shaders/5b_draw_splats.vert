@@ -5,6 +5,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
@@ -13,6 +14,7 @@ layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 
 layout(push_constant) uniform Push {
     FrameRef params;
@@ -27,9 +29,10 @@ layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, in
 layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
 layout(location = 4) flat out vec4 shape;  // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
-
+layout(location = 5) out vec2 pixels;              // from the voxel's centre to the fragment's; with antialias only
 layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
 layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
+layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; with antialias only
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -78,7 +81,7 @@ void main() {
     vec3 world_from_eye = params.frame.index_to_world * from_eye;
     vec3 to_eye = -unit_or_zero(world_from_eye);
     // A wall's kernel reaches both faces, and the one that is seen faces the eye.
-    bool turned = e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
+    bool turned = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
     if (turned) world_normal = -world_normal;
     float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
     vec3 payload = vec3(0.0);
@@ -97,12 +100,20 @@ void main() {
         number_material = uvec2(number, splat.edge >> 28);
     }
     normal_distance = vec4(e.n, e.d);
-    bool warped = params.frame.edge_warped == 1u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
+    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
     vec2 traits = vec2(0.0, 1.0);
     if (CURVED == 1u || WEIGHTED == 1u)
         traits = unpack_traits(UintsRef(params.frame.traits).at[number], params.frame.curvature_unit);
     shape = vec4(warped ? e.d2 : -1.0, CURVED == 1u ? traits.x : 0.0, depths);
     if (WEIGHTED == 1u) color_sigma.a *= traits.y;
+    if (ANTIALIAS == 1u) {
+        LowPass f = p.filtered;
+        pixels = (p.slope + slope - p.view.xy / p.view.z) / params.frame.pixel;
+        // Weights belong to the warped kernel.
+        float matter = (warped ? matter_of_voxel(e.d, e.d2) : 1.0) / (WEIGHTED == 1u ? traits.y : 1.0);
+        filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
+        if (f.share >= 1.0) shape.x = -1.0;
+    }
 
     vec2 ndc = (p.slope + slope) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     gl_Position = real ? vec4(ndc, 0.5, 1.0) : vec4(2.0, 2.0, 0.5, 1.0);

@@ -2,12 +2,18 @@
 
 namespace edgesplat::passes {
 
-void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, bool sliced,
-                       const ClipCount& clip) {
-    const gpu::Specialization constants{{shader::SPEC_SLICED, sliced ? 1U : 0U},
-                                        {shader::SPEC_CLIP_KEEP, clip.keep},
-                                        {shader::SPEC_CLIP_REMOVE, clip.remove}};
-    commands.dispatch("3_select_footprints.comp", constants, {frame, 0, 0}, gpu::groups_for(splat_count, 64));
+gpu::Specialization select_constants(const DrawVariant& variant) {
+    return {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
+            {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
+            {shader::SPEC_CLIP_KEEP, variant.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U}};
+}
+
+void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count,
+                       const DrawVariant& variant) {
+    commands.dispatch("3_select_footprints.comp", select_constants(variant), {frame, 0, 0},
+                      gpu::groups_for(splat_count, 64));
     commands.barrier();
 }
 

@@ -2,13 +2,16 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
-#include "engine/passes/clip_count.h"
+#include "engine/passes/5_draw_splats.h"
 
 namespace edgesplat::passes {
 
+/// Specialization of 3_select_footprints.comp.
+gpu::Specialization select_constants(const DrawVariant& variant);
+
 /// FrameParams at `frame`: reads `splats`, writes `sheets`, grows the `rect` of `groups` (which must start out empty).
-/// With `sliced` a splat belongs to every sheet that its support touches. What `clip` cuts away whole is not drawn.
-void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, bool sliced,
-                       const ClipCount& clip = {});
+/// Sliced, a splat belongs to every sheet that its support touches. What clip planes cut away whole is not drawn.
+void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count,
+                       const DrawVariant& variant);
 
 }  // namespace edgesplat::passes

@@ -26,7 +26,8 @@ struct DrawVariant {
     bool lit_edges = false;     ///< splats without an edge count as without normal
     bool silhouette = false;
     bool fog = false;
-    ClipCount clip{};  ///< kernels are cut at planes
+    ClipCount clip{};        ///< kernels are cut at planes
+    bool antialias = false;  ///< no footprint is narrower than a pixel
 };
 
 /// Specialization of 5b_draw_splats.vert and .frag.

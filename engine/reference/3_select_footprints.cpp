@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/reference/pixel_filter.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat::reference {
@@ -19,13 +20,19 @@ View::View(const Camera& camera, const VolumeGeometry& grid, int w, int h)
 
 glm::dvec3 View::ray(int x, int y) const {
     const double half_x = frame.tan_half_y * width / height;
-    const double sx = (2 * (x + 0.5) / width - 1) * half_x;
-    const double sy = (1 - 2 * (y + 0.5) / height) * frame.tan_half_y;
+    const double sx = (2 * (x + 0.5 + offset.x) / width - 1) * half_x;
+    const double sy = (1 - 2 * (y + 0.5 + offset.y) / height) * frame.tan_half_y;
     return glm::normalize(world_to_index * (frame.forward + sx * frame.right + sy * frame.up));
 }
 
 double View::depth(const glm::dvec3& index) const {
     return glm::dot(frame.forward, geometry.to_world(index) - frame.eye);
+}
+
+glm::dvec2 View::pixel_of(const glm::dvec3& index) const {
+    const glm::dvec3 from_eye = geometry.to_world(index) - frame.eye;
+    const double unit = height / (2 * frame.tan_half_y * glm::dot(frame.forward, from_eye));
+    return {0.5 * width + unit * glm::dot(frame.right, from_eye), 0.5 * height - unit * glm::dot(frame.up, from_eye)};
 }
 
 namespace {
@@ -67,8 +74,8 @@ PixelBox screen_box(const View& view, const SplatSupport& support) {
     const auto pixel = [](double at, int size) {
         return static_cast<int>(std::ceil(std::clamp(at - 0.5, -1.0, size + 1.0)));
     };
-    const auto column = [&](double s) { return (s / half_x + 1) / 2 * view.width; };
-    const auto row = [&](double s) { return (1 - s / half_y) / 2 * view.height; };
+    const auto column = [&](double s) { return (s / half_x + 1) / 2 * view.width - view.offset.x; };
+    const auto row = [&](double s) { return (1 - s / half_y) / 2 * view.height - view.offset.y; };
     PixelBox box{pixel(column(x_low), view.width), pixel(row(y_high), view.height), pixel(column(x_high), view.width),
                  pixel(row(y_low), view.height)};
     box.x0 = std::max(box.x0, 0);
@@ -114,13 +121,16 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         s.z = view.depth(x);
         const Support support = footprints.support(records[i].edge);
         s.support = {x + support.shift * records[i].edge.n, support.radius};
-        s.box = screen_box(view, s.support);
+        SplatSupport drawn = s.support;
+        if (const PixelFilter filter = pixel_filter(view, records[i], x, footprints); filter.share > 0)
+            drawn = {x, std::max(support.radius + std::abs(support.shift), filter.reach)};
+        s.box = screen_box(view, drawn);
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);
         const bool sliced = settings.sheets == SheetCut::Sliced;
         s.sheet = sliced ? std::max(sheet_of(middle - extent), 0) : sheet_of(s.z);
         s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
-        s.kept = middle > -extent && !s.box.empty() && !clip.cuts_away(s.support.center, s.support.radius);
+        s.kept = middle > -extent && !s.box.empty() && !clip.cuts_away(drawn.center, drawn.radius);
     }
     return selected;
 }

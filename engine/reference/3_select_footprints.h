@@ -19,12 +19,17 @@ struct View {
     glm::dmat3 world_to_index{1};   ///< S^-1
     glm::dvec3 eye_index{0};        ///< the eye in index space
     double mm_per_voxel_along = 1;  ///< l_view
+    glm::dvec2 offset{0};           ///< of a pixel's ray from its centre, pixels
+    double low_pass = 0;            ///< no footprint is narrower than so many pixels
 
     View(const Camera& camera, const VolumeGeometry& geometry, int width, int height);
-    /// Unit direction, index space, of the ray through the centre of pixel (x, y); y counts from the top.
+    /// Unit direction, index space, of the ray of pixel (x, y), through its centre moved by `offset`; y counts from the
+    /// top.
     glm::dvec3 ray(int x, int y) const;
     /// z of an index-space point: mm along the view axis from the eye.
     double depth(const glm::dvec3& index) const;
+    /// Where an index-space point in front of the eye is seen, pixels from the picture's upper left corner.
+    glm::dvec2 pixel_of(const glm::dvec3& index) const;
 };
 
 /// Pixels [x0, x1) x [y0, y1).

@@ -100,6 +100,41 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
             rays_.emplace_back(u, glm::length(view.geometry.index_to_world_axes * u));
         }
     }
+    if (!(view.low_pass > 0)) return;
+    filters_.reserve(records.size());
+    for (const SplatRecord& record : records)
+        filters_.push_back(pixel_filter(view, record, glm::dvec3(field.voxel(record.voxel)), footprints));
+}
+
+double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
+                              const std::optional<Slice>& slice) const {
+    const VoxelEdge& edge = records_[splat].edge;
+    const PixelFilter filter = filters_.empty() ? PixelFilter{} : filters_[splat];
+    const double own = filter.share == 1 ? 0
+                       : slice           ? footprints_.along_slice(edge, p, u, *slice)
+                                         : footprints_.along_ray(edge, p, u);
+    if (filter.share == 0) return own;
+    // The pixel's filter lies across the view, and so its kernels keep their depths.
+    const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
+    double wide = kernel_footprint(rho2);
+    if (slice) {
+        const double z = depth_on_ray(p, u);
+        wide = sliced_kernel_footprint(rho2, {slice->low - z, slice->high - z});
+    }
+    return glm::mix(own, filter.amplitude * wide, filter.share);
+}
+
+double SplatDrawer::depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const {
+    const glm::dvec3 z = glm::transpose(view_.geometry.index_to_world_axes) * view_.frame.forward;
+    return -glm::dot(z, p) / glm::dot(z, u);
+}
+
+bool SplatDrawer::in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
+                            double z) const {
+    if (filters_.empty() || filters_[splat].share < 1) return footprints_.in_matter(records_[splat].edge, p + z * u);
+    const double rho2 = filters_[splat].rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
+    const double from_voxel = z - depth_on_ray(p, u);
+    return rho2 + from_voxel * from_voxel < kKernelRadius * kKernelRadius;
 }
 
 double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
@@ -112,12 +147,12 @@ double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<D
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
-        return record.extinction(scene_) * ray.w * footprints_.along_slice(record.edge, s0 * u - v, u, slice);
+        return record.extinction(scene_) * ray.w * footprint(splat, x, y, s0 * u - v, u, slice);
     }
     const double share = in_front(s0);
     if (!(share > 0)) return 0;
     const glm::dvec3 p = s0 * u - v;
-    return record.extinction(scene_) * ray.w * share * footprints_.along_ray(record.edge, p, u);
+    return record.extinction(scene_) * ray.w * share * footprint(splat, x, y, p, u, {});
 }
 
 glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
@@ -140,10 +175,10 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
         if (piece.empty() || !(kept.low < kept.high)) continue;
         glm::dvec3 quantity = own;
         const glm::dvec3 entry = p + piece.first * u;
-        if (piece.face && piece.first > -s0 && footprints_.in_matter(record.edge, entry)) {
+        if (piece.face && piece.first > -s0 && in_matter(splat, x, y, p, u, piece.first)) {
             quantity = cap_payload(record.material, own, *piece.face, center + entry, scene_, view_, payload);
         }
-        sum += footprints_.along_slice(record.edge, p, u, kept) * glm::dvec4(quantity, 1);
+        sum += footprint(splat, x, y, p, u, kept) * glm::dvec4(quantity, 1);
     }
     return scene_.materials[record.material].extinction * ray.w * sum;
 }

@@ -7,6 +7,7 @@
 
 #include "engine/reference/3_select_footprints.h"
 #include "engine/reference/footprints.h"
+#include "engine/reference/pixel_filter.h"
 #include "engine/reference/shading.h"
 #include "engine/scene/clip_planes.h"
 
@@ -48,6 +49,13 @@ class SplatDrawer {
     double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;
 
   private:
+    /// The splat's kernel along the ray of pixel (x, y), or along a piece of it, as wide as the pixel asks for.
+    double footprint(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
+                     const std::optional<Slice>& slice) const;
+    /// Where the ray passes the voxel's depth, voxels from p.
+    double depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const;
+    /// Whether the ray is in the splat's matter at z.
+    bool in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u, double z) const;
     /// tau times the quantity, and tau; `own` is the splat's quantity where no cut shows.
     glm::dvec4 contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                             const std::optional<DepthRange>& cut) const;
@@ -60,7 +68,8 @@ class SplatDrawer {
     const Settings& settings_;
     const Footprints& footprints_;
     IndexClip clip_;
-    std::vector<glm::dvec4> rays_;  ///< per pixel: unit direction in index space, mm per voxel along it
+    std::vector<PixelFilter> filters_;  ///< per splat; empty without a low-pass
+    std::vector<glm::dvec4> rays_;      ///< per pixel: unit direction in index space, mm per voxel along it
 };
 
 }  // namespace edgesplat::reference

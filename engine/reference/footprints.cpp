@@ -42,6 +42,11 @@ bool Footprints::warped(const VoxelEdge& edge) const {
     return std::abs(edge.D) < kKernelRadius + band_.half_width && faces(edge).band.strength > 1;
 }
 
+bool Footprints::near_edge(const VoxelEdge& edge) const {
+    return edge.has_edge && std::abs(edge.D) < kKernelRadius + band_.half_width &&
+           settings_.footprints != FootprintMode::Isotropic;
+}
+
 double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
     if (!warped(edge)) return edge.weight * kernel(r2);
@@ -77,9 +82,7 @@ double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
-    const bool knows_edge = edge.has_edge && std::abs(edge.D) < kKernelRadius + band_.half_width &&
-                            settings_.footprints != FootprintMode::Isotropic;
-    if (!knows_edge) return r2 < kKernelRadius * kKernelRadius;
+    if (!near_edge(edge)) return r2 < kKernelRadius * kKernelRadius;
     const double t = glm::dot(r, edge.n), q = t - edge.D;
     const double curvature = is_wall(edge) ? 0 : edge.curvature;
     const bool own_side = 2 * q + curvature * (q * q + r2 - t * t) < 0 && t > -edge.D2;

@@ -18,6 +18,9 @@ class Footprints {
     /// Whether the kernel is warped at all; otherwise the closed-form isotropic footprint holds in every mode.
     bool warped(const VoxelEdge& edge) const;
 
+    /// Whether an edge is drawn at all and its band reaches the kernel, walls too thin to be warped included.
+    bool near_edge(const VoxelEdge& edge) const;
+
     /// h at the point r: K of the warped position.
     double at_point(const VoxelEdge& edge, const glm::dvec3& r) const;
 

@@ -5,6 +5,7 @@
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/pixel_rows.h"
+#include "engine/sample_mean.h"
 #include "engine/volume/filters.h"
 
 namespace edgesplat::reference {
@@ -66,9 +67,22 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
 
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
     check_picture_size(width, height);
+    View view(camera, volume_->geometry, width, height);
+    const int samples = output == Output::Color ? scene_.effects.samples : 1;
+    if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
+    if (samples == 1) return draw(camera, view, output);
+    SampleMean mean({width, height});
+    for (const glm::dvec2& offset : sample_offsets(samples)) {
+        view.offset = offset;
+        mean.add(draw(camera, view, output).pixels);
+    }
+    return mean.image();
+}
+
+Image PreparedVolume::draw(const Camera& camera, const View& view, Output output) const {
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
-    const View view(camera, geometry, width, height);
+    const int width = view.width, height = view.height;
     const std::vector<SplatRecord> records =
         collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye, output == Output::Tau, classified_);
     const std::vector<Selected> selected =

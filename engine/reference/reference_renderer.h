@@ -32,6 +32,9 @@ class PreparedVolume {
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
+    /// One picture with one ray a pixel.
+    Image draw(const Camera& camera, const View& view, Output output) const;
+
     const Volume* volume_;
     Scene scene_;
     Settings settings_;

@@ -122,6 +122,7 @@ std::string beyond_ray_casting(const Scene& scene) {
     if (effects.occlusion) return "ambient occlusion";
     if (!effects.clip.empty()) return "clip planes";
     if (effects.background_top) return "a background of two colours";
+    if (effects.antialias) return "antialiased footprints";
     if (effects.samples != 1) return "several samples a pixel";
     return "";
 }

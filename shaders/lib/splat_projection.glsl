@@ -1,5 +1,6 @@
-// Where a splat's support lies on the screen. The including shader declares the push constant `FrameRef params`; its fields are
-// read in place, since a copy of the struct would load all of it for every splat.
+// Where a splat's support lies on the screen. The including shader declares the push constant `FrameRef params` (its fields are
+// read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS and ANTIALIAS.
+#include "shaders/lib/antialias.glsl"
 #include "shaders/lib/edge_record.glsl"
 #include "shaders/shared/frame_params.h"
 
@@ -8,6 +9,7 @@ struct Projection {
     vec3 view;        // voxel centre, mm: right, down, forward of the eye
     vec3 centre;      // of the sphere that holds the support, relative to the voxel centre, index space
     float radius;     // its radius, voxels
+    LowPass filtered; // with antialias only
     float depth;      // of the support's centre, mm
     vec2 slope;       // view.xy / view.z of the support's centre
     vec2 low, high;   // box of the support in slopes, relative to `slope`
@@ -22,7 +24,7 @@ vec3 view_position(vec3 position) {
 
 // Centre (along n) and radius of the sphere that holds the warped kernel, docs/method.md, pass 3.
 vec2 splat_support(Edge e) {
-    if (params.frame.edge_warped == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
+    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
     if (e.d2 < params.frame.band) return vec2(0.0, params.frame.wall_support);
     uint cell = min(uint(abs(e.d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u);
     vec2 s = params.frame.support_table[cell];
@@ -62,6 +64,17 @@ vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, flo
     return range;
 }
 
+// The widened kernel lies around the voxel. Splats so near that they may reach the eye stay as they are.
+void filter_splat(inout Projection p) {
+    vec2 pixel = p.view.z * params.frame.pixel;
+    vec3 u = normalize(p.position - params.frame.eye);
+    p.filtered = low_pass(pixel.x * params.frame.ray_x, pixel.y * params.frame.ray_y, u, params.frame.support);
+    float around = max(p.radius + length(p.centre), params.frame.support);
+    if (p.view.z < 2.0 * around * length(params.frame.view_z)) p.filtered.share = 0.0;
+    p.radius = p.filtered.share > 0.0 ? around : p.radius;
+    p.centre = p.filtered.share > 0.0 ? vec3(0.0) : p.centre;
+}
+
 // Position and support; project_support() finds where they lie on the screen.
 Projection place_splat(uint voxel, Edge e) {
     Projection p;
@@ -71,8 +84,12 @@ Projection place_splat(uint voxel, Edge e) {
     vec2 support = splat_support(e);
     p.centre = support.x * e.n;
     p.radius = support.y;
+    if (ANTIALIAS == 1u) filter_splat(p);
     return p;
 }
+
+// How far from its centre a splat is drawn across the ray.
+float reach_across(Projection p) { return ANTIALIAS == 1u && p.filtered.share > 0.0 ? max(p.radius, p.filtered.reach) : p.radius; }
 
 // The support's part between two depths, mm relative to the voxel centre: a cap, or what is left of the sphere, lies in
 // the sphere over the circle in which the nearer plane cuts it.
@@ -89,6 +106,7 @@ void project_support(inout Projection p) {
     vec3 centre = view_position(p.position + p.centre);
     p.depth = centre.z;
     float reach = p.radius * length(params.frame.view_z);
+    float across = reach_across(p);
     p.visible = centre.z + reach > 0.0;
     p.at_eye = centre.z < 1.05 * reach;
     p.slope = p.at_eye ? vec2(0.0) : centre.xy / centre.z;
@@ -98,9 +116,11 @@ void project_support(inout Projection p) {
         x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.radius, edge.x);
         y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.radius, edge.y);
     } else {
-        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, p.radius);
-        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, p.radius);
+        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, across);
+        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, across);
     }
+    // A filter wider than its distance covers the picture.
+    if (ANTIALIAS == 1u && !p.at_eye && centre.z < 1.05 * across * length(params.frame.view_z)) x = y = vec2(-1e9, 1e9);
     // Clipped to a little more than the picture, so that rounding loses no pixel.
     p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
     p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);

@@ -60,12 +60,13 @@ struct FrameParams {
     float band;          // R + a
     float saturation;    // alpha at which a pixel takes no more
     float near_depth;    // mm: depth of the plane that rays of full-screen splats are described in
-    uint edge_warped;    // 1 when a warp is drawn at all (footprints are not `isotropic`)
     float wall_support;  // support radius of a splat with two faces, voxels
     float sheet_zero;    // mm: depth of sheet 0's near plane relative to the anchor
     float curvature_unit;  // the largest curvature that is drawn, 1/voxel
     float fog_start;       // mm
     float silhouette_sharpness;
+    vec2 pixel;            // slopes from one sample of the picture to the next; with antialias only
+    uint pad;
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
     Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
@@ -103,7 +104,7 @@ static_assert(sizeof(edgesplat::shader::FramePush) == 16);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1416);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1912);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1920);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef {
     FrameParams frame;

@@ -34,17 +34,18 @@ EDGESPLAT_CONSTANT uint SPEC_SLICED = 9u;      // 1: kernels are cut at the shee
 EDGESPLAT_CONSTANT uint SPEC_CURVED = 10u;     // 1: edges are spheres of their curvature
 EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // 1: kernels are normalised
 EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 10 or 16
-EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
 EDGESPLAT_CONSTANT uint SPEC_GLOSS = 13u;      // 1: some material has highlights
 EDGESPLAT_CONSTANT uint SPEC_LIT_EDGES = 14u;  // 1: splats without an edge count as without normal
 EDGESPLAT_CONSTANT uint SPEC_FOG = 15u;        // 1: fog
 EDGESPLAT_CONSTANT uint SPEC_SILHOUETTE = 16u; // 1: silhouettes
 EDGESPLAT_CONSTANT uint SPEC_TRANSFER = 17u;   // 1: colour and extinction by a transfer function
-EDGESPLAT_CONSTANT uint SPEC_RESPONSE = 25u;   // 1: materials answer to light each in its own way
 EDGESPLAT_CONSTANT uint SPEC_CLIP_KEEP = 18u;    // number of planes that what is kept lies before
 EDGESPLAT_CONSTANT uint SPEC_CLIP_REMOVE = 19u;  // number of planes that what is removed lies before
+EDGESPLAT_CONSTANT uint SPEC_ANTIALIAS = 20u;  // 1: no footprint is narrower than a pixel
+EDGESPLAT_CONSTANT uint SPEC_RESPONSE = 21u;   // 1: materials answer to light each in its own way
 EDGESPLAT_CONSTANT uint SPEC_OCCLUSION = 22u;  // 1: ambient light is what reaches a splat
 EDGESPLAT_CONSTANT uint SPEC_SHADOWS = 23u;    // number of lights with shadows
+EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

@@ -192,6 +192,47 @@ std::vector<ImageCase> later_cases() {
     return cases;
 }
 
+/// Far away, a pixel of some voxels.
+Shot far_orbital() {
+    Shot shot = oblique_orbital();
+    shot.camera.eye += 6.0 * (shot.camera.eye - shot.volume->geometry.to_world({12, 11, 14}));
+    shot.scene.effects.antialias = true;
+    shot.width = shot.height = 32;
+    return shot;
+}
+
+/// Footprints widened to pixels, and several samples a pixel, in every way that kernels are integrated.
+std::vector<ImageCase> sampling_cases() {
+    using E = EdgeEstimator;
+    using F = FootprintMode;
+    std::vector<ImageCase> cases;
+    Shot orbital = far_orbital(), between = orbital;
+    orbital.settings.saturation = 1;
+    between.width = between.height = 96;  // pixels of half a voxel to one: sharp and widened footprints mixed
+    between.settings.saturation = 1;
+    cases.push_back({"orbital, far, antialiased", orbital});
+    cases.push_back({"orbital, far, antialiased, plain", with(orbital, F::Isotropic, E::Off)});
+    cases.push_back({"orbital, far, antialiased, sliced", sliced(orbital, 0.5)});
+    cases.push_back({"orbital, far, antialiased, optical depth", orbital, Output::Tau});
+    cases.push_back({"orbital, far, antialiased, normals", orbital, Output::Normal});
+    cases.push_back({"orbital, antialiased in part", between});
+    Shot weighted = between;
+    weighted.settings.normalisation = Normalisation::Voxel;
+    cases.push_back({"orbital, antialiased in part, weighted", weighted});
+    Shot cut = orbital;
+    cut.scene.effects.clip = cut_out_box().scene.effects.clip;
+    cases.push_back({"orbital, far, antialiased, cut", cut});
+    cases.push_back({"orbital, far, antialiased, cut, sliced", sliced(cut, 0.5)});
+    Shot sampled = small(torus_shot(), 24);
+    sampled.scene.effects.samples = 3;
+    cases.push_back({"torus, 3 x 3 samples", sampled});
+    orbital.scene.effects.samples = 2;
+    cases.push_back({"orbital, far, antialiased, 2 x 2 samples", orbital});
+    for (ImageCase& c : cases)
+        c.smallest_psnr = 90;
+    return cases;
+}
+
 std::vector<ImageCase> shading_cases() {
     std::vector<ImageCase> cases;
     Shot glossy = torus_shot();
@@ -218,6 +259,17 @@ std::vector<ImageCase> shading_cases() {
                               {0.4 * top, {1, 0.5, 0.1}, 2},
                               {top, {1, 0.1, 0.1}, 4}};
     cases.push_back({"transfer_function", orbital});
+    // Away from the iso-value the gradient's light is gone.
+    orbital.scene.lit = Lit::Edges;
+    cases.push_back({"light_on_edges_only", orbital});
+    Shot several = torus_shot();
+    several.scene.ambient = 0.05;
+    several.scene.lights = {directional_light({1, -1, 0.3}), directional_light({-1, -0.5, 0.2}),
+                            directional_light({0, 0.4, 1})};
+    several.scene.lights[0].color = {1, 0.25, 0.1};
+    several.scene.lights[1].color = {0.1, 0.4, 1};
+    several.scene.lights[2].color = {0.2, 0.9, 0.3};
+    cases.push_back({"three_lights", several});
     return cases;
 }
 
@@ -260,6 +312,8 @@ std::vector<ImageCase> reference_cases() {
         cases.push_back(std::move(c));
     for (ImageCase& c : clip_cases())
         cases.push_back(std::move(c));
+    for (ImageCase& c : sampling_cases())
+        cases.push_back(std::move(c));
     return cases;
 }
 
@@ -292,8 +346,19 @@ std::vector<ImageCase> golden_cases() {
     cases.push_back({"ambient_occlusion", hole});
     for (ImageCase& c : shading_cases())
         cases.push_back(std::move(c));
+    Shot signs = oblique_orbital();
+    signs.scene.effects.overlays = {.orientation = true, .scale_bar = true, .legend = true};
+    cases.push_back({"overlays", signs});
     for (ImageCase& c : cases)
         c.shot.width = c.shot.height = 128;
+    Shot lobb = builtin("marschner-lobb", glm::ivec3(64));
+    from(lobb, "oblique");
+    lobb.width = lobb.height = 48;
+    lobb.scene.effects.samples = 3;
+    cases.push_back({"samples", lobb});
+    lobb.scene.effects.samples = 1;
+    lobb.scene.effects.antialias = true;
+    cases.push_back({"antialias", lobb});
     return cases;
 }
 

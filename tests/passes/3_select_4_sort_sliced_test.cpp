@@ -78,7 +78,7 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
         const double unit = glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * view.frame.forward);
         const auto extent = [&](const reference::VoxelEdge& edge) {
             double shift = 0, radius = kKernelRadius;
-            if (params.edge_warped == 1U && edge.has_edge) {
+            if (draws_warped(s.settings) && edge.has_edge) {
                 const double band = kKernelRadius + s.settings.edge_half_width;
                 const auto cell = std::min(static_cast<std::size_t>(std::abs(edge.D) / band * shader::SUPPORT_STEPS),
                                            std::size_t{shader::SUPPORT_STEPS - 1});
