@@ -3,19 +3,11 @@
 #include <cmath>
 #include <string>
 
-#include "engine/error.h"
+#include "engine/scene/checks.h"
 
 namespace edgesplat {
 
 namespace {
-
-void check_color(const std::string& field, const glm::dvec3& color) {
-    for (int c = 0; c < 3; ++c) {
-        if (!(color[c] >= 0 && color[c] <= 1)) {
-            fail("scene {}: ({}, {}, {}) has a component outside 0..1", field, color.x, color.y, color.z);
-        }
-    }
-}
 
 // Comparisons are written so that NaN fails them.
 void check(const std::string& field, double value, bool in_range, const char* range) {

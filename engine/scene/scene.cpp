@@ -4,19 +4,11 @@
 #include <cmath>
 #include <string>
 
-#include "engine/error.h"
+#include "engine/scene/checks.h"
 
 namespace edgesplat {
 
 namespace {
-
-void check_color(const std::string& field, const glm::dvec3& color) {
-    for (int c = 0; c < 3; ++c) {
-        if (!(color[c] >= 0 && color[c] <= 1)) {
-            fail("scene {}: ({}, {}, {}) has a component outside 0..1", field, color.x, color.y, color.z);
-        }
-    }
-}
 
 void check_share(const std::string& field, double value) {
     if (!(value >= 0) || !std::isfinite(value)) fail("scene {}: {} is not a finite number >= 0", field, value);

@@ -15,6 +15,7 @@
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
+#include "tests/unit/refusal.h"
 
 namespace edgesplat {
 namespace {
@@ -34,15 +35,6 @@ std::vector<std::string> problems(const std::string& text) {
         parse(text);
     } catch (const SceneFileError& error) {
         return error.problems();
-    }
-    return {};
-}
-
-std::string refusal(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const Error& error) {
-        return error.what();
     }
     return {};
 }

@@ -12,21 +12,13 @@
 #include <string>
 
 #include "engine/error.h"
+#include "tests/unit/refusal.h"
 
 namespace edgesplat {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-
-std::string refusal(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
 
 /// Steps and others.
 std::vector<std::string_view> values_of(const Knob& knob) {

@@ -11,6 +11,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
+#include "tests/unit/refusal.h"
 
 namespace edgesplat {
 namespace {
@@ -19,15 +20,6 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 const double kNan = std::numeric_limits<double>::quiet_NaN();
-
-std::string refusal(const std::function<void()>& work) {
-    try {
-        work();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
 
 Scene good_scene() {
     Scene scene;

@@ -1,0 +1,21 @@
+// What an Error says.
+#pragma once
+
+#include <string>
+
+#include "engine/error.h"
+
+namespace edgesplat {
+
+/// The message of the Error that `work` throws; empty if it throws none.
+template <typename Work>
+std::string refusal(const Work& work) {
+    try {
+        work();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+}  // namespace edgesplat
