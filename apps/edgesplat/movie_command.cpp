@@ -10,8 +10,6 @@
 #include <memory>
 #include <optional>
 
-#include "apps/edgesplat/camera_options.h"
-#include "apps/edgesplat/effects_options.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/movie_encoder.h"
 #include "apps/edgesplat/movie_folder.h"
@@ -19,7 +17,6 @@
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/render_output.h"
 #include "apps/edgesplat/renderer_option.h"
-#include "apps/edgesplat/scene_options.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/scene/camera_path.h"
@@ -270,14 +267,7 @@ void add_movie_command(CLI::App& app, int& exit_status) {
         ->required()
         ->type_name("");
     add_movie_options(sub, *command);
-    add_camera_options(sub, command->edits);
-    add_scene_options(sub, command->edits);
-    add_effects_options(sub, command->edits);
-    add_renderer_options(sub, command->edits);
-    add_max_error_option(sub, command->edits);
-    add_settings_options(sub, command->edits);
-    add_volume_options(sub, command->volume);
-    add_set_option(sub, command->edits);
+    add_document_options(sub, command->edits, command->volume);
     add_device_options(sub, command->device);
     sub.footer(
         "Frames are written one by one into FILE.frames beside the film. Stopped or killed, the same command goes on\n"

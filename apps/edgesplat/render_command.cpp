@@ -91,6 +91,27 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
     app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
 }
 
+void add_set_option(CLI::App& app, DocumentEdits& edits) {
+    app.add_option_function<std::vector<std::string>>(
+           "--set",
+           [&edits](const std::vector<std::string>& assignments) {
+               for (const std::string& text : assignments)
+                   edits.add([text](SceneDocument& d) {
+                       try {
+                           edgesplat::set_key(d, text);
+                       } catch (const edgesplat::Error& error) {
+                           edgesplat::fail("--set {}", error.what());
+                       }
+                   });
+           },
+           "Any key of a scene file (`edgesplat scene keys`), such as effects.fog.start=20; repeatable, after all "
+           "other "
+           "options")
+        ->type_name("KEY=VALUE")
+        ->allow_extra_args(false)
+        ->group("Scene file");
+}
+
 }  // namespace
 
 void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
@@ -112,25 +133,15 @@ void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
         ->group(kGroup);
 }
 
-void add_set_option(CLI::App& app, DocumentEdits& edits) {
-    app.add_option_function<std::vector<std::string>>(
-           "--set",
-           [&edits](const std::vector<std::string>& assignments) {
-               for (const std::string& text : assignments)
-                   edits.add([text](SceneDocument& d) {
-                       try {
-                           edgesplat::set_key(d, text);
-                       } catch (const edgesplat::Error& error) {
-                           edgesplat::fail("--set {}", error.what());
-                       }
-                   });
-           },
-           "Any key of a scene file (`edgesplat scene keys`), such as effects.fog.start=20; repeatable, after all "
-           "other "
-           "options")
-        ->type_name("KEY=VALUE")
-        ->allow_extra_args(false)
-        ->group("Scene file");
+void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& volume) {
+    add_camera_options(app, edits);
+    add_scene_options(app, edits);
+    add_effects_options(app, edits);
+    add_renderer_options(app, edits);
+    add_max_error_option(app, edits);
+    add_settings_options(app, edits);
+    add_volume_options(app, volume);
+    add_set_option(app, edits);
 }
 
 void read_source(const std::string& source, SceneDocument& document, std::vector<std::filesystem::path>& folders) {
@@ -164,14 +175,7 @@ void add_render_command(CLI::App& app, const std::string& command_line) {
         ->required()
         ->type_name("");
     add_output_options(sub, *command);
-    add_camera_options(sub, command->edits);
-    add_scene_options(sub, command->edits);
-    add_effects_options(sub, command->edits);
-    add_renderer_options(sub, command->edits);
-    add_max_error_option(sub, command->edits);
-    add_settings_options(sub, command->edits);
-    add_volume_options(sub, command->volume);
-    add_set_option(sub, command->edits);
+    add_document_options(sub, command->edits, command->volume);
     add_device_options(sub, command->device);
     add_explain_options(sub, command->explain);
     sub.footer(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "apps/edgesplat/document_edits.h"
+#include "apps/edgesplat/volume_options.h"
 #include "engine/renderer.h"
 
 /// Adds the command. `command_line` is recorded in what it writes. Its callback throws edgesplat::Error.
@@ -15,8 +16,9 @@ void add_render_command(CLI::App& app, const std::string& command_line);
 /// Adds --device, --list-devices and --validation.
 void add_device_options(CLI::App& app, edgesplat::DeviceChoice& choice);
 
-/// Adds --set KEY=VALUE; add it last, so that it has the last word.
-void add_set_option(CLI::App& app, DocumentEdits& edits);
+/// Adds everything that a command line can say about a scene: volume, camera, matter, effects, renderer, quality, and
+/// --set, which has the last word.
+void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& volume);
 
 /// Fills `document` from a scene file, or begins one for a volume, and says where its volume is looked for. Throws
 /// edgesplat::Error.
