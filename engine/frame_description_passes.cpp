@@ -7,6 +7,7 @@
 #include "engine/frame.h"
 #include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
+#include "engine/passes/2b_occlude_ambient.h"
 #include "engine/passes/3_select_footprints.h"
 
 namespace edgesplat {
@@ -91,8 +92,9 @@ class Passes {
         if (f.occluded) {
             add("setup", "2b_occlude_ambient", kRates.occlude_splat * splats,
                 {variant("2b_occlude_ambient.comp",
-                         {{shader::SPEC_CLIP_KEEP, static_cast<std::uint32_t>(clip.keep.size())},
-                          {shader::SPEC_CLIP_REMOVE, static_cast<std::uint32_t>(clip.remove.size())}})});
+                         passes::occlude_constants({static_cast<std::uint32_t>(clip.keep.size()),
+                                                    static_cast<std::uint32_t>(clip.remove.size())},
+                                                   !request.scene.transfer.empty()))});
         }
         if (f.light_frames.empty()) return;
         double sweep = 0;

@@ -124,17 +124,27 @@ void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shad
         params[i] = glm::vec4(to_float(planes[i].normal), static_cast<float>(planes[i].offset));
 }
 
-/// The scene's planes as `params` (SceneParams or FrameParams) holds them.
-template <typename Params>
-passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
-                             Params& params) {
-    const IndexClip planes = index_clip(clip, geometry, origin);
-    copy_planes(planes.keep, params.clip_keep);
-    copy_planes(planes.remove, params.clip_remove);
-    return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
+}  // namespace
+
+SupportSpheres support_spheres(const Settings& drawn) {
+    if (!draws_warped(drawn)) return {{}, 0, kKernelRadius};
+    const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
+    SupportSpheres out;
+    out.by_distance = drawn.edge_shape == EdgeShape::Curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
+                                                            : covering_supports(band, shader::SUPPORT_STEPS);
+    out.wall = out.farthest = largest_support_radius(band);
+    for (const Support& s : out.by_distance)
+        out.farthest = std::max(out.farthest, std::abs(s.shift) + s.radius);
+    return out;
 }
 
-}  // namespace
+passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
+                             glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]) {
+    const IndexClip planes = index_clip(clip, geometry, origin);
+    copy_planes(planes.keep, keep);
+    copy_planes(planes.remove, remove);
+    return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
+}
 
 std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
@@ -186,7 +196,9 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
-    if (plan.buried) plan.clip = place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params);
+    if (plan.buried)
+        plan.clip =
+            place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
     plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     plan.weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel;
@@ -248,7 +260,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;
-    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p);
+    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
     p.anchor = to_float(anchor);
     p.support = static_cast<float>(kKernelRadius);
     p.view_x = to_float(glm::transpose(to_world) * view.right);

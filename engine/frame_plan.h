@@ -3,6 +3,7 @@
 
 #include "engine/passes/5_draw_splats.h"
 #include "engine/renderer.h"
+#include "footprints/edge_warp.h"
 #include "shaders/shared/frame_params.h"
 #include "shaders/shared/transfer_rows.h"
 
@@ -57,6 +58,18 @@ struct FramePlan {
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
+
+/// Spheres that hold the kernels of some settings.
+struct SupportSpheres {
+    std::vector<Support> by_distance;  ///< SUPPORT_STEPS cells of |D| in [0, R + a]; empty without a warp
+    double wall = 0;                   ///< radius for a kernel with two faces, voxels
+    double farthest = 0;               ///< how far from its voxel any kernel reaches
+};
+SupportSpheres support_spheres(const Settings& drawn);
+
+/// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
+passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
+                             glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]);
 
 /// Moves the rays of a plan: pixel (x, y) is then of the ray through (x + offset.x, y + offset.y), in pixels.
 void shift_rays(FramePlan& plan, const glm::dvec2& offset);

@@ -196,21 +196,14 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
     resources.occlusion = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t), gpu::Buffer::Place::Device,
                                       "splat occlusion");
     const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, "occlusion parameters");
-    const auto in_index_space = [&](const Plane& plane) {
-        const VolumeGeometry& geometry = volume.geometry;
-        const glm::dvec3 normal = glm::normalize(plane.normal);
-        return glm::vec4(glm::dvec4(glm::transpose(geometry.index_to_world_axes) * normal,
-                                    glm::dot(normal, plane.point - geometry.origin)));
-    };
     auto& params = block.mapped<shader::OcclusionParams>(1)[0];
     params = {};
     params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(volume.geometry.index_to_world_axes)));
     params.radius = static_cast<float>(plan.radius);
     std::ranges::transform(plan.matter.extinction, std::begin(params.extinction),
                            [](double extinction) { return static_cast<float>(extinction); });
-    const Clip& clip = plan.matter.clip;
-    std::ranges::transform(clip.keep, std::begin(params.clip_keep), in_index_space);
-    std::ranges::transform(clip.remove, std::begin(params.clip_remove), in_index_space);
+    const passes::ClipCount clip =
+        place_clip(plan.matter.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.splat_count = static_cast<std::uint32_t>(resources.splat_count);
     params.scene = resources.scene.address();
     params.reach = resources.occlusion.address();
@@ -218,8 +211,7 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
         commands.begin_span("2b_occlude_ambient");
         passes::occlude_ambient(commands, {.params = block.address(),
                                            .splat_count = resources.splat_count,
-                                           .clip_keep = static_cast<std::uint32_t>(clip.keep.size()),
-                                           .clip_remove = static_cast<std::uint32_t>(clip.remove.size()),
+                                           .clip = clip,
                                            .transfer = !plan.matter.transfer.empty()});
         commands.end_span();
     });

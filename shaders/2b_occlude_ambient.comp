@@ -18,35 +18,21 @@ const float DARK = 12.0;  // optical depth from which on 16 bits hold nothing
 // Cosine and sine of the golden angle: successive points of Vogel's spiral (1979).
 const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
 
-// How far voxel p is beyond a plane. (Loaded whole: lavapipe reads the single last component of an array's vec4 wrongly.)
-float beyond(vec4 plane, vec3 p) { return dot(plane.xyz, p) - plane.w; }
+SceneRef params;
+#include "shaders/lib/material.glsl"
+#define CLIP_PARAMS occlusion.at
+#include "shaders/lib/clip.glsl"
 
-// Whether it is beyond any plane of those to keep; beyond none of those to remove.
-bool cut_off(vec3 p) {
-    float most = -1.0;
-    for (uint i = 0u; i < CLIP_KEEP; ++i) most = max(most, beyond(occlusion.at.clip_keep[i], p));
-    return most > 0.0;
-}
-
-bool cut_out(vec3 p) {
-    float most = -1.0;
-    for (uint i = 0u; i < CLIP_REMOVE; ++i) most = max(most, beyond(occlusion.at.clip_remove[i], p));
-    return most <= 0.0;
-}
-
-float extinction_at(SceneRef params, ivec3 p) {
+float extinction_at(ivec3 p) {
     float value = imageLoad(volume, p).r;
-    uint material = 0u;
-    for (uint j = 0u; j < params.scene.iso_count; ++j) material += params.scene.iso[j] <= value ? 1u : 0u;
     float extinction = TRANSFER == 1u ? transfer_at(TransferRef(params.scene.transfer), value).a
-                                      : occlusion.at.extinction[material];
-    if (CLIP_KEEP > 0u) extinction = cut_off(vec3(p)) ? 0.0 : extinction;
-    if (CLIP_REMOVE > 0u) extinction = cut_out(vec3(p)) ? 0.0 : extinction;
+                                      : occlusion.at.extinction[material_of(value)];
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) extinction = is_cut_away(vec3(p), 0.0) ? 0.0 : extinction;
     return extinction;
 }
 
 // exp of minus the optical depth over `radius` mm from `start` (index space) along `u` (index units per mm).
-float transmittance(SceneRef params, vec3 start, vec3 u) {
+float transmittance(vec3 start, vec3 u) {
     float radius = occlusion.at.radius;
     // A little less than a whole number of voxels is that number, to every precision.
     int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
@@ -60,7 +46,7 @@ float transmittance(SceneRef params, vec3 start, vec3 u) {
     float tau = 0.0;
     for (int i = first; i < last && tau < DARK; ++i) {
         vec3 p = start + (float(i) + 0.5) * dl * u;
-        tau += dl * extinction_at(params, clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1));
+        tau += dl * extinction_at(clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1));
     }
     return exp(-tau);
 }
@@ -75,7 +61,7 @@ mat3 frame_of(vec3 n) {
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= occlusion.at.splat_count) return;
-    SceneRef params = SceneRef(occlusion.at.scene);
+    params = SceneRef(occlusion.at.scene);
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
     uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);
@@ -99,7 +85,7 @@ void main() {
             float share = (float(k) + 0.5) / float(OCCLUSION_RAYS);
             float up = sphere ? 1.0 - 2.0 * share : sqrt(1.0 - share);
             vec3 direction = frame * vec3(sqrt(1.0 - up * up) * round, up);
-            sum += transmittance(params, start, to_index * direction);
+            sum += transmittance(start, to_index * direction);
             round = vec2(round.x * GOLDEN.x - round.y * GOLDEN.y, round.x * GOLDEN.y + round.y * GOLDEN.x);
         }
         if (face == 0) reach = vec2(sum / float(OCCLUSION_RAYS));

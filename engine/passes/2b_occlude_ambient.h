@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
+#include "engine/passes/clip_count.h"
 #include "shaders/shared/occlusion_params.h"
 
 namespace edgesplat::passes {
@@ -9,9 +10,12 @@ namespace edgesplat::passes {
 struct OccludeAmbient {
     shader::Address params;  ///< OcclusionParams
     std::uint64_t splat_count = 0;
-    std::uint32_t clip_keep = 0, clip_remove = 0;  ///< planes
-    bool transfer = false;                         ///< extinction by SceneParams::transfer
+    ClipCount clip{};
+    bool transfer = false;  ///< extinction by SceneParams::transfer
 };
+
+/// Specialization of 2b_occlude_ambient.comp.
+gpu::Specialization occlude_constants(const ClipCount& clip, bool transfer);
 
 /// Reads the volume, SceneParams and the splat list, writes OcclusionParams::reach. View-independent.
 void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 
 namespace edgesplat::reference {
@@ -33,6 +34,7 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
     const double phase = (turn >> 8U) * (2 * std::numbers::pi / 16777216.0);
     const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
 
+    const IndexClip clip = index_clip(scene.effects.clip, geometry);
     double sum = 0;
     for (int k = 0; k < rays; ++k) {
         const double share = (k + 0.5) / rays, angle = phase + k * golden;
@@ -44,7 +46,7 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
         double tau = 0;
         for (int i = 0; i < static_cast<int>(steps) && tau < kDark; ++i) {
             const glm::ivec3 p(glm::floor(start + (i + 0.5) * dl * u + 0.5));
-            if (field.clamped(p) != p || cut_away(scene.effects.clip, geometry.to_world(glm::dvec3(p)))) continue;
+            if (field.clamped(p) != p || clip.cuts_away(glm::dvec3(p))) continue;
             const double value = field.at(p);
             tau += dl * (scaled.transfer.empty()
                              ? scene.materials[static_cast<std::size_t>(scaled.material(value))].extinction

@@ -22,10 +22,4 @@ SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, cons
     return s;
 }
 
-bool cut_away(const Clip& clip, const glm::dvec3& point) {
-    const auto beyond = [&](const Plane& plane) { return glm::dot(plane.normal, point - plane.point) > 0; };
-    return std::ranges::any_of(clip.keep, beyond) ||
-           (!clip.remove.empty() && std::ranges::none_of(clip.remove, beyond));
-}
-
 }  // namespace edgesplat::reference

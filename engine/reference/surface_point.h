@@ -22,7 +22,4 @@ bool is_wall(const VoxelEdge& edge, double band);
 /// `turned`: of a wall, the face on the other side.
 SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& geometry);
 
-/// Whether the scene's clip leaves nothing of a point, world mm.
-bool cut_away(const Clip& clip, const glm::dvec3& point);
-
 }  // namespace edgesplat::reference

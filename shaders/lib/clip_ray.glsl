@@ -55,8 +55,8 @@ bool is_in_matter(float r2, float t, float D, float D2, float curvature, bool pa
     float q = t - D;
     bool own_side = 2.0 * q + curvature * (q * q + max(r2 - t * t, 0.0)) < 0.0 && t > -D2;
     float thickness = D + D2;
-    float a = faces == 2 ? clamp(0.5 * thickness, 1e-3, params.half_width) : params.half_width;
-    float k = faces == 2 ? 1.0 + (params.strength - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : params.strength;
+    float a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
+    float k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
     float moved = faces >= 1 ? edge_warp(q, a, k) - q : 0.0;
     moved += faces == 2 ? edge_warp(t + D2, a, k) - (t + D2) : 0.0;
     float plane2 = r2 + moved * (2.0 * t + moved);

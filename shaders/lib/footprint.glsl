@@ -130,8 +130,8 @@ float edge_piece(Chord c, float first, float last, float face, float a, float k)
 
 float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, Slice slice, FootprintParams params) {
     float thickness = D + D2;
-    float a = faces == 2 ? clamp(0.5 * thickness, 1e-3, params.half_width) : params.half_width;
-    float k = faces == 2 ? 1.0 + (params.strength - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : params.strength;
+    float a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
+    float k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
     Chord c = chord_of(rho2, pn, un, slice);
     float sum = footprint_isotropic(rho2, slice);
     float face = D;

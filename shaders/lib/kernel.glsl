@@ -33,4 +33,8 @@ float edge_warp_inverse(float w, float a, float k) {
     float v = 2.0 * y / (1.0 + b + sqrt((1.0 - b) * (1.0 - b) + 4.0 * b * (1.0 - y)));
     return sign(w) * (a * v + max(abs(w) - a, 0.0));
 }
+
+// Band and strength of a wall's faces (wall_edge): they share its thickness, and no edge is invented within one voxel.
+float wall_half_width(float thickness, float a) { return clamp(0.5 * thickness, 1e-3, a); }
+float wall_strength(float thickness, float k) { return 1.0 + (k - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0); }
 #endif

@@ -16,8 +16,7 @@ Band band_of(Edge e) {
     bool near = e.state >= EDGE_LOWER && abs(e.d) < KERNEL_R + a;
     // A wall under one voxel is splatted plainly.
     int faces = wall ? (thickness > 1.0 ? 2 : 0) : 1;
-    return Band(wall ? clamp(0.5 * thickness, 1e-3, a) : a,
-                wall ? 1.0 + (k - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : k, near ? faces : 0);
+    return Band(wall ? wall_half_width(thickness, a) : a, wall ? wall_strength(thickness, k) : k, near ? faces : 0);
 }
 
 float kernel_at(Edge e, vec3 r) {

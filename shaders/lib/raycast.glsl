@@ -18,18 +18,13 @@ ivec3 dims;
 float iso_values[MAX_MATERIALS];
 uint visible_mask;
 
-float voxel(ivec3 p) { return imageLoad(volume, p).r; }
+#include "shaders/lib/trilinear.glsl"
 
+// trilinear() with a cheaper choice of the cell: at the last sample it has no width.
 float field(vec3 p) {
     p = clamp(p, vec3(0.0), vec3(dims - 1));
     ivec3 c = ivec3(p);
-    ivec3 e = min(c + 1, dims - 1);
-    vec3 t = p - vec3(c);
-    vec4 low = vec4(voxel(c), voxel(ivec3(c.x, e.y, c.z)), voxel(ivec3(c.x, c.y, e.z)), voxel(ivec3(c.x, e.y, e.z)));
-    vec4 high = vec4(voxel(ivec3(e.x, c.y, c.z)), voxel(ivec3(e.x, e.y, c.z)), voxel(ivec3(e.x, c.y, e.z)), voxel(e));
-    vec4 x = low + t.x * (high - low);
-    vec2 y = x.xz + t.y * (x.yw - x.xz);
-    return y.x + t.z * (y.y - y.x);
+    return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
 }
 
 uint material_of(float value) {

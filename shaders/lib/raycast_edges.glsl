@@ -80,8 +80,8 @@ Surface face_near(vec3 x, ivec3 p) {
     // Both sides of a surface look for it; their planes are told alike.
     f.s = e.state == EDGE_UPPER ? -f.s : f.s;
     f.n = e.state == EDGE_UPPER ? -f.n : f.n;
-    f.a = wall ? clamp(0.5 * thickness, 1e-3, params.rays.half_width) : params.rays.half_width;
-    f.k = wall ? 1.0 + (params.rays.strength - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0) : params.rays.strength;
+    f.a = wall ? wall_half_width(thickness, params.rays.half_width) : params.rays.half_width;
+    f.k = wall ? wall_strength(thickness, params.rays.strength) : params.rays.strength;
     f.weight = e.state >= EDGE_LOWER && abs(e.d) < reach && f.k > 1.0 ? 1.0 : 0.0;
     return f;
 }

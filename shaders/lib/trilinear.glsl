@@ -3,14 +3,17 @@
 
 float voxel(ivec3 p) { return imageLoad(volume, p).r; }
 
-float trilinear(vec3 p) {
-    p = clamp(p, vec3(0.0), vec3(dims - 1));
-    ivec3 c = clamp(ivec3(floor(p)), ivec3(0), max(dims - 2, ivec3(0)));
-    ivec3 e = min(c + 1, dims - 1);
-    vec3 t = p - vec3(c);
+// Between the samples of the cell from c to e, t of the way.
+float within_cell(ivec3 c, ivec3 e, vec3 t) {
     vec4 low = vec4(voxel(c), voxel(ivec3(c.x, e.y, c.z)), voxel(ivec3(c.x, c.y, e.z)), voxel(ivec3(c.x, e.y, e.z)));
     vec4 high = vec4(voxel(ivec3(e.x, c.y, c.z)), voxel(ivec3(e.x, e.y, c.z)), voxel(ivec3(e.x, c.y, e.z)), voxel(e));
     vec4 x = low + t.x * (high - low);
     vec2 y = x.xz + t.y * (x.yw - x.xz);
     return y.x + t.z * (y.y - y.x);
+}
+
+float trilinear(vec3 p) {
+    p = clamp(p, vec3(0.0), vec3(dims - 1));
+    ivec3 c = clamp(ivec3(floor(p)), ivec3(0), max(dims - 2, ivec3(0)));
+    return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
 }

@@ -12,7 +12,7 @@ struct OcclusionParams {
     mat3 normal_to_world;   // S^-T
     float radius;           // mm
     float extinction[16];   // of the materials, per mm
-    vec4 clip_keep[8];      // index space: p is beyond where dot(xyz, p) > w
+    vec4 clip_keep[8];      // normal (unit) and offset, index space: above 0 is beyond
     vec4 clip_remove[8];
     uint splat_count;
     uint pad;
