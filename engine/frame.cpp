@@ -12,6 +12,7 @@
 #include "engine/passes/5_draw_splats.h"
 #include "engine/passes/6_composite_sheet.h"
 #include "engine/passes/7_resolve.h"
+#include "engine/row_box.h"
 
 namespace edgesplat {
 namespace {
@@ -21,24 +22,19 @@ using Usage = vk::ImageUsageFlagBits;
 /// Runs of voxels to counts to offsets; notes the rows that hold splats. Returns the number of splats.
 std::uint64_t scan_runs(const glm::ivec3& dims, VolumeResources& resources) {
     const auto runs = resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(dims));
-    const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
-    const std::uint64_t voxels = nx * ny * static_cast<std::uint64_t>(dims.z);
-    glm::ivec3 low = dims, high(-1);
+    const std::uint64_t voxels =
+        static_cast<std::uint64_t>(dims.x) * static_cast<std::uint64_t>(dims.y) * static_cast<std::uint64_t>(dims.z);
+    RowBox rows(dims);
     std::uint64_t total = 0;
     for (std::uint64_t i = 0; i < runs.size(); ++i) {
         const std::uint32_t count = runs[i];
         runs[i] = static_cast<std::uint32_t>(total);
         total += count;
-        if (count == 0) continue;
-        const std::uint64_t first = i * shader::COLLECT_RUN, last = std::min(first + shader::COLLECT_RUN, voxels) - 1;
-        const glm::ivec3 a(0, first / nx % ny, first / nx / ny), b(dims.x - 1, last / nx % ny, last / nx / ny);
-        // A run that spans slices spans every row between them.
-        const bool wraps = a.z != b.z;
-        low = glm::min(low, glm::ivec3(0, wraps ? 0 : a.y, a.z));
-        high = glm::max(high, glm::ivec3(b.x, wraps ? dims.y - 1 : b.y, b.z));
+        const std::uint64_t first = i * shader::COLLECT_RUN;
+        if (count > 0) rows.add(first, std::min(first + shader::COLLECT_RUN, voxels) - 1);
     }
-    resources.box_low = total == 0 ? glm::ivec3(0) : low;
-    resources.box_high = total == 0 ? dims - 1 : high;
+    resources.box_low = rows.low();
+    resources.box_high = rows.high();
     return total;
 }
 

@@ -108,11 +108,10 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
                 row.obstacle = "it has no say beside what is called for";
             } else {
                 const double reach = farthest_reach(drawn_settings(with));
-                const CollectionPlan collection =
-                    plan_collection(*with.volume, with.scene, drawn_settings(with), keeps_buried(with));
+                const CollectionPlan collection = planned_collection(with);
                 const SplatCount splats =
                     collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
-                const FrameForecast other = forecast_frame(with, splats, reach);
+                const FrameForecast other = forecast_frame(with, collection, splats, reach);
                 row.bytes = static_cast<std::int64_t>(sum_of(other.resources)) -
                             static_cast<std::int64_t>(sum_of(forecast.resources));
                 for (const std::string_view pass : effect.passes)
@@ -191,9 +190,9 @@ std::uint64_t FrameDescription::total_bytes() const {
 
 FrameDescription describe_frame(const FrameRequest& request) {
     check(request);
-    const Settings drawn = drawn_settings(request);
-    const CollectionPlan collection = plan_collection(*request.volume, request.scene, drawn, keeps_buried(request));
-    return describe(request, forecast_frame(request, count_splats(*request.volume, collection), farthest_reach(drawn)),
+    const CollectionPlan collection = planned_collection(request);
+    const SplatCount splats = count_splats(*request.volume, collection);
+    return describe(request, forecast_frame(request, collection, splats, farthest_reach(drawn_settings(request))),
                     nullptr);
 }
 

@@ -4,6 +4,7 @@
 
 #include "engine/frame_reach.h"
 #include "engine/passes/2_collect_splats.h"
+#include "engine/row_box.h"
 #include "engine/volume/filters.h"
 #include "footprints/edge_warp.h"
 #include "footprints/kernel.h"
@@ -79,7 +80,8 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
         for (std::uint64_t i = 0; i < voxels; ++i)
             visible[i] &= buried[i] == 0 ? 1U : 0U;
     }
-    SplatCount out{SplatCount::From::Materials, 0, dims, glm::ivec3(-1)};
+    SplatCount out{SplatCount::From::Materials};
+    RowBox rows(dims);
     for (std::uint64_t first = 0; first < voxels; first += shader::COLLECT_RUN) {
         const std::uint64_t end = std::min<std::uint64_t>(first + shader::COLLECT_RUN, voxels);
         const auto count =
@@ -87,29 +89,15 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
                                                   visible.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1}));
         out.splats += count;
         if (count == 0) continue;
-        const glm::ivec3 a(0, first / nx % ny, first / nx / ny),
-            b(dims.x - 1, (end - 1) / nx % ny, (end - 1) / nx / ny);
-        const bool wraps = a.z != b.z;
-        out.box_low = glm::min(out.box_low, glm::ivec3(0, wraps ? 0 : a.y, a.z));
-        out.box_high = glm::max(out.box_high, glm::ivec3(b.x, wraps ? dims.y - 1 : b.y, b.z));
+        rows.add(first, end - 1);
     }
-    if (out.splats == 0) {
-        out.box_low = glm::ivec3(0);
-        out.box_high = dims - 1;
-    }
+    out.box_low = rows.low();
+    out.box_high = rows.high();
     return out;
 }
 
 double farthest_reach(const Settings& drawn) {
-    if (!draws_warped(drawn)) return kKernelRadius;
-    const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
-    const auto supports = drawn.edge_shape == EdgeShape::Curved
-                              ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
-                              : covering_supports(band, shader::SUPPORT_STEPS);
-    double reach = largest_support_radius(band);
-    for (const Support& s : supports)
-        reach = std::max(reach, std::abs(s.shift) + s.radius);
-    return reach;
+    return support_spheres(drawn).farthest;
 }
 
 Settings drawn_settings(const FrameRequest& request) {
@@ -124,14 +112,19 @@ std::vector<std::uint32_t> payloads_of(const AovRequest& outputs) {
     return payloads;
 }
 
+CollectionPlan planned_collection(const FrameRequest& request) {
+    return plan_collection(*request.volume, request.scene, drawn_settings(request), keeps_buried(request));
+}
+
 bool keeps_buried(const FrameRequest& request) {
     return request.outputs.tau || eye_in_opaque(*request.volume, request.scene, request.camera);
 }
 
-FrameForecast forecast_frame(const FrameRequest& request, const SplatCount& splats, double reach) {
+FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
+                             double reach) {
     FrameForecast out;
     out.settings = drawn_settings(request);
-    out.collection = plan_collection(*request.volume, request.scene, out.settings, keeps_buried(request));
+    out.collection = collection;
     out.splats = splats;
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         const char* names[] = {"colour", "tau", "depth, distance", "normal"};

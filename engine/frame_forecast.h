@@ -71,7 +71,12 @@ bool keeps_buried(const FrameRequest& request);
 /// The resources of `forecast`, from its plans.
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast);
 
-/// `reach` is farthest_reach(drawn_settings(request)). Throws Error as plan_frame does.
-FrameForecast forecast_frame(const FrameRequest& request, const SplatCount& splats, double reach);
+/// What the request's passes 1 and 2 do.
+CollectionPlan planned_collection(const FrameRequest& request);
+
+/// `collection` is planned_collection(request), `reach` farthest_reach(drawn_settings(request)). Throws Error as
+/// plan_frame does.
+FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
+                             double reach);
 
 }  // namespace edgesplat

@@ -64,12 +64,11 @@ class Fit {
     bool operator()(const FrameRequest& request) const {
         try {
             const double reach = farthest_reach(drawn_settings(request));
+            const CollectionPlan plan = planned_collection(request);
             const auto fits = [&](const SplatCount& splats) {
-                return memory_need(*device_, forecast_frame(request, splats, reach), budget_).fits();
+                return memory_need(*device_, forecast_frame(request, plan, splats, reach), budget_).fits();
             };
             if (fits(most_splats(request.volume->geometry))) return true;
-            const CollectionPlan plan =
-                plan_collection(*request.volume, request.scene, drawn_settings(request), keeps_buried(request));
             return fits(count_splats(*request.volume, plan));
         } catch (const Error&) {
             return false;  // too many sheets

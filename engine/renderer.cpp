@@ -130,17 +130,11 @@ void RendererState::choose_supports(const Settings& settings) {
     const EdgeBand band{settings.edge_half_width, settings.edge_strength};
     const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     if (draws_warped(settings) && (band_in_use != band || curved_in_use != curved)) {
-        const auto supports = curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
-                                     : covering_supports(band, shader::SUPPORT_STEPS);
-        std::ranges::transform(supports, footprint_resources.supports.begin(),
+        const SupportSpheres spheres = support_spheres(settings);
+        std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
                                [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-        const double wall = largest_support_radius(band);
-        footprint_resources.wall_support = static_cast<float>(wall);
-        footprint_resources.farthest_reach = wall;
-        for (const Support& s : supports) {
-            footprint_resources.farthest_reach =
-                std::max(footprint_resources.farthest_reach, std::abs(s.shift) + s.radius);
-        }
+        footprint_resources.wall_support = static_cast<float>(spheres.wall);
+        footprint_resources.farthest_reach = spheres.farthest;
         band_in_use = band;
         curved_in_use = curved;
     }

@@ -20,12 +20,11 @@ std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& 
 }
 
 void RendererState::check_memory(const FrameRequest& request) {
-    const Settings settings = drawn_settings(request);
-    const double reach = reach_of(settings);
-    const CollectionPlan wanted = plan_collection(*volume, request.scene, settings, keeps_buried(request));
+    const double reach = reach_of(drawn_settings(request));
+    const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
     const SplatCount splats = known.value_or(most_splats(volume->geometry));
-    FrameForecast forecast = forecast_frame(request, splats, reach);
+    FrameForecast forecast = forecast_frame(request, wanted, splats, reach);
     std::vector<std::pair<std::string, std::uint64_t>> asked;
     for (const PlannedResource& resource : forecast.resources)
         asked.emplace_back(resource.name, resource.bytes);
@@ -33,7 +32,7 @@ void RendererState::check_memory(const FrameRequest& request) {
     MemoryNeed need = memory_need(device, forecast, memory_budget);
     // The bound by the number of voxels is too high for most volumes; counting takes longer.
     if (!need.fits() && !known) {
-        forecast = forecast_frame(request, count_splats(*volume, wanted), reach);
+        forecast = forecast_frame(request, wanted, count_splats(*volume, wanted), reach);
         need = memory_need(device, forecast, memory_budget);
     }
     if (!need.fits()) refuse_memory(device, request, need, memory_budget);
@@ -41,10 +40,10 @@ void RendererState::check_memory(const FrameRequest& request) {
 }
 
 FrameForecast Renderer::forecast(const FrameRequest& request) {
-    const Settings settings = drawn_settings(request);
-    const CollectionPlan wanted = plan_collection(*request.volume, request.scene, settings, keeps_buried(request));
+    const CollectionPlan wanted = planned_collection(request);
     const auto known = request.volume == state_->volume ? state_->collected_splats(wanted) : std::nullopt;
-    return forecast_frame(request, known ? *known : count_splats(*request.volume, wanted), state_->reach_of(settings));
+    return forecast_frame(request, wanted, known ? *known : count_splats(*request.volume, wanted),
+                          state_->reach_of(drawn_settings(request)));
 }
 
 std::vector<FittingChange> Renderer::what_fits(const FrameRequest& request) const {
