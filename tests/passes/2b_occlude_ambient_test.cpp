@@ -7,21 +7,14 @@
 namespace edgesplat::test {
 namespace {
 
-struct Reaches {
+/// What reaches the splats: first and second are the face that the normal looks out of, and the other.
+struct Reaches : Pairs {
     std::vector<reference::SplatRecord> records;
-    std::vector<double> front, back;  ///< the face that the normal looks out of, and the other
 };
 
 Reaches device_reaches(const PassScene& s) {
     RendererState& state = prepared(s);
-    Reaches out;
-    out.records = device_records(state);
-    for (const std::uint32_t word :
-         download<std::uint32_t>(state, state.volume_resources.occlusion, out.records.size())) {
-        out.front.push_back((word & 0xffffU) / 65535.0);
-        out.back.push_back((word >> 16U) / 65535.0);
-    }
-    return out;
+    return {device_pairs(state, state.volume_resources.occlusion), device_records(state)};
 }
 
 double band(const Settings& settings) {
@@ -64,7 +57,7 @@ TEST(OccludeAmbient, EqualsTheReference) {
                 walls += turned ? 1U : 0U;
                 const double want = reference::ambient_reach(record, field, s.scaled(), s.scene, s.volume.geometry,
                                                              band(s.settings), 6, turned);
-                const double difference = std::abs((turned ? got.back[i] : got.front[i]) - want);
+                const double difference = std::abs((turned ? got.second[i] : got.first[i]) - want);
                 // A sample that lies on the border of two voxels to seven digits may be either's.
                 off += difference > 1e-3 ? 1U : 0U;
                 EXPECT_LE(difference, 0.04);
@@ -92,7 +85,7 @@ TEST(OccludeAmbient, AFlatPlaneSeesTheWholeSky) {
             if (!got.records[i].edge.has_edge) continue;
             ++surface;
             // 16 bits of 1 are 1.
-            EXPECT_GT(got.front[i], 0.99999);
+            EXPECT_GT(got.first[i], 0.99999);
         }
         EXPECT_GT(surface, 1000U);
     }
@@ -124,8 +117,8 @@ TEST(OccludeAmbient, AnInnerCornerIsAsOpenAsItsFormFactorSays) {
         const int v = static_cast<int>(got.records[i].voxel), x = v % 28, y = v / 28 % 28, z = v / 784;
         if (!e.has_edge || z > 9 || x < 12 || x > 20 || y < 10 || y > 17 || e.n.z < 0.99) continue;
         const double want = open_beside_wall(x - 9.25, radius);
-        worst = std::max(worst, std::abs(got.front[i] - want));
-        sum += got.front[i] - want;
+        worst = std::max(worst, std::abs(got.first[i] - want));
+        sum += got.first[i] - want;
         ++count;
     }
     ASSERT_GT(count, 100);
@@ -148,7 +141,7 @@ TEST(OccludeAmbient, InsideAClosedBoxItIsDark) {
         const glm::dvec3 q = glm::abs(glm::dvec3(v % 24, v / 24 % 24, v / 576) - 11.5);
         if (!got.records[i].edge.has_edge || std::max({q.x, q.y, q.z}) > 7) continue;
         ++inner;
-        EXPECT_LE(got.front[i], 1e-3);
+        EXPECT_LE(got.first[i], 1e-3);
     }
     EXPECT_GT(inner, 300U);
 }
@@ -162,8 +155,8 @@ TEST(OccludeAmbient, BetweenTwoPlanesOnlyTheGrazingRaysGetOut) {
     for (std::size_t i = 0; i < got.records.size(); ++i) {
         const int v = static_cast<int>(got.records[i].voxel), x = v % 40, y = v / 40 % 40;
         if (!got.records[i].edge.has_edge || x < 15 || x > 24 || y < 15 || y > 24) continue;
-        EXPECT_NEAR(got.front[i], 0.25, 0.08);
-        sum += got.front[i];
+        EXPECT_NEAR(got.first[i], 0.25, 0.08);
+        sum += got.first[i];
         ++count;
     }
     ASSERT_GT(count, 100);
@@ -184,7 +177,7 @@ TEST(OccludeAmbient, HazeLetsThroughWhatItsThicknessSays) {
             const glm::ivec3 p(v % 24, v / 24 % 24, v / 576);
             if (glm::any(glm::lessThan(p, glm::ivec3(7))) || glm::any(glm::greaterThan(p, glm::ivec3(16)))) continue;
             ++deep;
-            EXPECT_NEAR(got.front[i], std::exp(-extinction * radius), 1e-4);
+            EXPECT_NEAR(got.first[i], std::exp(-extinction * radius), 1e-4);
         }
         EXPECT_EQ(deep, 1000U);
     }
@@ -199,7 +192,7 @@ TEST(OccludeAmbient, WhatIsCutAwayIsInNoOnesWay) {
         for (std::size_t i = 0; i < got.records.size(); ++i) {
             const int v = static_cast<int>(got.records[i].voxel), x = v % 28, y = v / 28 % 28, z = v / 784;
             if (!got.records[i].edge.has_edge || z > 9 || z < 7 || x < 12 || x > 14 || y < 10 || y > 17) continue;
-            sum += got.front[i];
+            sum += got.first[i];
             ++count;
         }
         EXPECT_GT(count, 20);

@@ -7,21 +7,14 @@
 namespace edgesplat::test {
 namespace {
 
-struct Reaches {
+/// What reaches the splats: first and second are the lights with shadows.
+struct Reaches : Pairs {
     std::vector<reference::SplatRecord> records;
-    std::vector<double> first, second;  ///< light with shadows
 };
 
 Reaches device_reaches(const PassScene& s) {
     RendererState& state = prepared(s);
-    Reaches out;
-    out.records = device_records(state);
-    for (const std::uint32_t word :
-         download<std::uint32_t>(state, state.volume_resources.shadows, out.records.size())) {
-        out.first.push_back((word & 0xffffU) / 65535.0);
-        out.second.push_back((word >> 16U) / 65535.0);
-    }
-    return out;
+    return {device_pairs(state, state.volume_resources.shadows), device_records(state)};
 }
 
 Light sun(const glm::dvec3& towards) {

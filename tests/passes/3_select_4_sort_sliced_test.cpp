@@ -62,20 +62,16 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
         RendererState& state = prepared(s);
         const auto records = device_records(state);
         const Drawn got = drawn(state, s);
-        const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
-        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
-        const reference::Footprints footprints(s.settings);
-        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
-        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
-        const double thickness = reference::sheet_thickness(view, s.settings);
+        const Oracle oracle(s, records, kSize);
+        const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         const int base = state.plan.params.sheet_base, count = static_cast<int>(state.plan.params.sheet_count);
         // The device's box of splats holds whole rows: it may begin earlier.
-        EXPECT_LE(base, reference::first_sheet(records, field, view, s.settings, footprints));
+        EXPECT_LE(base, reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints));
 
         // The sphere that holds a kernel, as the frame has it: depth of its centre and half its extent, in sheets.
         const auto& params = state.plan.params;
-        const double unit = glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * view.frame.forward);
+        const double unit =
+            glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * oracle.view.frame.forward);
         const auto extent = [&](const reference::VoxelEdge& edge) {
             double shift = 0, radius = kKernelRadius;
             if (draws_warped(s.settings) && edge.has_edge) {
@@ -102,8 +98,8 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             ASSERT_LT(range.last, count);
             ASSERT_LE(range.last - range.first + 1, static_cast<int>(state.plan.sheets_per_splat));
             const auto [shift, reach] = extent(records[i].edge);
-            const glm::dvec3 x(field.voxel(records[i].voxel));
-            const double middle = view.depth(x + shift * records[i].edge.n) / thickness - base;
+            const glm::dvec3 x(oracle.field.voxel(records[i].voxel));
+            const double middle = oracle.view.depth(x + shift * records[i].edge.n) / thickness - base;
             const auto clamped = [&](double sheet) {
                 return std::clamp(static_cast<int>(std::floor(sheet)), 0, count - 1);
             };
@@ -116,11 +112,12 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             // What those sheets leave out shows nowhere. A few splats will do: the reference asks every pixel.
             if (kept % 60 != 1) continue;
             ++looked_at;
-            const auto& box = selected[i].box;
+            const auto& box = oracle.selected[i].box;
             for (int y = box.y0; y < box.y1; y += 3) {
                 for (int column = box.x0; column < box.x1; column += 3) {
                     const auto tau = [&](double near, double far) {
-                        return drawer.tau(static_cast<std::uint32_t>(i), column, y, reference::DepthRange{near, far});
+                        return oracle.drawer.tau(static_cast<std::uint32_t>(i), column, y,
+                                                 reference::DepthRange{near, far});
                     };
                     missed =
                         std::max({missed, tau(thickness * std::max(base - 100, 0), thickness * (base + range.first)),

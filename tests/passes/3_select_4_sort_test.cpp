@@ -31,13 +31,9 @@ TEST(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
         RendererState& state = prepared(s);
         const auto records = device_records(state);
         const auto got = drawn(state, s);
-        const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
-        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
-        const reference::Footprints footprints(s.settings);
-        const auto want = reference::select_footprints(records, field, view, s.settings, footprints);
-        const reference::SplatDrawer drawer(records, want, field, s.scene, view, s.settings, footprints);
-        const double thickness = s.settings.sheet_spacing * view.mm_per_voxel_along;
+        const Oracle oracle(s, records, kSize);
+        const auto& want = oracle.selected;
+        const double thickness = s.settings.sheet_spacing * oracle.view.mm_per_voxel_along;
         std::size_t kept = 0, moved = 0;
         for (std::size_t i = 0; i < records.size(); ++i) {
             if (got.sheets[i] == shader::SHEET_NONE) {
@@ -47,7 +43,7 @@ TEST(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
                 double seen = 0;
                 for (int y = box.y0; y < box.y1; ++y) {
                     for (int x = box.x0; x < box.x1; ++x)
-                        seen = std::max(seen, drawer.tau(static_cast<std::uint32_t>(i), x, y));
+                        seen = std::max(seen, oracle.drawer.tau(static_cast<std::uint32_t>(i), x, y));
                 }
                 EXPECT_LE(seen, 1e-6) << "splat " << i;
                 continue;

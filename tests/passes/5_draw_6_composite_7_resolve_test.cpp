@@ -39,12 +39,7 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
         const auto records = device_records(state);
         const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
 
-        const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
-        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
-        const reference::Footprints footprints(s.settings);
-        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
-        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
+        const Oracle oracle(s, records, kSize);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
@@ -52,7 +47,7 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
                 if (sheet_of[i] == sheet) splats.push_back(i);
             }
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
-            drawer.draw(splats, reference::Payload::Color, {}, want);
+            oracle.drawer.draw(splats, reference::Payload::Color, {}, want);
             const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
             for (std::size_t i = 0; i < kPixels; ++i) {
                 const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
@@ -119,29 +114,25 @@ TEST_P(DrawKernels, SheetsAgreeWithTheReference) {
         const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
         const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
 
-        const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
-        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
-        const reference::Footprints footprints(s.settings);
-        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
-        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
+        const Oracle oracle(s, records, kSize);
         const bool sliced = kernels.sheets == SheetCut::Sliced;
-        const int reference_base = reference::first_sheet(records, field, view, s.settings, footprints);
-        const double thickness = reference::sheet_thickness(view, s.settings);
+        const int reference_base =
+            reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
+        const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
                 // Sliced, the reference says itself what belongs here: the device may have left some out.
                 const int place = static_cast<int>(sheet) + state.plan.params.sheet_base - reference_base;
-                const bool touches = selected[i].sheet <= place && place <= selected[i].last_sheet;
+                const bool touches = oracle.selected[i].sheet <= place && place <= oracle.selected[i].last_sheet;
                 if (sliced ? touches && sheet_of[i] != shader::SHEET_NONE : sheet_of[i] == sheet) splats.push_back(i);
             }
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
             std::optional<reference::DepthRange> cut;
             const double first = state.plan.params.sheet_base + static_cast<double>(sheet);
             if (sliced) cut = {thickness * first, thickness * (first + 1)};
-            drawer.draw(splats, reference::Payload::Color, {}, want, cut);
+            oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
             for (std::size_t i = 0; i < kPixels; ++i) {
                 const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
                 const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;

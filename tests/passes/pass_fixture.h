@@ -154,4 +154,38 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
     return records;
 }
 
+/// Two unorm16 per splat.
+struct Pairs {
+    std::vector<double> first, second;
+};
+
+inline Pairs device_pairs(RendererState& state, const gpu::Buffer& buffer) {
+    Pairs out;
+    for (const std::uint32_t word : download<std::uint32_t>(state, buffer, state.volume_resources.splat_count)) {
+        out.first.push_back((word & 0xffffU) / 65535.0);
+        out.second.push_back((word >> 16U) / 65535.0);
+    }
+    return out;
+}
+
+/// The reference's passes 3 and 5 on a splat list of the device. Its members refer to one another.
+struct Oracle {
+    Oracle(const PassScene& s, const std::vector<reference::SplatRecord>& records, const glm::ivec2& size)
+        : values(scaled_field(s.volume)),
+          field{s.volume.geometry.dims, values, {}},
+          view(s.camera, s.volume.geometry, size.x, size.y),
+          footprints(s.settings),
+          selected(reference::select_footprints(records, field, view, s.settings, footprints)),
+          drawer(records, selected, field, s.scene, view, s.settings, footprints) {}
+    Oracle(const Oracle&) = delete;
+    Oracle& operator=(const Oracle&) = delete;
+
+    std::vector<float> values;
+    reference::Field field;
+    reference::View view;
+    reference::Footprints footprints;
+    std::vector<reference::Selected> selected;
+    reference::SplatDrawer drawer;
+};
+
 }  // namespace edgesplat::test

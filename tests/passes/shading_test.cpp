@@ -173,27 +173,23 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
         const auto records = device_records(state);
         const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
 
-        const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
-        const reference::View view(s.camera, s.volume.geometry, kSize.x, kSize.y);
-        const reference::Footprints footprints(s.settings);
-        const auto selected = reference::select_footprints(records, field, view, s.settings, footprints);
-        const reference::SplatDrawer drawer(records, selected, field, s.scene, view, s.settings, footprints);
-        const int base = reference::first_sheet(records, field, view, s.settings, footprints);
-        const double thickness = reference::sheet_thickness(view, s.settings);
+        const Oracle oracle(s, records, kSize);
+        const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
+        const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
             const int place = static_cast<int>(sheet) + state.plan.params.sheet_base - base;
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
-                if (selected[i].kept && selected[i].sheet <= place && place <= selected[i].last_sheet)
+                if (oracle.selected[i].kept && oracle.selected[i].sheet <= place &&
+                    place <= oracle.selected[i].last_sheet)
                     splats.push_back(i);
             }
             std::optional<reference::DepthRange> cut;
             const double first = base + static_cast<double>(place);
             if (s.settings.sheets == SheetCut::Sliced) cut = {thickness * first, thickness * (first + 1)};
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
-            drawer.draw(splats, reference::Payload::Color, {}, want, cut);
+            oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
             for (std::size_t i = 0; i < kPixels; ++i) {
                 const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
                 const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
