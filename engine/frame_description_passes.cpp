@@ -108,7 +108,9 @@ class Passes {
                      passes::draw_constants(f.light_frames.front().variant)),
              "2c_sweep_light.comp"});
         add("setup", "2d_shadow_splats", kRates.select_splat * splats * static_cast<double>(f.light_frames.size()),
-            {"2d_shadow_splats.comp"});
+            {variant("2d_shadow_splats.comp",
+                     {{shader::SPEC_CLIP_KEEP, f.light_frames.front().variant.clip.keep},
+                      {shader::SPEC_CLIP_REMOVE, f.light_frames.front().variant.clip.remove}})});
     }
 
     void add_draw(const FrameRequest& request, const ForecastDraw& draw) {

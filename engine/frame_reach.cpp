@@ -235,7 +235,7 @@ std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& 
         }
         commands.end_span();
         commands.begin_span("2d_shadow_splats");
-        passes::shadow_splats(commands, frame, plan.params.splat_count, channel);
+        passes::shadow_splats(commands, frame, plan.params.splat_count, plan.variant.clip, channel);
         commands.end_span();
     });
     return commands.span_times();

@@ -11,6 +11,7 @@ layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(push_constant) uniform Push { OcclusionRef occlusion; };
+#define CLIP_PARAMS occlusion.at
 #include "shaders/lib/surface_point.glsl"
 #include "shaders/lib/transfer.glsl"
 
@@ -20,7 +21,6 @@ const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
 
 SceneRef params;
 #include "shaders/lib/material.glsl"
-#define CLIP_PARAMS occlusion.at
 #include "shaders/lib/clip.glsl"
 
 float extinction_at(ivec3 p) {
@@ -75,7 +75,8 @@ void main() {
     int faces = is_wall(e, params.scene.band) ? 2 : 1;
     for (int face = 0; face < faces; ++face) {
         SurfacePoint s = surface_point(e, params.scene.band, face == 1, occlusion.at.normal_to_world);
-        bool sphere = e.state == EDGE_NONE;
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), occlusion.at.normal_to_world);
+        bool sphere = s.normal == vec3(0.0);
         vec3 start = vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step;
         mat3 frame = sphere ? mat3(1.0) : frame_of(s.normal);
         vec2 round = vec2(cos(phase), sin(phase));

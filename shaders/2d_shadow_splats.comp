@@ -5,10 +5,13 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(push_constant) uniform Push {
     FrameRef params;
     uint channel;  // 0 or 1: which half of the splat's word
 };
+#define CLIP_PARAMS params.frame
 #include "shaders/lib/surface_point.glsl"
 
 const float LONGEST_LIFT = 8.0;      // voxels; coarser pictures of the light may let a surface shadow itself
@@ -38,6 +41,7 @@ void main() {
     // Of a wall only the face that the light sees can be lit.
     if (is_wall(e, params.frame.band) && dot(s.normal, to_light) < 0.0)
         s = surface_point(e, params.frame.band, true, params.frame.normal_to_world);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, position, params.frame.normal_to_world);
 
     vec3 size_z = vec3(vec2(params.frame.size), params.frame.sheet_thickness);
     float cosine = dot(s.normal, to_light);
@@ -49,7 +53,7 @@ void main() {
     position += s.foot + lift * s.step;
 
     // The sheet's far plane must not lie behind the surface.
-    float ahead = e.state == EDGE_NONE ? 0.0 : max(size_z.z - lift / max(cosine, SMALLEST_COSINE), 0.0);
+    float ahead = s.normal == vec3(0.0) ? 0.0 : max(size_z.z - lift / max(cosine, SMALLEST_COSINE), 0.0);
     float along = dot(params.frame.view_z, position);
     float depth = (along - params.frame.sheet_zero - ahead) / params.frame.sheet_thickness;
     vec2 view = vec2(dot(params.frame.view_x, position) + params.frame.anchor_x,

@@ -8,8 +8,11 @@ void sweep_light(gpu::Commands& commands, shader::Address frame, const glm::ivec
     commands.barrier();
 }
 
-void shadow_splats(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, std::uint32_t channel) {
-    commands.dispatch("2d_shadow_splats.comp", {}, {frame, channel, 0}, gpu::groups_for(splat_count, 64));
+void shadow_splats(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, const ClipCount& clip,
+                   std::uint32_t channel) {
+    commands.dispatch("2d_shadow_splats.comp",
+                      {{shader::SPEC_CLIP_KEEP, clip.keep}, {shader::SPEC_CLIP_REMOVE, clip.remove}},
+                      {frame, channel, 0}, gpu::groups_for(splat_count, 64));
     commands.barrier();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/gpu/commands.h"
+#include "engine/passes/clip_count.h"
 
 namespace edgesplat::passes {
 
@@ -10,6 +11,7 @@ namespace edgesplat::passes {
 void sweep_light(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t group);
 
 /// With every group swept: writes half `channel` (0 or 1) of `splat_shadows` for the splats that lie in the picture.
-void shadow_splats(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, std::uint32_t channel);
+void shadow_splats(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count, const ClipCount& clip,
+                   std::uint32_t channel);
 
 }  // namespace edgesplat::passes

@@ -23,18 +23,19 @@ glm::dmat3 frame_of(const glm::dvec3& n) {
 
 double ambient_reach(const SplatRecord& record, const Field& field, const ScaledScene& scaled, const Scene& scene,
                      const VolumeGeometry& geometry, double band, double radius, bool turned, int rays) {
-    const SurfacePoint s = surface_point(record.edge, band, turned, geometry);
     const glm::ivec3 voxel = field.voxel(record.voxel);
+    const IndexClip clip = index_clip(scene.effects.clip, geometry);
+    const SurfacePoint s =
+        at_cut(surface_point(record.edge, band, turned, geometry), record.edge, glm::dvec3(voxel), clip, geometry);
     const glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
-    const bool sphere = !record.edge.has_normal;
+    const bool sphere = s.normal == glm::dvec3(0);
     const glm::dmat3 frame = sphere ? glm::dmat3(1) : frame_of(s.normal);
     const glm::uvec3 v(voxel);
     const std::uint32_t turn = v.x * 3518319155U + v.y * 2882110345U + v.z * 2360945575U;
     const double phase = (turn >> 8U) * (2 * std::numbers::pi / 16777216.0);
     const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
 
-    const IndexClip clip = index_clip(scene.effects.clip, geometry);
     double sum = 0;
     for (int k = 0; k < rays; ++k) {
         const double share = (k + 0.5) / rays, angle = phase + k * golden;

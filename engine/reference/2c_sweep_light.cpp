@@ -6,10 +6,11 @@
 namespace edgesplat::reference {
 
 glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
-                     const glm::dvec3& to_light, double pixel) {
+                     const glm::dvec3& to_light, double pixel, const IndexClip& clip) {
     SurfacePoint s = surface_point(record.edge, band, false, geometry);
     if (is_wall(record.edge, band) && glm::dot(s.normal, to_light) < 0)
         s = surface_point(record.edge, band, true, geometry);
+    s = at_cut(s, record.edge, glm::dvec3(field.voxel(record.voxel)), clip, geometry);
     const double cosine = glm::dot(s.normal, to_light);
     const double slant = pixel * std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const double lift = std::clamp(slant + 0.5 * s.voxel, kShortestLift * s.voxel, kLongestLift * s.voxel);

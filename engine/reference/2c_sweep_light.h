@@ -10,9 +10,9 @@
 namespace edgesplat::reference {
 
 /// Where light from `to_light` (world, unit) arrives at the record's splat, index space. `pixel` is a pixel of the
-/// light's picture there, mm.
+/// light's picture there, mm. `clip`: the scene's, index space.
 glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
-                     const glm::dvec3& to_light, double pixel);
+                     const glm::dvec3& to_light, double pixel, const IndexClip& clip = {});
 
 /// exp(-tau) from the light to `place` (index space) through the kernels of `records`. Directional and point lights.
 double light_reach(std::span<const SplatRecord> records, const Field& field, const Scene& scene,

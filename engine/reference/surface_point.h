@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/reference/2_collect_splats.h"
+#include "engine/scene/clip_planes.h"
 
 namespace edgesplat::reference {
 
@@ -21,5 +22,10 @@ bool is_wall(const VoxelEdge& edge, double band);
 
 /// `turned`: of a wall, the face on the other side.
 SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& geometry);
+
+/// The same of a splat at x (index space) whose kernel `clip` cuts: where a plane is nearer to the voxel than the
+/// splat's own edge, the cut is the surface.
+SurfacePoint at_cut(const SurfacePoint& uncut, const VoxelEdge& edge, const glm::dvec3& x, const IndexClip& clip,
+                    const VolumeGeometry& geometry);
 
 }  // namespace edgesplat::reference

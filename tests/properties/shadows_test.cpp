@@ -141,5 +141,50 @@ TEST(Occlusion, ShowsAsMuchAsItsStrength) {
     EXPECT_LT(darkest, 0.6F) << "under the ball";
 }
 
+/// Matter in which no voxel is like its neighbours, cut by two planes or with a corner cut out of it.
+Shot cut_block(bool hole) {
+    Shot shot;
+    std::uint32_t state = 1;
+    shot.volume = sampled(glm::ivec3(32), [&](const glm::dvec3&) {
+        state = state * 1664525U + 1013904223U;
+        return 0.6 + 0.4 * (state >> 8U) / 16777216.0;
+    });
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 1, 1}, 4}};
+    shot.scene.ambient = 0.4;
+    shot.scene.lights = {directional_light({0.5, 0.3, 1})};
+    if (hole)
+        shot.scene.effects.clip.remove = {{{10, 10, 18.3}, {0, 0, -1}}};
+    else
+        shot.scene.effects.clip.keep = {{{10, 10, 18.3}, {0.05, -0.1, 1}}};
+    shot.camera = look(*shot.volume, {15.5, 2, 70}, {15.5, 15.5, 18}, 20);
+    return shot;
+}
+
+TEST(Shadows, OfMatterThatIsCutLieOnTheCut) {
+    // Light that nothing is in the way of arrives at a cut whole, whatever the matter's own slopes.
+    for (const bool hole : {false, true}) {
+        Shot shot = cut_block(hole);
+        const Image open = render(shot).color;
+        shot.scene.lights[0].shadows = true;
+        const Image shadowed = render(shot).color;
+        shot.scene.lights[0].shadows = false;
+        shot.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 8};
+        const Image occluded = render(shot).color;
+        float least = 1, worst_shadow = 0, worst_occlusion = 0;
+        for (int y = 20; y < 44; ++y)
+            for (int x = 20; x < 44; ++x) {
+                least = std::min(least, open.at(x, y, 0));
+                worst_shadow = std::max(worst_shadow, std::abs(shadowed.at(x, y, 0) - open.at(x, y, 0)));
+                worst_occlusion = std::max(worst_occlusion, std::abs(occluded.at(x, y, 0) - open.at(x, y, 0)));
+            }
+        std::printf("cut in the light: shadows off by %s, occlusion by %s\n", std::to_string(worst_shadow).c_str(),
+                    std::to_string(worst_occlusion).c_str());
+        EXPECT_GT(least, 0.5F);
+        EXPECT_LE(worst_shadow, 0.01F);
+        EXPECT_LE(worst_occlusion, 0.01F);
+    }
+}
+
 }  // namespace
 }  // namespace edgesplat::test
