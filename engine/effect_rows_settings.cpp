@@ -68,6 +68,21 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_CURVED, "SPEC_CURVED"}, {shader::SPEC_NODES, "SPEC_NODES", 10}},
                     .frame_fields = {"traits", "curvature_unit"},
                     .scene_fields = {"traits", "curvature_unit"}});
+    rows.push_back({.name = "edge weights",
+                    .help = "kernels are weighted by their distance to the edge: what lies on one side has its volume",
+                    .call = "settings.normalise = \"edge\"; --normalise edge",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const Settings s = drawn_settings(r);
+                        const bool family = draws_warped(s) && s.warp == WarpFamily::Edge;
+                        return family && s.normalisation == Normalisation::Edge ? "normalise is `edge`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.normalisation = Normalisation::Edge; },
+                    .base = warp,
+                    .resources = {"splat traits"},
+                    .record = {{"weight", 2}},
+                    .constants = {{shader::SPEC_WEIGHTED, "SPEC_WEIGHTED"}},
+                    .frame_fields = {"traits"},
+                    .scene_fields = {"traits", "edge_weights", "contrast"}});
     rows.push_back({.name = "kernel weights",
                     .help = "kernels are weighted so that those around a voxel sum to one",
                     .call = "settings.normalise = \"voxel\"; --normalise voxel",

@@ -116,7 +116,7 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     resources.splats =
         gpu::Buffer(device, resources.splat_count * sizeof(shader::Splat), gpu::Buffer::Place::Device, "splat list");
     params.splats = resources.splats.address();
-    if (plan.curved || plan.weighted) {
+    if (plan.curved || plan.weighted != 0) {
         resources.traits = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t),
                                        gpu::Buffer::Place::Device, "splat traits");
         params.traits = resources.traits.address();

@@ -10,9 +10,11 @@
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
+#include "footprints/edge_weight.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
+
 namespace {
 
 // An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
@@ -124,6 +126,30 @@ void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shad
         params[i] = glm::vec4(to_float(planes[i].normal), static_cast<float>(planes[i].offset));
 }
 
+static_assert(kEdgeWeightSteps == shader::EDGE_WEIGHT_STEPS);
+static_assert(sizeof(shader::SceneParams::edge_weights) == (kEdgeWeightSteps + 1) * sizeof(float));
+static_assert(static_cast<std::uint32_t>(Normalisation::Edge) == shader::WEIGHTED_EDGE);
+static_assert(static_cast<std::uint32_t>(Normalisation::Voxel) == shader::WEIGHTED_VOXEL);
+
+std::uint32_t weighting(const Settings& settings) {
+    const bool weighs = draws_warped(settings) && settings.warp == WarpFamily::Edge;
+    return weighs ? static_cast<std::uint32_t>(settings.normalisation) : 0;
+}
+
+/// Edge weights of one scene: none where the matter across is as dense.
+void plan_edge_weights(const Scene& scene, const Settings& settings, shader::SceneParams& params) {
+    std::ranges::transform(edge_weights({settings.edge_half_width, settings.edge_strength}), params.edge_weights,
+                           [](double weight) { return static_cast<float>(weight); });
+    const auto contrast = [&](std::size_t m, std::size_t other) {
+        if (other >= scene.materials.size()) return 0.0F;
+        const double own = scene.materials[m].extinction;
+        return own > 0 ? static_cast<float>(std::max(1 - scene.materials[other].extinction / own, 0.0)) : 0.0F;
+    };
+    if (!scene.transfer.empty()) return;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        params.contrast[m] = {contrast(m, m - 1), contrast(m, m + 1)};
+}
+
 }  // namespace
 
 SupportSpheres support_spheres(const Settings& drawn) {
@@ -162,6 +188,7 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
            weighted == other.weighted && std::ranges::equal(transfer, other.transfer, same_row) &&
            a.curvature_unit == b.curvature_unit && a.estimate_mask == b.estimate_mask && a.strength == b.strength &&
            a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
+           std::ranges::equal(a.edge_weights, b.edge_weights) && std::ranges::equal(a.contrast, b.contrast) &&
            a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
            clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
            std::ranges::equal(a.clip_remove, b.clip_remove);
@@ -201,11 +228,12 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
     plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
-    plan.weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel;
-    params.estimate_mask = plan.weighted ? ~0U : params.visible_mask;
+    plan.weighted = weighting(settings);
+    params.estimate_mask = plan.weighted == shader::WEIGHTED_VOXEL ? ~0U : params.visible_mask;
     params.half_width = static_cast<float>(settings.edge_half_width);
     // Only weights depend on the strength here.
-    params.strength = plan.weighted ? static_cast<float>(settings.edge_strength) : 0.0F;
+    params.strength = plan.weighted == shader::WEIGHTED_VOXEL ? static_cast<float>(settings.edge_strength) : 0.0F;
+    if (plan.weighted == shader::WEIGHTED_EDGE) plan_edge_weights(scene, settings, params);
     params.curvature_unit = plan.curved ? static_cast<float>(most_curved(settings)) : 1.0F;
     return plan;
 }
@@ -246,7 +274,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .payload = payload,
                     .sliced = sliced,
                     .curved = curved,
-                    .weighted = draws_warped(settings) && settings.normalisation == Normalisation::Voxel,
+                    .weighted = weighting(settings) != 0,
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
                                                                                   : 10U};

@@ -24,8 +24,9 @@ struct CollectionPlan {
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
     /// voxel may adopt an edge that two of them share.
     bool skip_buried = true;
-    bool curved = false;    ///< splats carry the curvature of their edge
-    bool weighted = false;  ///< splats carry a weight; edges are estimated on both sides, also where nothing is drawn
+    bool curved = false;         ///< splats carry the curvature of their edge
+    std::uint32_t weighted = 0;  ///< splats carry a weight: shader::WEIGHTED_*
+                                 ///< (VOXEL: edges are estimated on both sides, also where nothing is drawn)
     /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not
     /// depend on the planes: they move without a new collection.
     passes::ClipCount clip{};

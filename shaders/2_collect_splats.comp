@@ -35,6 +35,18 @@ uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/lib/edge_smoothing.glsl"
 #include "shaders/lib/kernel_weight.glsl"
 #include "shaders/lib/classified_value.glsl"
+#include "shaders/lib/edge_weight.glsl"
+
+// With the other side of the edge, a voxel beyond it.
+float contrast_of(ivec3 p, float value, uint material, Edge e) {
+    if (TRANSFER == 1u && e.state >= EDGE_LOWER) {
+        float beyond = trilinear(vec3(p) + (1.0 + max(e.d, 0.0)) * e.n);
+        TransferRef transfer = TransferRef(params.scene.transfer);
+        return clamp(1.0 - transfer_at(transfer, beyond).a / transfer_at(transfer, value).a, 0.0, 1.0);
+    }
+    vec2 contrast = params.scene.contrast[material];
+    return e.state == EDGE_UPPER ? contrast.y : contrast.x;
+}
 
 void main() {
     dims = params.scene.dims;
@@ -66,9 +78,10 @@ void main() {
                 if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
                 uvec2 code = EDGES == 1u ? imageLoad(edges, p).xy : uvec2(0u);
                 Edge e = unpack_edge(code.x, code.y);
-                if (WEIGHTED == 1u)
+                if (WEIGHTED == WEIGHTED_VOXEL)
                     UintsRef(params.scene.traits).at[out_at] =
                         pack_traits(0.0, kernel_weight(p, dims, e), params.scene.curvature_unit);
+                float contrast = WEIGHTED == WEIGHTED_EDGE ? contrast_of(p, value, material, e) : 0.0, curvature = 0.0;
                 if (SMOOTH == 1u || CURVED == 1u) {
                     SurfaceAround around = surface_around(p, dims, e, material);
                     if (SMOOTH == 1u) {
@@ -78,11 +91,13 @@ void main() {
                     if (CURVED == 1u) {
                         // The centre must not lie between the voxel and its edge.
                         float most = 0.95 / max(abs(e.d), 0.1);
-                        UintsRef(params.scene.traits).at[out_at] = pack_traits(
-                            clamp(around.curvature, -most, most), 1.0, params.scene.curvature_unit);
+                        curvature = clamp(around.curvature, -most, most);
                     }
                 }
                 if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
+                if (CURVED == 1u || WEIGHTED == WEIGHTED_EDGE)
+                    UintsRef(params.scene.traits).at[out_at] = pack_traits(
+                        curvature, WEIGHTED == WEIGHTED_EDGE ? edge_weight(e, contrast) : 1.0, params.scene.curvature_unit);
                 with_edge += e.state >= EDGE_LOWER ? 1u : 0u;
                 splats.at[out_at] = Splat(v, code.x, pack_edge(e) | (material << 28));
             }

@@ -9,13 +9,13 @@ namespace edgesplat::passes {
 struct CollectSplats {
     shader::Address scene;  ///< SceneParams
     glm::ivec3 dims;
-    bool edges = true;      ///< the edge field exists
-    bool buried = true;     ///< the buried mask exists: `mark_buried` has run
-    bool smooth = true;     ///< edge distances are smoothed along the surface (`march`, `cubic`)
-    bool curved = false;    ///< the curvature of each splat's edge is wanted
-    bool weighted = false;  ///< the weight of each splat's kernel is wanted
-    ClipCount clip{};       ///< voxels whose kernels are cut away whole are dropped
-    bool transfer = false;  ///< splats are classified by a transfer function
+    bool edges = true;           ///< the edge field exists
+    bool buried = true;          ///< the buried mask exists: `mark_buried` has run
+    bool smooth = true;          ///< edge distances are smoothed along the surface (`march`, `cubic`)
+    bool curved = false;         ///< the curvature of each splat's edge is wanted
+    std::uint32_t weighted = 0;  ///< how each splat's kernel is weighted: shader::WEIGHTED_*, 0: not at all
+    ClipCount clip{};            ///< voxels whose kernels are cut away whole are dropped
+    bool transfer = false;       ///< splats are classified by a transfer function
 };
 
 /// Specialization of 2_collect_splats.comp.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "engine/reference/field.h"
@@ -36,6 +37,10 @@ std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene,
 /// The weight of each kernel (`VoxelEdge::weight`) that makes the kernels around a voxel sum to one where its own is
 /// largest. Edges as estimated, on both sides of every iso-value; before step 5.
 void weigh_kernels(const Field& field, const Settings& settings, std::vector<VoxelEdge>& edges);
+
+/// The weight of each kernel by its distance to the edge, smoothed, and what is drawn beyond: `contrasts` has one entry
+/// per voxel, 0 where the matter across the edge is as dense.
+void weigh_by_edge(const Settings& settings, std::span<const double> contrasts, std::vector<VoxelEdge>& edges);
 
 /// Step 5: distances smoothed along the surface (march and cubic only), then edges that cannot matter are dropped. On
 /// the device this happens on the way into the splat list.

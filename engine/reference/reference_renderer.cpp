@@ -55,13 +55,16 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
     // Weights are of the kernels on both sides of an edge, drawn or not.
-    const bool weighted = settings_.normalisation == Normalisation::Voxel;
+    const bool family = draws_warped(settings_) && settings_.warp == WarpFamily::Edge;
+    const bool weighted = family && settings_.normalisation == Normalisation::Voxel;
     ScaledScene estimated = scaled_;
     if (weighted) estimated.drawn.assign(estimated.drawn.size(), true);
     std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (weighted) weigh_kernels(field(), settings_, edges);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
     edges_ = smooth_edges(field(), scaled_, settings_, edges);
+    if (family && settings_.normalisation == Normalisation::Edge)
+        weigh_by_edge(settings_, edge_contrasts(field(), scaled_, scene_, edges, classified_), edges_);
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
 }
 

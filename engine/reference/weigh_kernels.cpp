@@ -4,6 +4,7 @@
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/footprints.h"
 #include "engine/reference/parallel.h"
+#include "footprints/edge_weight.h"
 
 namespace edgesplat::reference {
 
@@ -38,6 +39,16 @@ void weigh_kernels(const Field& field, const Settings& settings, std::vector<Vox
     });
     for (std::size_t at = 0; at < edges.size(); ++at)
         edges[at].weight = weights[at];
+}
+
+void weigh_by_edge(const Settings& settings, std::span<const double> contrasts, std::vector<VoxelEdge>& edges) {
+    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
+    const EdgeWeights weights = edge_weights(band);
+    for (std::size_t at = 0; at < edges.size(); ++at) {
+        VoxelEdge& edge = edges[at];
+        if (!edge.has_edge) continue;
+        edge.weight = 1 + contrasts[at] * (edge_weight(edge.D, edge.D2, band, weights) - 1);
+    }
 }
 
 }  // namespace edgesplat::reference

@@ -102,15 +102,15 @@ std::vector<Knob> make_ladder() {
                      .matters = may_curve});
     knobs.push_back(
         {.name = "normalise",
-         .help = "Whether kernels are weighted so that those around a voxel sum to one, also at curved edges",
+         .help = "How kernels are weighted; edge: so that matter on one side of an edge has its volume, voxel: so that "
+                 "those around a voxel sum to one, also at curved edges",
          .kind = KnobKind::Model,
          .steps = all(normalisation_names()),
          .others = {},
          .from = [](Settings& s) { s.edge_shape = EdgeShape::Plane; },
          .get = get_name<&Settings::normalisation>,
          .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
-         .matters =
-             [](const Settings& s) { return edge_family(s) && (s.edge_shape == EdgeShape::Plane || !may_curve(s)); }});
+         .matters = edge_family});
     knobs.push_back(
         {.name = "footprints",
          .help = "How a warped kernel's footprint is evaluated; tables serve whole kernels at plane edges and were "

@@ -16,7 +16,7 @@ constexpr std::array<std::string_view, 5> kEdgeEstimators{"off", "taylor", "quad
 constexpr std::array<std::string_view, 5> kFootprintModes{"isotropic", "warp2d", "table", "table-lerp", "procedural"};
 constexpr std::array<std::string_view, 2> kWarpFamilies{"edge", "paper"};
 constexpr std::array<std::string_view, 2> kEdgeShapes{"plane", "curved"};
-constexpr std::array<std::string_view, 2> kNormalisations{"off", "voxel"};
+constexpr std::array<std::string_view, 3> kNormalisations{"off", "edge", "voxel"};
 constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
 constexpr std::array<std::string_view, 2> kSheetFormats{"half", "float"};
@@ -153,8 +153,9 @@ Settings drawn_as(const Settings& settings, bool clipped) {
         s.normalisation = usual.normalisation;
     }
     if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
-    // Kernels of curved edges sum to one as they are.
-    if (s.edge_shape == EdgeShape::Curved) s.normalisation = usual.normalisation;
+    // Kernels of curved edges sum to one as they are; one side alone is another matter.
+    if (s.edge_shape == EdgeShape::Curved && s.normalisation == Normalisation::Voxel)
+        s.normalisation = Normalisation::Off;
     if (asks_for_table(s) &&
         (!edge_family || clipped || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
         s.footprints = FootprintMode::Procedural;

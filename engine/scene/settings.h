@@ -11,8 +11,10 @@ struct Scene;
 enum class EdgeEstimator { Off, Taylor, Quadratic, March, Cubic };
 enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
 enum class WarpFamily { Edge, Paper };
-enum class EdgeShape { Plane, Curved };   ///< what an edge is within a kernel's reach: its tangent plane or a sphere
-enum class Normalisation { Off, Voxel };  ///< whether kernels' weights are made to sum to one at each voxel
+enum class EdgeShape { Plane, Curved };  ///< what an edge is within a kernel's reach: its tangent plane or a sphere
+/// How kernels are weighted: not at all, by their distance to the edge so that each of its sides has its volume, or so
+/// that they sum to one at each voxel.
+enum class Normalisation { Off, Edge, Voxel };
 enum class TableSize { Coarse, Medium, Fine };
 enum class SheetCut { Whole, Sliced };  ///< a kernel lies in one sheet whole, or is cut at the sheets' planes
 enum class SheetFormat { Half, Float };

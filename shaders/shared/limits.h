@@ -18,6 +18,8 @@ EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], eac
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
+EDGESPLAT_CONSTANT uint EDGE_WEIGHT_STEPS = 12u;     // of a kernel's weight by its distance to the edge
+EDGESPLAT_CONSTANT float EDGE_WEIGHT_REACH = 2.4f;   // voxels, from where on it is 1
 EDGESPLAT_CONSTANT float WEIGHT_UNIT = 4.0f;  // a kernel's weight is stored as unorm16 of weight / 4
 
 // Specialization constants: ids are the same in every shader.
@@ -32,7 +34,9 @@ EDGESPLAT_CONSTANT uint SPEC_BURIED = 7u;      // 1: the buried mask exists
 EDGESPLAT_CONSTANT uint SPEC_SMOOTH = 8u;      // 1: distances are smoothed along the surface
 EDGESPLAT_CONSTANT uint SPEC_SLICED = 9u;      // 1: kernels are cut at the sheets' planes
 EDGESPLAT_CONSTANT uint SPEC_CURVED = 10u;     // 1: edges are spheres of their curvature
-EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // 1: kernels are normalised
+EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // kernels are weighted; collecting splats: how
+EDGESPLAT_CONSTANT uint WEIGHTED_EDGE = 1u;    // by their distance to the edge
+EDGESPLAT_CONSTANT uint WEIGHTED_VOXEL = 2u;   // to a sum of one at each voxel
 EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 10 or 16
 EDGESPLAT_CONSTANT uint SPEC_GLOSS = 13u;      // 1: some material has highlights
 EDGESPLAT_CONSTANT uint SPEC_LIT_EDGES = 14u;  // 1: splats without an edge count as without normal

@@ -23,6 +23,9 @@ struct SceneParams {
     vec4 clip_remove[8];
     Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
     Address values;        // (splat_count) float: what each splat is classified by, scaled; likewise
+    float edge_weights[13];  // of a kernel, by its distance to the edge; EDGE_WEIGHT_STEPS to EDGE_WEIGHT_REACH
+    float weight_pad;
+    vec2 contrast[16];       // of a material with the one below and above: 1 - its extinction / the material's, 0..1
 };
 
 /// One splat as collected: 12 bytes.
@@ -42,7 +45,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 408);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 592);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -145,6 +145,8 @@ std::vector<Method> compared_methods() {
     curved.edge_shape = EdgeShape::Curved;
     Settings weighted;
     weighted.normalisation = Normalisation::Voxel;
+    Settings edge_weights;
+    edge_weights.normalisation = Normalisation::Edge;
     return {{"default (march, procedural)", Settings{}},
             {"off", with(E::Off, F::Isotropic)},
             {"draft", preset_named("draft").settings},
@@ -152,6 +154,7 @@ std::vector<Method> compared_methods() {
             {"accurate", preset_named("accurate").settings},
             {"curved", curved},
             {"weighted", weighted},
+            {"edge weights", edge_weights},
             {"table", with(E::March, F::Table)},
             {"table-lerp", with(E::March, F::TableLerp)},
             {"warp2d", with(E::March, F::Warp2d)},

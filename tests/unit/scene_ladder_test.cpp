@@ -263,6 +263,9 @@ TEST(DrawnAs, KnobsWithoutASayAreDropped) {
     settings.warp = WarpFamily::Edge;
     EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Off);
     EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Curved);
+    settings.normalisation = Normalisation::Edge;
+    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Edge);
+    settings.normalisation = Normalisation::Voxel;
     settings.footprints = FootprintMode::Warp2d;
     EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Voxel);
     EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Plane);
