@@ -158,8 +158,11 @@ std::string bytes(std::int64_t value) {
 void print(const std::vector<Measured>& rows, bool markdown) {
     std::vector<std::vector<std::string>> cells{{"effect", "calls for it with", "frame x", "setup x", "memory"}};
     for (const Measured& row : rows) {
-        cells.push_back({std::string(row.effect->name), std::string(row.effect->call), ratio(row.frame_ratio),
-                         ratio(row.setup_ratio), bytes(row.bytes)});
+        // What adds nothing before the first frame has no setup of its own: the ratio would be noise.
+        const Effect& effect = *row.effect;
+        const bool sets_up = !effect.passes.empty() || !effect.resources.empty() || !effect.scene_fields.empty();
+        cells.push_back({std::string(effect.name), std::string(effect.call), ratio(row.frame_ratio),
+                         sets_up ? ratio(row.setup_ratio) : "-", bytes(row.bytes)});
     }
     std::vector<std::size_t> width(cells.front().size(), 0);
     for (const auto& row : cells)

@@ -159,7 +159,7 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
             ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
             : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
     const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
-                                            {"edgesplat:volume", film.volume->name},
+                                            {"edgesplat:volume", film.document.volume.path},
                                             {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
     edgesplat::write_files(picture_files(file, frames, metadata));
 }

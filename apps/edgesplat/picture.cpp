@@ -112,7 +112,8 @@ void make_picture(const PictureRequest& request) {
         fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned)));
         return;
     }
-    RunDescription description{request.command_line, volume.get(), &scene, camera, {}, {}, {}};
+    RunDescription description{request.command_line,     volume.get(), &scene, camera,
+                               remembered_path(request), {},           {},     {}};
     std::vector<RenderedFrame> frames;
     std::vector<CpuMeasurements> measurements;
     std::optional<edgesplat::accuracy::ChosenSettings> choice;

@@ -118,7 +118,7 @@ std::vector<std::pair<std::string, edgesplat::ImageLayer>> aov_layers(const edge
 edgesplat::ImageMetadata picture_metadata(const RunDescription& run) {
     return {{"Software", "edgesplat " EDGESPLAT_VERSION},
             {"edgesplat:command", run.command_line},
-            {"edgesplat:volume", run.volume->name},
+            {"edgesplat:volume", run.volume_path},
             {"edgesplat:checksum", checksum_text(*run.volume)},
             {"edgesplat:device", run.device},
             {"edgesplat:scene", run.scene_text}};

@@ -23,6 +23,7 @@ struct RunDescription {
     const edgesplat::Volume* volume = nullptr;
     const edgesplat::Scene* scene = nullptr;
     edgesplat::Camera camera;
+    std::string volume_path;      ///< from where the picture is looked at
     std::string scene_text;       ///< TOML from which the picture can be made again
     std::string device;           ///< what it was made on
     nlohmann::ordered_json plan;  ///< of the last frame, where it was asked for
