@@ -39,20 +39,12 @@ Plane read_plane(const std::string& option, const std::string& text) {
     return {point, normal};
 }
 
-/// The six planes of a box; beyond them is outside of it.
-std::vector<Plane> read_box(const std::string& option, const std::string& text) {
+edgesplat::ClipBox read_box(const std::string& option, const std::string& text) {
     const auto [low, high] = read_two_vectors(option, text, "X0,Y0,Z0,X1,Y1,Z1");
     if (!glm::all(glm::lessThan(low, high)))
         throw CLI::ValidationError(
             option, fmt::format("'{}': each of the last three numbers must be above that of the first three", text));
-    std::vector<Plane> planes;
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::dvec3 normal(0);
-        normal[axis] = 1;
-        planes.push_back({low, -normal});
-        planes.push_back({high, normal});
-    }
-    return planes;
+    return {low, high};
 }
 
 void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group) {
@@ -74,10 +66,7 @@ void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group
         .add_option_function<std::string>(
             "--clip-box",
             [&edits](const std::string& text) {
-                edits.add([planes = read_box("--clip-box", text)](SceneDocument& d) {
-                    auto& keep = d.effects.clip.keep;
-                    keep.insert(keep.end(), planes.begin(), planes.end());
-                });
+                edits.add([box = read_box("--clip-box", text)](SceneDocument& d) { d.keep_box = box; });
             },
             "Keep only what lies in the box, world mm")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1")
@@ -86,7 +75,10 @@ void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group
         .add_option_function<std::string>(
             "--cut-box",
             [&edits](const std::string& text) {
-                edits.add([planes = read_box("--cut-box", text)](SceneDocument& d) { d.effects.clip.remove = planes; });
+                edits.add([box = read_box("--cut-box", text)](SceneDocument& d) {
+                    d.effects.clip.remove.clear();
+                    d.remove_box = box;
+                });
             },
             "Cut the box out, world mm")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1")

@@ -103,6 +103,12 @@ struct MovieChoice {
     bool operator==(const MovieChoice&) const = default;
 };
 
+/// A box along the world's axes: six clip planes.
+struct ClipBox {
+    glm::dvec3 low{0}, high{0};  ///< world mm; high above low along each axis
+    bool operator==(const ClipBox&) const = default;
+};
+
 struct SceneDocument {
     std::string about;  ///< what is to be seen, in words
     VolumeSource volume;
@@ -116,6 +122,8 @@ struct SceneDocument {
     Lit lit = Lit::Everywhere;
     glm::dvec3 background{0};
     Effects effects;
+    std::optional<ClipBox> keep_box;    ///< what lies outside of it is cut away, too
+    std::optional<ClipBox> remove_box;  ///< what lies in it is; not beside planes of effects.clip.remove
     CameraChoice camera;
     MovieChoice movie;
     QualityChoice quality;

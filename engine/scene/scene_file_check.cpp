@@ -23,6 +23,7 @@ class Checker {
         check_materials();
         check_transfer();
         check_lights();
+        check_clip();
         check_camera();
         check_movie();
         check_output();
@@ -130,6 +131,20 @@ class Checker {
             if (light.shadows && with_shadows == kMaxShadowLights + 1)
                 add(path, "true: expected at most {} lights with shadows", kMaxShadowLights);
         }
+    }
+
+    void check_clip() {
+        for (const auto& [box, path] :
+             {std::pair{d_.keep_box, "effects.clip.keep_box.high"}, {d_.remove_box, "effects.clip.remove_box.high"}})
+            if (box && !glm::all(glm::lessThan(box->low, box->high)))
+                add(path, "[{}, {}, {}]: expected more than low along each axis", box->high.x, box->high.y,
+                    box->high.z);
+        const Clip& clip = d_.effects.clip;
+        constexpr std::size_t kBeside = kMaxClipPlanes - 6;
+        if (d_.keep_box && clip.keep.size() > kBeside)
+            add("effects.clip.keep", "{} planes beside keep_box: expected at most {}", clip.keep.size(), kBeside);
+        if (d_.remove_box && !clip.remove.empty())
+            add("effects.clip.remove_box", "is given together with [[effects.clip.remove]]; expected one of them");
     }
 
     void check_camera() {

@@ -234,6 +234,10 @@ void add_effects(Table& t) {
           {.unit = "world mm", .help = "A point of the plane"});
     t.add("effects.clip.remove[].normal", MEMBER(effects.clip.remove[i].normal),
           {.unit = "world", .help = "Out of the region that is cut out", .direction = true});
+    t.add("effects.clip.keep_box.low", MEMBER(keep_box->low), {.unit = "world mm", .help = "Its lowest corner"});
+    t.add("effects.clip.keep_box.high", MEMBER(keep_box->high), {.unit = "world mm", .help = "Its highest corner"});
+    t.add("effects.clip.remove_box.low", MEMBER(remove_box->low), {.unit = "world mm", .help = "Its lowest corner"});
+    t.add("effects.clip.remove_box.high", MEMBER(remove_box->high), {.unit = "world mm", .help = "Its highest corner"});
     t.add("effects.overlays.orientation", MEMBER(effects.overlays.orientation), {.help = "The volume's axes"});
     t.add("effects.overlays.scale_bar", MEMBER(effects.overlays.scale_bar), {.help = "A length in mm"});
     t.add("effects.overlays.legend", MEMBER(effects.overlays.legend), {.help = "Materials or transfer function"});
@@ -407,6 +411,8 @@ std::span<const SceneTable> scene_tables() {
                    MEMBER(effects.clip.keep)),
         list_table("effects.clip.remove", "Planes around a region that is cut out", kMaxClipPlanes,
                    MEMBER(effects.clip.remove)),
+        optional_table("effects.clip.keep_box", "What lies outside of the box is cut away", MEMBER(keep_box)),
+        optional_table("effects.clip.remove_box", "What lies in the box is cut out", MEMBER(remove_box)),
         list_table("movie.path", "Where the eye is at which time", 10000, MEMBER(movie.path)),
         optional_table("movie.orbit", "Around the volume's centre, from the scene's camera on", MEMBER(movie.orbit)),
         optional_table("movie.flight", "Along a smooth curve at constant speed", MEMBER(movie.flight)),

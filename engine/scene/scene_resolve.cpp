@@ -82,6 +82,16 @@ MaterialChoice choice_of(const Material& material) {
     return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
 }
 
+/// Beyond them is outside of the box.
+void add_planes(const ClipBox& box, std::vector<Plane>& planes) {
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::dvec3 normal(0);
+        normal[axis] = 1;
+        planes.push_back({box.low, -normal});
+        planes.push_back({box.high, normal});
+    }
+}
+
 }  // namespace
 
 Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
@@ -119,6 +129,9 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     scene.lit = document.lit;
     scene.background = document.background;
     scene.effects = document.effects;
+    Clip& clip = scene.effects.clip;
+    if (document.keep_box) add_planes(*document.keep_box, clip.keep);
+    if (document.remove_box) add_planes(*document.remove_box, clip.remove);
     validate(scene);
     return scene;
 }
@@ -202,6 +215,8 @@ SceneDocument resolved(const SceneDocument& document, const Volume& volume, cons
     result.lit = scene.lit;
     result.background = scene.background;
     result.effects = scene.effects;
+    result.keep_box.reset();
+    result.remove_box.reset();
     result.camera = {{}, camera.eye, {}, camera.direction, camera.up, false, camera.fov_y};
     result.movie = {};
     result.quality = {{}, settings, {}};

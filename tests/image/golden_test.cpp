@@ -2,9 +2,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 
+#include "engine/effect_table.h"
 #include "engine/image_file.h"
 #include "tests/image/image_cases.h"
 
@@ -56,6 +58,25 @@ TEST_P(Golden, IsTheSame) {
 
 INSTANTIATE_TEST_SUITE_P(Pictures, Golden, testing::ValuesIn(golden_cases()),
                          [](const auto& instance) { return instance.param.name; });
+
+TEST(ImageCases, ShowEveryEffect) {
+    std::vector<ImageCase> cases = golden_cases();
+    for (ImageCase& c : reference_cases())
+        cases.push_back(std::move(c));
+    for (const Effect& effect : effect_table()) {
+        EXPECT_TRUE(std::ranges::any_of(
+            cases,
+            [&](const ImageCase& c) {
+                const Shot& shot = c.shot;
+                const AovRequest outputs{.tau = c.output == reference::Output::Tau,
+                                         .depth = c.output == reference::Output::Depth,
+                                         .normal = c.output == reference::Output::Normal,
+                                         .distance = c.output == reference::Output::Distance};
+                return !effect.reason({shot.volume, shot.scene, shot.camera, shot.settings, {64, 64}, outputs}).empty();
+            }))
+            << "no picture has the effect `" << effect.name << "`";
+    }
+}
 
 }  // namespace
 }  // namespace edgesplat::test

@@ -157,6 +157,9 @@ std::vector<ImageCase> later_cases() {
     Shot weighted = torus;
     weighted.settings.normalisation = Normalisation::Voxel;
     cases.push_back({"torus, weighted", weighted});
+    Shot by_edges = torus;
+    by_edges.settings.normalisation = Normalisation::Edge;
+    cases.push_back({"torus, weighted by edges", by_edges});
     cases.push_back({"torus, weighted and sliced", sliced(with(weighted, F::Procedural), 0.5)});
     const Shot oblique = small(oblique_orbital());
     cases.push_back({"oblique orbital, sliced", sliced(with(oblique, F::Procedural), 0.5)});
@@ -179,6 +182,9 @@ std::vector<ImageCase> later_cases() {
     // Float32 of some tens of splats a sheet: what is better than this is not the same sum.
     for (ImageCase& c : cases)
         c.smallest_psnr = 95;
+    Shot half_sheets = torus;
+    half_sheets.settings.sheet_format = SheetFormat::Half;
+    cases.push_back({"torus, sheets in half precision", half_sheets, Output::Color, 60});
     Shot half = torus;
     half.settings.accumulation = SheetFormat::Half;
     // 11 bits of a value near 1 are off by 2.4e-4 a sheet, to either side.

@@ -1,6 +1,7 @@
 // The pictures of the image tests: small scenes that between them use every mode, estimator, output and view.
 #pragma once
 
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,10 @@ struct ImageCase {
     reference::Output output = reference::Output::Color;
     double smallest_psnr = 50;  ///< against the reference, dB, of a peak that is the larger of 1 and what there is
 };
+
+inline void PrintTo(const ImageCase& image_case, std::ostream* out) {
+    *out << image_case.name;
+}
 
 /// Held against the double-precision reference.
 std::vector<ImageCase> reference_cases();

@@ -191,6 +191,7 @@ TEST_F(CliScene, EffectOptionsArriveInThePicture) {
     ASSERT_EQ(d.effects.clip.keep.size(), 2U);
     EXPECT_EQ(d.effects.clip.keep[1].point, glm::dvec3(4, 5, 6));
     EXPECT_EQ(d.effects.clip.remove.size(), 6U);
+    EXPECT_FALSE(d.remove_box) << "a picture holds the planes";
     EXPECT_TRUE(d.effects.antialias);
     EXPECT_EQ(d.effects.samples, 2);
     EXPECT_EQ(d.effects.background_top, glm::dvec3(0, 0, 1));
@@ -200,6 +201,36 @@ TEST_F(CliScene, EffectOptionsArriveInThePicture) {
                               "--samples 1.5", "--fog -1", "--occlusion 0", "--overlay scale"})
         EXPECT_EQ(run(std::string("render builtin:sphere:24 -o b.png ") + wrong).status, 2) << wrong;
     EXPECT_THAT(run("render builtin:sphere:24 -o b.png --shadows").err, HasSubstr("--light X,Y,Z"));
+}
+
+TEST_F(CliScene, BoxesAreTheirSixPlanes) {
+    const std::string sphere = "[volume]\npath = 'builtin:sphere:24'\n";
+    write("boxes.toml", sphere +
+                            "[effects.clip.keep_box]\nlow = [2, 3, 4]\nhigh = [20, 21, 22]\n"
+                            "[effects.clip.remove_box]\nlow = [12, 0, 0]\nhigh = [24, 12, 24]\n");
+    const auto plane = [](const char* list, const char* point, const char* normal) {
+        return std::string("[[effects.clip.") + list + "]]\npoint = " + point + "\nnormal = " + normal + "\n";
+    };
+    std::string planes = sphere;
+    for (const auto& [list, low, high] :
+         {std::tuple{"keep", "[2, 3, 4]", "[20, 21, 22]"}, {"remove", "[12, 0, 0]", "[24, 12, 24]"}}) {
+        planes += plane(list, low, "[-1, 0, 0]") + plane(list, low, "[0, -1, 0]") + plane(list, low, "[0, 0, -1]");
+        planes += plane(list, high, "[1, 0, 0]") + plane(list, high, "[0, 1, 0]") + plane(list, high, "[0, 0, 1]");
+    }
+    write("planes.toml", planes);
+    good("render boxes.toml -o a.exr --size 24x24 --view oblique");
+    good("render planes.toml -o b.exr --size 24x24 --view oblique");
+    good(
+        "render builtin:sphere:24 -o c.exr --size 24x24 --view oblique --clip-box 2,3,4,20,21,22 "
+        "--cut-box 12,0,0,24,12,24");
+    good("render builtin:sphere:24 -o d.exr --size 24x24 --view oblique");
+    EXPECT_EQ(picture("a.exr").pixels, picture("b.exr").pixels);
+    EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
+    EXPECT_NE(picture("a.exr").pixels, picture("d.exr").pixels);
+    EXPECT_THAT(run("render boxes.toml -o e.png --clip-plane 1,2,3,0,0,1 --clip-plane 1,2,3,0,1,0 "
+                    "--clip-plane 1,2,3,1,0,0")
+                    .err,
+                HasSubstr("3 planes beside keep_box: expected at most 2"));
 }
 
 TEST_F(CliScene, NewWritesASceneWithEveryKey) {
