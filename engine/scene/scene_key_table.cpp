@@ -104,10 +104,7 @@ class Table {
 };
 
 // One access function per member; works on a document that may be changed and on one that may not.
-#define MEMBER(expression)                                 \
-    [](auto& d, [[maybe_unused]] std::size_t i) -> auto& { \
-        return (d.expression);                             \
-    }
+#define MEMBER(expression) ([](auto& d, [[maybe_unused]] std::size_t i) -> auto& { return d.expression; })
 
 void add_top(Table& t) {
     t.add("about", MEMBER(about), {.help = "What is to be seen, in words", .absent = "nothing"});
