@@ -46,6 +46,8 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
     return image;
 }
 
+}  // namespace
+
 void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
     for (const PassTime& time : times) {
         const auto same = std::ranges::find(sums, time.name, &PassTime::name);
@@ -55,8 +57,6 @@ void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) 
             same->milliseconds += time.milliseconds;
     }
 }
-
-}  // namespace
 
 FootprintTableSize table_size_of(TableSize size) {
     switch (size) {

@@ -11,18 +11,6 @@ namespace {
 // The layers are indexed by a signed 32-bit number.
 constexpr std::uint64_t kMostLayerBytes = std::uint64_t{1} << 33U;
 
-/// Adds the times of `more` to those of the same name.
-void add(std::vector<PassTime>& times, const std::vector<PassTime>& more) {
-    for (const PassTime& time : more) {
-        const auto found = std::ranges::find(times, time.name, &PassTime::name);
-        if (found == times.end()) {
-            times.push_back(time);
-        } else {
-            found->milliseconds += time.milliseconds;
-        }
-    }
-}
-
 }  // namespace
 
 bool RendererState::occlude(const Scene& scene) {
@@ -36,7 +24,7 @@ bool RendererState::occlude(const Scene& scene) {
     occluded.reset();
     volume_resources.occlusion = {};
     bindings.write(volume_resources, {}, {});
-    add(collection_times, run_occlusion(device, commands, *volume, wanted, volume_resources));
+    add_times(collection_times, run_occlusion(device, commands, *volume, wanted, volume_resources));
     occluded = wanted;
     return true;
 }
@@ -73,7 +61,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
             const gpu::Buffer layers(device, light_layer_bytes(light), gpu::Buffer::Place::Device, "light layers");
             light.params.light_layers = layers.address();
             provide_targets(light);
-            add(collection_times, run_light_frame(commands, light, targets, channel));
+            add_times(collection_times, run_light_frame(commands, light, targets, channel));
         }
     }
     drop_targets();

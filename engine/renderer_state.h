@@ -70,6 +70,9 @@ struct RendererState {
     std::vector<std::pair<std::string, std::uint64_t>> checked_fit;  ///< resources that were last found to fit
 };
 
+/// Adds times to those of the same name.
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times);
+
 /// Whether footprints are looked up, and how large the table is.
 bool uses_table(const Settings& settings);
 FootprintTableSize table_size_of(TableSize size);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/reference/pixel_filter.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat::reference {
@@ -122,8 +121,8 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const Support support = footprints.support(records[i].edge);
         s.support = {x + support.shift * records[i].edge.n, support.radius};
         SplatSupport drawn = s.support;
-        if (const PixelFilter filter = pixel_filter(view, records[i], x, footprints); filter.share > 0)
-            drawn = {x, std::max(support.radius + std::abs(support.shift), filter.reach)};
+        s.filter = pixel_filter(view, records[i], x, footprints);
+        if (s.filter.share > 0) drawn = {x, std::max(support.radius + std::abs(support.shift), s.filter.reach)};
         s.box = screen_box(view, drawn);
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);

@@ -6,6 +6,7 @@
 
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/footprints.h"
+#include "engine/reference/pixel_filter.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/clip_planes.h"
 
@@ -54,6 +55,7 @@ struct Selected {
     int last_sheet = 0;  ///< the same as `sheet` where kernels lie in sheets whole
     double z = 0;        ///< of the voxel centre, mm
     SplatSupport support;
+    PixelFilter filter;
     PixelBox box;
 };
 

@@ -100,16 +100,12 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
             rays_.emplace_back(u, glm::length(view.geometry.index_to_world_axes * u));
         }
     }
-    if (!(view.low_pass > 0)) return;
-    filters_.reserve(records.size());
-    for (const SplatRecord& record : records)
-        filters_.push_back(pixel_filter(view, record, glm::dvec3(field.voxel(record.voxel)), footprints));
 }
 
 double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                               const std::optional<Slice>& slice) const {
     const VoxelEdge& edge = records_[splat].edge;
-    const PixelFilter filter = filters_.empty() ? PixelFilter{} : filters_[splat];
+    const PixelFilter& filter = selected_[splat].filter;
     const double own = filter.share == 1 ? 0
                        : slice           ? footprints_.along_slice(edge, p, u, *slice)
                                          : footprints_.along_ray(edge, p, u);
@@ -131,8 +127,9 @@ double SplatDrawer::depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const
 
 bool SplatDrawer::in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                             double z) const {
-    if (filters_.empty() || filters_[splat].share < 1) return footprints_.in_matter(records_[splat].edge, p + z * u);
-    const double rho2 = filters_[splat].rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
+    const PixelFilter& filter = selected_[splat].filter;
+    if (filter.share < 1) return footprints_.in_matter(records_[splat].edge, p + z * u);
+    const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
     const double from_voxel = z - depth_on_ray(p, u);
     return rho2 + from_voxel * from_voxel < kKernelRadius * kKernelRadius;
 }

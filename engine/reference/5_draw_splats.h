@@ -7,7 +7,6 @@
 
 #include "engine/reference/3_select_footprints.h"
 #include "engine/reference/footprints.h"
-#include "engine/reference/pixel_filter.h"
 #include "engine/reference/shading.h"
 #include "engine/scene/clip_planes.h"
 
@@ -68,8 +67,7 @@ class SplatDrawer {
     const Settings& settings_;
     const Footprints& footprints_;
     IndexClip clip_;
-    std::vector<PixelFilter> filters_;  ///< per splat; empty without a low-pass
-    std::vector<glm::dvec4> rays_;      ///< per pixel: unit direction in index space, mm per voxel along it
+    std::vector<glm::dvec4> rays_;  ///< per pixel: unit direction in index space, mm per voxel along it
 };
 
 }  // namespace edgesplat::reference

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/3_select_footprints.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat::reference {

@@ -1,9 +1,12 @@
 // Antialiasing of splats that are smaller than a pixel (docs/method.md, pass 5, "Antialiasing").
 #pragma once
 
-#include "engine/reference/3_select_footprints.h"
+#include "engine/reference/2_collect_splats.h"
+#include "engine/reference/footprints.h"
 
 namespace edgesplat::reference {
+
+struct View;
 
 /// How a splat's footprint is widened by a pixel: where a ray passes the voxel at x, rho2 = |x|^2 becomes
 /// of_pixels * (distance in pixels)^2 + of_voxels * rho2.

@@ -7,14 +7,9 @@
 namespace edgesplat::test {
 namespace {
 
-/// What reaches the splats: first and second are the face that the normal looks out of, and the other.
-struct Reaches : Pairs {
-    std::vector<reference::SplatRecord> records;
-};
-
+/// First and second: the face that the normal looks out of, and the other.
 Reaches device_reaches(const PassScene& s) {
-    RendererState& state = prepared(s);
-    return {device_pairs(state, state.volume_resources.occlusion), device_records(state)};
+    return reaches_of(s, &VolumeResources::occlusion);
 }
 
 double band(const Settings& settings) {

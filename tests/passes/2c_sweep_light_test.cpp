@@ -7,14 +7,9 @@
 namespace edgesplat::test {
 namespace {
 
-/// What reaches the splats: first and second are the lights with shadows.
-struct Reaches : Pairs {
-    std::vector<reference::SplatRecord> records;
-};
-
+/// First and second: the lights with shadows.
 Reaches device_reaches(const PassScene& s) {
-    RendererState& state = prepared(s);
-    return {device_pairs(state, state.volume_resources.shadows), device_records(state)};
+    return reaches_of(s, &VolumeResources::shadows);
 }
 
 Light sun(const glm::dvec3& towards) {

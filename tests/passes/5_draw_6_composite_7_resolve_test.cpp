@@ -33,10 +33,8 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
         s = in_one_group(s, GetParam().mode, GetParam().warp);
         SCOPED_TRACE(s.name);
         RendererState& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
         ASSERT_EQ(state.plan.params.group_count, 1U);
-        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
-        const auto records = device_records(state);
         const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
 
         const Oracle oracle(s, records, kSize);
@@ -48,7 +46,6 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
             }
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
             oracle.drawer.draw(splats, reference::Payload::Color, {}, want);
-            const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
             for (std::size_t i = 0; i < kPixels; ++i) {
                 const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
                 // Outside the group's rectangle the sheets are neither cleared nor read.
@@ -107,12 +104,9 @@ TEST_P(DrawKernels, SheetsAgreeWithTheReference) {
         ASSERT_EQ(s.settings.footprints, kernels.mode);
         SCOPED_TRACE(s.name);
         RendererState& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
         ASSERT_EQ(state.plan.params.group_count, 1U);
-        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
-        const auto records = device_records(state);
         const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
-        const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
 
         const Oracle oracle(s, records, kSize);
         const bool sliced = kernels.sheets == SheetCut::Sliced;

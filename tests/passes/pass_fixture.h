@@ -154,18 +154,34 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
     return records;
 }
 
-/// Two unorm16 per splat.
-struct Pairs {
+/// What of the light reaches each splat: two unorm16.
+struct Reaches {
+    std::vector<reference::SplatRecord> records;
     std::vector<double> first, second;
 };
 
-inline Pairs device_pairs(RendererState& state, const gpu::Buffer& buffer) {
-    Pairs out;
-    for (const std::uint32_t word : download<std::uint32_t>(state, buffer, state.volume_resources.splat_count)) {
+inline Reaches reaches_of(const PassScene& s, gpu::Buffer VolumeResources::*buffer) {
+    RendererState& state = prepared(s);
+    Reaches out{device_records(state), {}, {}};
+    for (const std::uint32_t word :
+         download<std::uint32_t>(state, state.volume_resources.*buffer, out.records.size())) {
         out.first.push_back((word & 0xffffU) / 65535.0);
         out.second.push_back((word >> 16U) / 65535.0);
     }
     return out;
+}
+
+/// The sheets of a picture's last group: all of them where there is one group.
+struct DrawnSheets {
+    std::vector<reference::SplatRecord> records;
+    std::vector<glm::vec4> pixels;  ///< (sheet, y, x)
+    glm::ivec4 rect;                ///< what the group touches; elsewhere pixels mean nothing
+};
+
+inline DrawnSheets drawn_sheets(RendererState& state, const PassScene& s, const glm::ivec2& size) {
+    state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    return {device_records(state), download<glm::vec4>(state, state.targets.sheets),
+            state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
 /// The reference's passes 3 and 5 on a splat list of the device. Its members refer to one another.

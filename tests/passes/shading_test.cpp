@@ -167,11 +167,8 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
         const PassScene s = changed(GetParam(), number);
         SCOPED_TRACE(s.name);
         RendererState& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
         ASSERT_EQ(state.plan.params.group_count, 1U);
-        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
-        const auto records = device_records(state);
-        const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
 
         const Oracle oracle(s, records, kSize);
         const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
