@@ -308,6 +308,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     try {
         self.release_unused(settings);
         self.device.forget_peaks();
+        const gpu::PipelineCreation made = self.pipelines.creation();
         const FrameRequest request{self.volume, scene, camera, wanted, size, aovs};
         const bool keep_buried = keeps_buried(request);
         self.check_memory(request);
@@ -326,6 +327,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
             self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
             add_times(times, self.commands.span_times());
+            self.add_counts(result.stats);
             if (scene.effects.samples > 1) mean.add(pixels());
         }
         result.stats.frame_milliseconds = milliseconds_since(start);
@@ -353,6 +355,8 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
             draw_output("normal", shader::PAYLOAD_NORMAL);
             result.normal = take(pixels(), size, 0, 3);
         }
+        result.stats.pipelines_made = self.pipelines.creation().count - made.count;
+        result.stats.pipeline_milliseconds = self.pipelines.creation().milliseconds - made.milliseconds;
     } catch (const vk::SystemError& error) {
         fail("Vulkan: {}", error.what());
     }

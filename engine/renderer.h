@@ -60,6 +60,13 @@ struct MemoryUse {
     std::uint64_t bytes = 0;  ///< the most during the frame
 };
 
+/// What drawing the splats of a picture came to.
+struct DrawCounts {
+    std::uint64_t vertices = 0;   ///< invocations of the vertex shader
+    std::uint64_t fragments = 0;  ///< of the fragment shader, as the driver counts them: some before the depth test
+    std::uint64_t shaded = 0;     ///< samples that passed the depth test
+};
+
 /// What a frame did and cost.
 struct RenderStats {
     DeviceInfo device;
@@ -71,6 +78,12 @@ struct RenderStats {
     std::uint32_t sheets = 0, sheet_groups = 0;
     std::uint64_t device_bytes = 0;  ///< allocated on the device
     std::vector<MemoryUse> memory;   ///< by name, what was let go during the frame included
+    std::uint64_t pipelines_made = 0;
+    double pipeline_milliseconds = 0;  ///< spent on making them; part of setup and frame
+    /// After Renderer::count_fragments: of the splats of the picture, extra outputs not among them.
+    std::optional<DrawCounts> draw_counts;
+    /// Likewise: the part of the picture that a sheet group covers with its rectangle, on average.
+    std::optional<double> dirty_share;
     std::uint64_t validation_messages = 0;
 };
 
@@ -104,6 +117,10 @@ class Renderer {
     /// The most that may be held on the device, bytes; 0: as much as it has. A picture that needs more is refused
     /// before anything is allocated for it, with what is needed for what, and with what would fit.
     void set_memory_budget(std::uint64_t bytes);
+
+    /// Whether RenderStats of pictures to come have draw_counts (where the device can count) and dirty_share. Counted
+    /// frames take longer.
+    void count_fragments(bool on);
 
     /// Renders one frame of `width` x `height` pixels (1..16384 each). View-independent work is done again only when
     /// the volume, the scene's materials or the edge settings changed.

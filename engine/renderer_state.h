@@ -46,6 +46,9 @@ struct RendererState {
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0});
 
+    /// Adds what the last draw came to, if that is counted.
+    void add_counts(RenderStats& stats) const;
+
     gpu::Device device;
     gpu::Pipelines pipelines{device};
     Bindings bindings{device, pipelines};
@@ -66,6 +69,7 @@ struct RendererState {
     std::optional<EdgeBand> band_in_use;  ///< what the support spheres were made for
     FramePlan plan;                       ///< of the last draw
     std::vector<PassTime> collection_times;
+    bool counting = false;                                           ///< see Renderer::count_fragments
     std::uint64_t memory_budget = 0;                                 ///< bytes; 0: what the device has
     std::vector<std::pair<std::string, std::uint64_t>> checked_fit;  ///< resources that were last found to fit
 };

@@ -9,6 +9,7 @@ namespace {
 
 // Two per span; a frame of 10^4 sheets in groups of 8 has 2500 spans.
 constexpr std::uint32_t kMaxTimestamps = 8192;
+constexpr std::uint32_t kMaxCounted = 8192;
 constexpr std::uint64_t kTimeout = 600'000'000'000;  // ns; a software device may take minutes for a huge frame
 
 }  // namespace
@@ -35,6 +36,9 @@ void Commands::run(const std::function<void()>& body) {
     span_names_.clear();
     buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     if (*queries_) buffer_.resetQueryPool(*queries_, 0, kMaxTimestamps);
+    counted_ = 0;
+    for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
+        if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCounted);
     for (const auto point : {vk::PipelineBindPoint::eCompute, vk::PipelineBindPoint::eGraphics}) {
         buffer_.bindDescriptorSets(point, pipelines_->layout(), 0, set_, nullptr);
     }
@@ -89,8 +93,12 @@ void Commands::prepare(std::initializer_list<const GpuImage*> images) {
 
 void Commands::write_timestamp() {
     const auto at = static_cast<std::uint32_t>(span_names_.size());
-    if (*queries_ && at < kMaxTimestamps)
-        buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
+    if (!*queries_ || at >= kMaxTimestamps) return;
+    // lavapipe writes timestamps when it next rasterises, which may be after dispatches that were recorded later.
+    const bool late = device_->is_software();
+    if (late) barrier();
+    buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
+    if (late) barrier();
 }
 
 void Commands::begin_span(const char* name) {
@@ -118,6 +126,53 @@ std::vector<PassTime> Commands::span_times() const {
         found->milliseconds += static_cast<double>(ticks[i + 1] - ticks[i]) * device_->timestamp_period() * 1e-6;
     }
     return times;
+}
+
+void Commands::count_draws(bool on) {
+    statistics_ = nullptr;
+    samples_ = nullptr;
+    if (!on || !device_->counts_draws()) return;
+    using Statistic = vk::QueryPipelineStatisticFlagBits;
+    statistics_ = vk::raii::QueryPool(device_->handle(),
+                                      {{},
+                                       vk::QueryType::ePipelineStatistics,
+                                       kMaxCounted,
+                                       Statistic::eVertexShaderInvocations | Statistic::eFragmentShaderInvocations});
+    samples_ = vk::raii::QueryPool(device_->handle(), {{}, vk::QueryType::eOcclusion, kMaxCounted});
+}
+
+void Commands::begin_count() {
+    if (!*statistics_ || counted_ >= kMaxCounted) return;
+    buffer_.beginQuery(*statistics_, counted_);
+    buffer_.beginQuery(*samples_, counted_, vk::QueryControlFlagBits::ePrecise);
+}
+
+void Commands::end_count() {
+    if (!*statistics_) return;
+    if (counted_ < kMaxCounted) {
+        buffer_.endQuery(*samples_, counted_);
+        buffer_.endQuery(*statistics_, counted_);
+    }
+    ++counted_;
+}
+
+std::optional<DrawCounts> Commands::draw_counts() const {
+    if (!*statistics_ || counted_ == 0 || counted_ > kMaxCounted) return std::nullopt;
+    const auto results = [&](const vk::raii::QueryPool& pool, std::size_t numbers) {
+        const std::size_t stride = numbers * sizeof(std::uint64_t);
+        return pool
+            .getResults<std::uint64_t>(0, counted_, counted_ * stride, stride,
+                                       vk::QueryResultFlagBits::e64 | vk::QueryResultFlagBits::eWait)
+            .second;
+    };
+    const std::vector<std::uint64_t> statistics = results(statistics_, 2), samples = results(samples_, 1);
+    DrawCounts counts;
+    for (std::size_t i = 0; i < counted_; ++i) {
+        counts.vertices += statistics[2 * i];
+        counts.fragments += statistics[2 * i + 1];
+        counts.shaded += samples[i];
+    }
+    return counts;
 }
 
 }  // namespace edgesplat::gpu

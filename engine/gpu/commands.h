@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -45,6 +46,14 @@ class Commands {
     /// Milliseconds of the spans of the last run, in order of first use; empty without timestamps.
     std::vector<PassTime> span_times() const;
 
+    /// Whether draws between begin_count and end_count are counted from the next run on. Only where the device can.
+    void count_draws(bool on);
+    /// Within one rendering; do nothing unless draws are counted.
+    void begin_count();
+    void end_count();
+    /// Sums over the last run; nothing unless all of its draws were counted.
+    std::optional<DrawCounts> draw_counts() const;
+
   private:
     void write_timestamp();
     const Device* device_;
@@ -55,6 +64,8 @@ class Commands {
     vk::raii::Fence fence_ = nullptr;
     vk::raii::QueryPool queries_ = nullptr;
     std::vector<std::string> span_names_;
+    vk::raii::QueryPool statistics_ = nullptr, samples_ = nullptr;  ///< a query per counted draw; absent: not counted
+    std::uint32_t counted_ = 0;
 };
 
 }  // namespace edgesplat::gpu

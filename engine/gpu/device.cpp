@@ -205,6 +205,11 @@ Device::Device(const DeviceChoice& choice) {
     Features enabled;
     for (const Need& need : kNeeds)
         need.field(enabled) = VK_TRUE;
+    const auto optional = physical_.getFeatures();
+    counts_draws_ = optional.pipelineStatisticsQuery == VK_TRUE && optional.occlusionQueryPrecise == VK_TRUE;
+    auto& features = enabled.get<vk::PhysicalDeviceFeatures2>().features;
+    features.setPipelineStatisticsQuery(counts_draws_ ? VK_TRUE : VK_FALSE);
+    features.setOcclusionQueryPrecise(counts_draws_ ? VK_TRUE : VK_FALSE);
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
     vk::DeviceCreateInfo device_info({}, queue_info);

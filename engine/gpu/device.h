@@ -45,6 +45,8 @@ class Device {
     /// Nanoseconds per timestamp tick; 0 where the queue has no timestamps.
     double timestamp_period() const { return timestamp_period_; }
     bool is_software() const { return software_; }
+    /// Whether draws can be counted: pipeline statistics and precise occlusion queries.
+    bool counts_draws() const { return counts_draws_; }
     std::uint64_t validation_messages() const { return log_->messages; }
     /// Bytes of device memory held now by buffers and images.
     std::uint64_t allocated_bytes() const { return allocations_->at(kTotal).bytes; }
@@ -87,7 +89,7 @@ class Device {
     DeviceInfo info_;
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
-    bool software_ = false, has_memory_budget_ = false;
+    bool software_ = false, has_memory_budget_ = false, counts_draws_ = false;
 };
 
 }  // namespace edgesplat::gpu

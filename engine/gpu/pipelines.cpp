@@ -84,13 +84,21 @@ void Pipelines::forget_used() {
         made.used = false;
 }
 
+void Pipelines::count_creation(std::chrono::steady_clock::time_point start) {
+    ++creation_.count;
+    creation_.milliseconds +=
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+}
+
 vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
     const std::string key = key_of(shader, constants);
     if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
+    const auto start = std::chrono::steady_clock::now();
     const auto module = load(shader);
     const SpecializationData data(constants);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
     vk::raii::Pipeline made(device_->handle(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    count_creation(start);
     return use(made_.emplace(key, Made{std::move(made), {{shader}, constants}}).first->second);
 }
 
@@ -100,6 +108,7 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
                                         vk::to_string(state.depth), static_cast<int>(state.blend));
     if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
 
+    const auto start = std::chrono::steady_clock::now();
     const auto vertex = load(state.vertex), fragment = load(state.fragment);
     const SpecializationData data(state.constants);
     const std::array stages{
@@ -130,6 +139,7 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
                                         &depth, &blend, &dynamic, *layout_);
     info.pNext = &rendering;
     Made made{vk::raii::Pipeline(device_->handle(), nullptr, info), {{state.vertex, state.fragment}, state.constants}};
+    count_creation(start);
     return use(made_.emplace(key, std::move(made)).first->second);
 }
 

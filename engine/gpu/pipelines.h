@@ -1,6 +1,7 @@
 // Pipelines by shader name and specialization constants, made on first use and kept.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -32,6 +33,12 @@ struct PipelineVariant {
     Specialization constants;          ///< of all of them
 };
 
+/// What making pipelines took so far.
+struct PipelineCreation {
+    std::uint64_t count = 0;
+    double milliseconds = 0;
+};
+
 class Pipelines {
   public:
     explicit Pipelines(const Device& device);
@@ -41,6 +48,7 @@ class Pipelines {
     /// Every variant that was asked for since forget_used.
     std::vector<PipelineVariant> used() const;
     void forget_used();
+    const PipelineCreation& creation() const { return creation_; }
 
     vk::PipelineLayout layout() const { return *layout_; }
     vk::DescriptorSetLayout set_layout() const { return *set_layout_; }
@@ -56,7 +64,9 @@ class Pipelines {
         bool used = true;
     };
     static vk::Pipeline use(Made& made);
+    void count_creation(std::chrono::steady_clock::time_point start);
     std::map<std::string, Made> made_;
+    PipelineCreation creation_;
 };
 
 }  // namespace edgesplat::gpu

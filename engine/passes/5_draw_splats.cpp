@@ -64,7 +64,9 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
                         .depth_use = gpu::DrawState::Depth::TestLess},
                        push);
     raw.bindIndexBuffer(in.indices.handle(), 0, vk::IndexType::eUint32);
+    commands.begin_count();
     raw.drawIndexedIndirect(in.draws.handle(), group * sizeof(shader::DrawCommand), 1, sizeof(shader::DrawCommand));
+    commands.end_count();
     raw.endRendering();
     commands.barrier();
 }
