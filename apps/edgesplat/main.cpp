@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "apps/edgesplat/accuracy_command.h"
+#include "apps/edgesplat/bench_command.h"
 #include "apps/edgesplat/compare_command.h"
 #include "apps/edgesplat/effects_command.h"
 #include "apps/edgesplat/footprints_command.h"
@@ -105,6 +106,7 @@ int main(int argc, char** argv) {
         add_footprints_command(app);
         add_effects_command(app);
         add_accuracy_command(app, shell_line(argc, argv), exit_status);
+        add_bench_command(app, shell_line(argc, argv), exit_status);
         app.footer(
             "Examples:\n"
             "  edgesplat render builtin:sphere -o sphere.png --compare plain\n"

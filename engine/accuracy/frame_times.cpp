@@ -10,9 +10,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kVisitMilliseconds = 120;  ///< that frames faster than this are repeated for
-constexpr int kMostTriples = 6;
-
 struct Cost {
     double wall = 0, processor = 0;  ///< ms
 };
@@ -32,7 +29,9 @@ Cost cost_of(const Render& render, RenderStats& stats) {
 }
 
 /// Of passes that every frame has; the setup's are left out.
-void keep_fastest(const RenderStats& stats, std::vector<std::pair<std::string, double>>& passes) {
+void keep_passes(const RenderStats& stats, TimedVisit& visit) {
+    auto& passes = visit.passes;
+    visit.frames.push_back(stats.passes);
     for (const PassTime& pass : stats.passes) {
         const auto found =
             std::find_if(passes.begin(), passes.end(), [&](const auto& p) { return p.first == pass.name; });
@@ -46,22 +45,29 @@ void keep_fastest(const RenderStats& stats, std::vector<std::pair<std::string, d
 }  // namespace
 
 TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& camera, const Settings& settings, int width,
-                      int height) {
+                      int height, const VisitLimits& limits) {
     TimedVisit visit;
     const auto frame = [&] { return renderer.render(scene, camera, settings, width, height).stats; };
     const auto ray = [&] { return renderer.raycast(scene, camera, settings, RaycastSettings{}, width, height).stats; };
-    visit.setup_milliseconds = frame().setup_milliseconds;
+    const RenderStats first = frame();
+    visit.setup_milliseconds = first.setup_milliseconds;
     double once = ray().frame_milliseconds;
-    for (int i = 0; i < kMostTriples && (i == 0 || (i + 1) * once < kVisitMilliseconds); ++i) {
+    for (int i = 0; i < limits.triples && (i == 0 || (i + 1) * once < limits.milliseconds); ++i) {
         RenderStats stats;
         const Cost before = cost_of(frame, stats);
-        keep_fastest(stats, visit.passes);
+        keep_passes(stats, visit);
         const Cost between = cost_of(ray, stats);
         const Cost after = cost_of(frame, stats);
-        keep_fastest(stats, visit.passes);
+        keep_passes(stats, visit);
         visit.triples.push_back({before.wall, between.wall, after.wall});
         visit.processor_triples.push_back({before.processor, between.processor, after.processor});
         once = before.wall + between.wall + after.wall;
+    }
+    // What the first frame alone did.
+    for (const PassTime& pass : first.passes) {
+        const bool every =
+            std::any_of(visit.passes.begin(), visit.passes.end(), [&](const auto& p) { return p.first == pass.name; });
+        if (!every) visit.setup_passes.push_back(pass);
     }
     return visit;
 }

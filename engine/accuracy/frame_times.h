@@ -24,12 +24,21 @@ struct TimedVisit {
     std::vector<TimedTriple> processor_triples;  ///< the same by the processor time of all threads of this process
     std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, fastest of the visit
     double setup_milliseconds = 0;  ///< estimation and collection; 0 where nothing was to be set up
+    // Not in the JSON:
+    std::vector<std::vector<PassTime>> frames;  ///< GPU ms of each frame
+    std::vector<PassTime> setup_passes;         ///< GPU ms; empty where nothing was to be set up
 };
 
-/// Renders and ray casts the camera in turns; the first frame of each is dropped. Fast frames are repeated up to 6
-/// times.
+/// How long fast frames are repeated for.
+struct VisitLimits {
+    double milliseconds = 120;
+    int triples = 6;  ///< at most
+};
+
+/// Renders and ray casts the camera in turns; the first frame of each is dropped. Always one triple; more where they
+/// are fast.
 TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& camera, const Settings& settings, int width,
-                      int height);
+                      int height, const VisitLimits& limits = {});
 
 nlohmann::ordered_json to_json(const TimedVisit& visit);
 TimedVisit timed_visit_from(const nlohmann::ordered_json& json);

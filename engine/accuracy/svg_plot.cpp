@@ -44,14 +44,6 @@ class TemporaryFolder {
     fs::path path_;
 };
 
-/// In gnuplot's single quotes nothing but the quote itself has a meaning.
-std::string quoted(const std::string& text) {
-    std::string out = "'";
-    for (const char c : text)
-        out += c == '\'' ? "''" : std::string(1, c);
-    return out + "'";
-}
-
 /// The plot command; the data stand before it as blocks. Empty where there is nothing to draw.
 std::string script_of(const LogPlot& plot) {
     std::string blocks, commands;
@@ -81,7 +73,7 @@ std::string script_of(const LogPlot& plot) {
         }
         if (rows.empty()) continue;
         blocks += fmt::format("$series{} << EOD\n{}EOD\n", i, rows);
-        add(fmt::format("$series{} using 1:2 with points {} title {}", i, series.style, quoted(series.title)));
+        add(fmt::format("$series{} using 1:2 with points {} title {}", i, series.style, gnuplot_text(series.title)));
     }
     if (!names.empty()) {
         blocks += "$names << EOD\n" + names + "EOD\n";
@@ -121,20 +113,37 @@ std::string escaped(const std::string& text) {
     return out;
 }
 
-std::string log_plot_svg(const LogPlot& plot) {
-    const std::string script = script_of(plot);
-    if (script.empty()) return "<p>Nothing to draw.</p>\n";
+std::string gnuplot_text(const std::string& text) {
+    // In single quotes nothing but the quote itself has a meaning.
+    std::string out = "'";
+    for (const char c : text)
+        out += c == '\'' ? "''" : std::string(1, c);
+    return out + "'";
+}
+
+std::string svg_file(const std::string& script) {
     const TemporaryFolder folder;
     const fs::path file = folder.path() / "plot.svg";
-    draw_script(fmt::format("set terminal svg size 900,520 dynamic font 'system-ui,sans-serif,14' background 'white'\n"
-                            "set logscale xy\nset bmargin 7\n"
-                            "set grid lc rgb '#e3e7ec' lt 1 lw 1\nset border lc rgb '#5c6773'\nset format y '%g'\n"
-                            "set key at screen 0.5,0.02 bottom center horizontal reverse Left\n"
-                            "set xlabel {} noenhanced\nset ylabel {} noenhanced\n{}",
-                            quoted(plot.x_title), quoted(plot.y_title), script),
+    draw_script("set terminal svg size 900,520 dynamic font 'system-ui,sans-serif,14' background 'white'\n" + script,
                 file);
     std::ifstream in(file);
-    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    return {std::istreambuf_iterator<char>(in), {}};
+}
+
+std::string log_plot_file(const LogPlot& plot) {
+    const std::string script = script_of(plot);
+    if (script.empty()) return {};
+    return svg_file(
+        fmt::format("set logscale xy\nset bmargin 7\n"
+                    "set grid lc rgb '#e3e7ec' lt 1 lw 1\nset border lc rgb '#5c6773'\nset format y '%g'\n"
+                    "set key at screen 0.5,0.02 bottom center horizontal reverse Left\n"
+                    "set xlabel {} noenhanced\nset ylabel {} noenhanced\n{}",
+                    gnuplot_text(plot.x_title), gnuplot_text(plot.y_title), script));
+}
+
+std::string log_plot_svg(const LogPlot& plot) {
+    const std::string text = log_plot_file(plot);
+    if (text.empty()) return "<p>Nothing to draw.</p>\n";
     // What stands before the element is for a file of its own.
     const std::size_t begin = text.find("<svg");
     if (begin == std::string::npos) fail("gnuplot wrote no <svg> element");

@@ -27,6 +27,15 @@ struct LogPlot {
 /// The <svg> element. Throws Error where gnuplot is missing or fails.
 std::string log_plot_svg(const LogPlot& plot);
 
+/// The same as a file of its own. Empty where there is nothing to draw.
+std::string log_plot_file(const LogPlot& plot);
+
+/// What a gnuplot script draws, as the text of an SVG file. The script sets neither terminal nor output.
+std::string svg_file(const std::string& script);
+
+/// Text in single quotes, as gnuplot reads it.
+std::string gnuplot_text(const std::string& text);
+
 /// Text in which &, <, > and quotes are safe.
 std::string escaped(const std::string& text);
 

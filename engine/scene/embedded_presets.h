@@ -1,4 +1,4 @@
-// The presets that are part of the program: presets/*.toml (cmake/EmbedPresets.cmake).
+// The presets that are part of the program: presets/*.toml (cmake/EmbedToml.cmake).
 #pragma once
 
 #include <span>

@@ -11,6 +11,7 @@
 #include "engine/scene/nearest_name.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
+#include "engine/scene/scene_table.h"
 
 namespace edgesplat {
 namespace {
@@ -20,10 +21,7 @@ namespace fs = std::filesystem;
 /// What a preset may say.
 constexpr std::array<std::string_view, 4> kPresetKeys{"about", "iso_values", "materials", "transfer"};
 
-struct Problem {
-    std::size_t line;
-    std::string text;
-};
+using Problem = SceneTableProblem;
 
 /// A value on its way into the document.
 struct Assignment {
@@ -220,6 +218,26 @@ std::size_t invalid_utf8(std::string_view text) {
 
 SceneFileError::SceneFileError(std::vector<std::string> problems)
     : Error(fmt::format("{}", fmt::join(problems, "\n"))), problems_(std::move(problems)) {}
+
+std::vector<SceneTableProblem> read_scene_table(
+    SceneDocument& document, const toml::table& table,
+    const std::function<std::vector<DocumentProblem>(const SceneDocument&)>& check) {
+    Reader reader(document, false);
+    reader.read_table(table, "", "", 0);
+    reader.apply();
+    if (check)
+        for (const DocumentProblem& problem : check(document))
+            reader.add_problem(reader.line_of_path(problem.path), problem.path, problem.text);
+    return std::move(reader.problems());
+}
+
+std::vector<SceneTableProblem> read_scene_node(SceneDocument& document, const toml::node& node, const std::string& path,
+                                               std::size_t line) {
+    Reader reader(document, false);
+    reader.read_node(node, path, path, 0, line);
+    reader.apply();
+    return std::move(reader.problems());
+}
 
 bool is_scene_path(const fs::path& path) {
     return path.extension() == ".toml";

@@ -1,0 +1,110 @@
+#include "apps/edgesplat/bench_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <memory>
+
+#include "apps/edgesplat/option_values.h"
+#include "apps/edgesplat/progress_bar.h"
+#include "engine/bench/compare.h"
+#include "engine/bench/run.h"
+#include "engine/bench/run_output.h"
+#include "engine/bench/suite.h"
+
+namespace {
+
+constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
+
+/// Everything the command line said.
+struct BenchCommand {
+    std::string suite = "standard", folder, earlier, later, cases;
+    edgesplat::bench::BenchOptions options;
+    std::optional<double> rounds;
+    bool list = false, quiet = false;
+};
+
+void print_cases(const edgesplat::bench::Suite& suite) {
+    for (const auto& entry : suite.cases)
+        fmt::print("{}\n", entry.name);
+    for (const auto& entry : suite.skipped)
+        fmt::print("{} (skipped: {})\n", entry.name, entry.reason);
+}
+
+void print_comparison(const nlohmann::ordered_json& earlier, const nlohmann::ordered_json& later) {
+    fmt::print("{}", comparison_table(edgesplat::bench::compare_runs(earlier, later)));
+}
+
+/// Throws Interrupted on Ctrl-C.
+void run(const BenchCommand& command, const std::string& command_line) {
+    namespace bench = edgesplat::bench;
+    const auto earlier = command.earlier.empty() ? nlohmann::ordered_json() : bench::read_run(command.earlier);
+    if (!command.later.empty()) return print_comparison(earlier, bench::read_run(command.later));
+    bench::Suite suite = bench::read_suite(command.suite);
+    if (!command.cases.empty()) bench::keep_cases(suite, command.cases);
+    if (command.list) return print_cases(suite);
+    if (!command.folder.empty()) bench::check_run_folder(command.folder);
+    bench::BenchOptions options = command.options;
+    if (command.rounds) options.rounds = static_cast<int>(*command.rounds);
+    bench::BenchRun result;
+    {
+        const StopRequest stop;
+        ProgressBar bar(command.quiet);
+        result = bench::run_suite(suite, options, [&](const edgesplat::accuracy::Progress& p) {
+            bar.update(p.done, p.seconds_left, p.what);
+            return !stop.asked();
+        });
+    }
+    result.program = "edgesplat " EDGESPLAT_VERSION;
+    result.command = command_line;
+    if (!command.quiet) fmt::print("{}", run_tables(result));
+    if (!command.folder.empty()) {
+        const std::string note = write_run(result, command.folder);
+        if (!note.empty()) fmt::print(stderr, "edgesplat: {}\n", note);
+    }
+    if (!earlier.is_null()) print_comparison(earlier, run_json(result));
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, const std::string& command_line, int& exit_status) {
+    CLI::App& sub = *app.add_subcommand("bench", "Measure frames, setup, work and memory next to the ray caster");
+    const auto command = std::make_shared<BenchCommand>();
+    sub.add_option("SUITE", command->suite, "standard, scaling, full, or a file (.toml, docs/benchmarks.md)")
+        ->type_name("")
+        ->default_str("standard");
+    sub.add_option("-o,--output", command->folder, "Folder for bench.json, bench.csv and plots (SVG)")
+        ->type_name("DIR");
+    CLI::Option* compare =
+        sub.add_option("--compare", command->earlier, "Print every figure over that of an earlier bench.json")
+            ->type_name("EARLIER.json");
+    sub.add_option("--with", command->later, "Measure nothing: compare this bench.json")
+        ->type_name("LATER.json")
+        ->needs(compare);
+    sub.add_flag("--list", command->list, "Print the suite's cases and leave");
+    sub.add_option("--cases", command->cases, "Only cases with such a name: 'sphere-*', '*/plain/512x512'")
+        ->type_name("GLOB");
+    CLI::Option* repeat = add_number(sub, "--repeat", command->rounds, {1, 1000}, "Exactly so many rounds");
+    add_number(sub, "--budget", command->options.budget, {0, 1e6, true},
+               "Rounds begin as long as they will be over by then; default: the suite's")
+        ->type_name("SECONDS")
+        ->excludes(repeat);
+    sub.add_option("--device", command->options.device.device,
+                   "A Vulkan device: its number in --list-devices, or a part of its name")
+        ->type_name("DEVICE");
+    sub.add_flag("-q,--quiet", command->quiet, "No progress and no tables");
+    sub.footer(
+        "Volumes are looked for in the folders that EDGESPLAT_VOLUMES names; cases without theirs are skipped.\n"
+        "Examples:\n"
+        "  edgesplat bench -o before\n"
+        "  edgesplat bench -o after --compare before/bench.json\n"
+        "  edgesplat bench scaling --cases '*/default/*' --repeat 3");
+    sub.callback([command, command_line, &exit_status] {
+        try {
+            run(*command, command_line);
+        } catch (const edgesplat::accuracy::Interrupted& interrupted) {
+            fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
+            exit_status = kStoppedStatus;
+        }
+    });
+}

@@ -1,0 +1,122 @@
+// A measured suite on the terminal.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/bench/run_output.h"
+#include "engine/bench/text_table.h"
+
+namespace edgesplat::bench {
+namespace {
+
+using Rows = std::vector<std::vector<std::string>>;
+
+/// Three digits, more where the number has them before its point.
+std::string brief(double value) {
+    if (!std::isfinite(value)) return "-";
+    if (value == 0) return "0";
+    const int digits = std::clamp(2 - static_cast<int>(std::floor(std::log10(std::abs(value)))), 0, 4);
+    return fmt::format("{:.{}f}", value, digits);
+}
+
+std::string millions(std::uint64_t count) {
+    return brief(static_cast<double>(count) * 1e-6);
+}
+
+std::string mebibytes(std::uint64_t bytes) {
+    return brief(static_cast<double>(bytes) / (1024.0 * 1024.0));
+}
+
+/// All names in the order of their first appearance.
+std::vector<std::string> names_in(const std::vector<CaseResult>& cases, NamedTimes CaseResult::*times) {
+    std::vector<std::string> names;
+    for (const CaseResult& entry : cases)
+        for (const auto& [name, sample] : entry.*times)
+            if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    std::sort(names.begin(), names.end());
+    return names;
+}
+
+const Sampled* find_time(const NamedTimes& times, const std::string& name) {
+    for (const auto& [known, sample] : times)
+        if (known == name) return &sample;
+    return nullptr;
+}
+
+std::string time_table(const BenchRun& run) {
+    Rows rows{{"", "frame ms", "p95", "ray ms", "ratio", "p10-p90", "wall ratio", "n", "setup ms", "ns/voxel",
+               "first picture ms", "start-up ms", "pipelines", "ms"}};
+    for (const CaseResult& c : run.cases)
+        rows.push_back({c.name, brief(c.frame.median), brief(c.frame.p95), brief(c.raycast.median),
+                        brief(c.ratio.median), fmt::format("{}-{}", brief(c.ratio.low), brief(c.ratio.high)),
+                        brief(c.wall_ratio.median), fmt::format("{}", c.frame.count), brief(c.setup.median),
+                        brief(c.setup.median * 1e6 / c.voxels()), brief(c.cold.first_picture_ms),
+                        brief(c.cold.startup_ms), fmt::format("{}", c.cold.pipelines), brief(c.cold.pipeline_ms)});
+    return fmt::format("Times; ratio: frame over ray caster by {} time, of the same frames in turns\n{}", run.clock,
+                       text_table(rows));
+}
+
+std::string pass_table(const BenchRun& run) {
+    const auto passes = names_in(run.cases, &CaseResult::passes);
+    const auto setup = names_in(run.cases, &CaseResult::setup_passes);
+    Rows rows(1);
+    rows[0].emplace_back();
+    rows[0].insert(rows[0].end(), passes.begin(), passes.end());
+    for (const std::string& name : setup)
+        rows[0].push_back(name + " ns/voxel");
+    for (const CaseResult& c : run.cases) {
+        auto& row = rows.emplace_back(1, c.name);
+        for (const std::string& name : passes) {
+            const Sampled* time = find_time(c.passes, name);
+            row.push_back(time == nullptr ? "-" : fmt::format("{} {}", brief(time->median), brief(time->p95)));
+        }
+        for (const std::string& name : setup) {
+            const Sampled* time = find_time(c.setup_passes, name);
+            row.push_back(time == nullptr ? "-" : brief(time->median * 1e6 / c.voxels()));
+        }
+    }
+    return "Passes of a frame, GPU ms: median and p95; stages of the setup\n" + text_table(rows);
+}
+
+std::string work_table(const BenchRun& run) {
+    Rows rows{{"", "collected M", "drawn M", "rejected M", "vertices M", "fragments M", "shaded M", "sheets", "groups",
+               "dirty %", "device MiB", "host peak MiB"}};
+    for (const CaseResult& c : run.cases) {
+        const RenderStats& s = c.stats;
+        const auto counted = [&](std::uint64_t DrawCounts::*member) {
+            return s.draw_counts ? millions((*s.draw_counts).*member) : "-";
+        };
+        rows.push_back({c.name, millions(s.splats_collected), millions(s.splats_drawn), millions(c.rejected()),
+                        counted(&DrawCounts::vertices), counted(&DrawCounts::fragments), counted(&DrawCounts::shaded),
+                        fmt::format("{}", s.sheets), fmt::format("{}", s.sheet_groups),
+                        s.dirty_share ? brief(100 * *s.dirty_share) : "-", mebibytes(s.device_bytes),
+                        mebibytes(c.host_peak_bytes)});
+    }
+    return "Work and memory\n" + text_table(rows);
+}
+
+std::string scaling_table(const BenchRun& run) {
+    Rows rows{{"series", "mode", "size", "cost", "exponent", "residual %", "points"}};
+    for (const Scaling& s : run.scaling)
+        rows.push_back({s.series, s.mode, fmt::format("{}x{}", s.size.x, s.size.y), s.cost, brief(s.fit.exponent),
+                        brief(100 * s.fit.residual), fmt::format("{}", s.fit.points)});
+    return "Scaling: cost = factor * x^exponent\n" + text_table(rows);
+}
+
+}  // namespace
+
+std::string run_tables(const BenchRun& run) {
+    std::string out;
+    if (!run.cases.empty()) {
+        const DeviceInfo& d = run.device;
+        out += fmt::format("{}: {} on {} ({} {}), {} processor cores; {} rounds in {:.0f} s\n\n", run.program,
+                           run.suite, d.name, d.driver, d.driver_version, run.cores, run.rounds, run.seconds);
+        out += fmt::format("{}\n{}\n{}", time_table(run), pass_table(run), work_table(run));
+        if (!run.scaling.empty()) out += "\n" + scaling_table(run);
+        out += fmt::format("host peak of all: {} MiB\n", mebibytes(run.host_peak_bytes));
+    }
+    for (const SkippedCase& entry : run.skipped)
+        out += fmt::format("skipped {}: {}\n", entry.name, entry.reason);
+    return out;
+}
+
+}  // namespace edgesplat::bench

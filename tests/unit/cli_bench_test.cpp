@@ -1,0 +1,132 @@
+// `edgesplat bench` end to end: a tiny suite, its files and their keys, two runs compared. Nothing here asserts a time.
+#include <gmock/gmock.h>
+#include <spawn.h>
+
+#include <chrono>
+#include <csignal>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "tests/unit/cli_program.h"
+
+extern char** environ;  // NOLINT: the system's
+
+namespace edgesplat {
+namespace {
+
+using nlohmann::ordered_json;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class CliBench : public CliTest {
+  protected:
+    void SetUp() override {
+        CliTest::SetUp();
+        std::ofstream(folder_ / "tiny.toml") << R"(
+[[modes]]
+name = "default"
+[[modes]]
+name = "plain"
+quality = { edges = "off" }
+[[cases]]
+name = "ball-16"
+series = "ball"
+sizes = [[64, 64]]
+scene = { volume = { path = "builtin:sphere:16" }, camera = { view = "close" } }
+[[cases]]
+name = "ball-24"
+series = "ball"
+sizes = [[64, 64]]
+modes = ["plain"]
+camera = "far"
+scene = { volume = { path = "builtin:sphere:24" } }
+[[cases]]
+name = "gone"
+modes = ["plain"]
+scene = { iso_values = [3], volume = { path = "gone.nrrd" } }
+)";
+    }
+
+    ordered_json json(const std::string& folder) const {
+        return ordered_json::parse(text_of(folder_ / folder / "bench.json"));
+    }
+};
+
+TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
+    const ProgramRun first = run("bench tiny.toml --repeat 1 -o one");
+    ASSERT_EQ(first.status, 0) << first.err;
+    EXPECT_THAT(first.out, HasSubstr("skipped gone/plain/512x512: gone.nrrd: no such file"));
+    EXPECT_THAT(first.out, HasSubstr("5_draw_splats"));
+    EXPECT_THAT(first.out, HasSubstr("frame_ms_of_splats_drawn"));
+    const ordered_json one = json("one");
+    for (const char* key : {"schema", "program", "command", "suite", "device", "cores", "ratio_clock", "rounds",
+                            "seconds", "host_peak_bytes", "cases", "scaling", "skipped"})
+        EXPECT_TRUE(one.contains(key)) << key;
+    EXPECT_EQ(one["schema"], "edgesplat bench 1");
+    EXPECT_EQ(one["rounds"], 1);
+    ASSERT_EQ(one["cases"].size(), 3U);
+    EXPECT_EQ(one["scaling"].size(), 2U) << "of the mode plain, which has two sizes of volume";
+    for (const ordered_json& entry : one["cases"]) {
+        for (const char* key :
+             {"name",         "group",       "mode",         "series",    "volume",           "checksum",
+              "dims",         "voxels",      "size",         "frame_ms",  "processor_ms",     "raycast_ms",
+              "ratio",        "wall_ratio",  "passes_ms",    "setup_ms",  "setup_passes_ms",  "setup_ns_per_voxel",
+              "cold",         "splats",      "vertices",     "fragments", "shaded_fragments", "sheets",
+              "sheet_groups", "dirty_share", "device_bytes", "memory",    "host_peak_bytes"})
+            EXPECT_TRUE(entry.contains(key) && !entry[key].is_null()) << key;
+        for (const char* pass : {"3_select_footprints", "4_sort_sheets", "5_draw_splats", "6_composite_sheet"})
+            EXPECT_TRUE(entry["passes_ms"].contains(pass)) << pass;
+        EXPECT_TRUE(entry["setup_passes_ms"].contains("2_collect_splats"));
+        EXPECT_GT(entry["ratio"]["median"], 0);
+        EXPECT_GT(entry["splats"]["drawn"], 0);
+        EXPECT_GT(entry["cold"]["pipelines"], 0);
+        EXPECT_GT(entry["dirty_share"], 0);
+    }
+    EXPECT_THAT(text_of(folder_ / "one" / "ratio.svg"), HasSubstr("<svg"));
+    EXPECT_THAT(text_of(folder_ / "one" / "frame_scaling.svg"), HasSubstr("<svg"));
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "one" / "bench.csv"));
+
+    const ProgramRun second = run("bench tiny.toml --cases 'ball-24' --repeat 1 -o two --compare one/bench.json");
+    ASSERT_EQ(second.status, 0) << second.err;
+    EXPECT_THAT(second.out, HasSubstr("geometric mean"));
+    EXPECT_THAT(second.out, HasSubstr("ball-16/plain/64x64: only in the earlier run"));
+    // What is counted is the same in every run.
+    for (const char* key : {"splats", "vertices", "fragments", "shaded_fragments", "sheets", "dirty_share", "memory"})
+        EXPECT_EQ(json("two")["cases"][0][key], one["cases"][2][key]) << key;
+    const ProgramRun compared = run("bench --compare one/bench.json --with two/bench.json");
+    EXPECT_EQ(compared.status, 0) << compared.err;
+    EXPECT_THAT(compared.out, HasSubstr("new / old"));
+}
+
+TEST_F(CliBench, ListsItsCases) {
+    const ProgramRun listed = run("bench tiny.toml --list --cases 'ball-16'");
+    EXPECT_EQ(listed.status, 0) << listed.err;
+    EXPECT_EQ(listed.out, "ball-16/default/64x64\nball-16/plain/64x64\n");
+}
+
+TEST_F(CliBench, RefusesWhatItCannotDoBeforeItMeasures) {
+    EXPECT_THAT(run("bench tiny.toml -o no/such").err, HasSubstr("does not exist"));
+    EXPECT_THAT(run("bench tiny.toml --compare tiny.toml").err, HasSubstr("is no bench.json of this version"));
+    EXPECT_THAT(run("bench standart").err, HasSubstr("did you mean standard?"));
+    EXPECT_THAT(run("bench tiny.toml --cases cube").err, HasSubstr("no case is like 'cube'"));
+    EXPECT_THAT(files(), ElementsAre("tiny.toml"));
+}
+
+TEST_F(CliBench, CtrlCLeavesNoFile) {
+    const std::string command = "cd '" + folder_.string() +
+                                "' && exec '" EDGESPLAT_PROGRAM "' bench tiny.toml --budget 600 -q -o out 2>/dev/null";
+    std::string shell = "/bin/sh", flag = "-c", text = command;
+    char* arguments[] = {shell.data(), flag.data(), text.data(), nullptr};
+    pid_t child = 0;
+    ASSERT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    kill(child, SIGINT);
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status));
+    EXPECT_EQ(WEXITSTATUS(status), 130);
+    EXPECT_THAT(files(), ElementsAre("tiny.toml"));
+}
+
+}  // namespace
+}  // namespace edgesplat
