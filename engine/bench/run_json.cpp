@@ -75,7 +75,7 @@ ordered_json case_json(const CaseResult& c) {
 std::string csv_cell(const ordered_json& value) {
     if (value.is_null()) return {};
     if (!value.is_string()) return value.dump();
-    const auto text = value.get<std::string>();
+    auto text = value.get<std::string>();
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
     std::string out = "\"";
     for (const char c : text)
