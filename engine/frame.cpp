@@ -40,10 +40,9 @@ std::uint64_t scan_runs(const glm::ivec3& dims, VolumeResources& resources) {
 
 }  // namespace
 
-passes::CollectSplats collect_inputs(const CollectionPlan& plan, shader::Address scene) {
+passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
     const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
-    return {.scene = scene,
-            .dims = plan.dims,
+    return {.dims = plan.dims,
             .edges = plan.edge_field,
             .buried = plan.buried,
             .smooth = plan.edge_field && marched,
@@ -85,20 +84,19 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
         std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
         params.transfer = resources.transfer.address();
     }
-    const auto scene = resources.scene.address();
-    const passes::CollectSplats collect = collect_inputs(plan, scene);
+    const passes::CollectSplats collect = collect_inputs(plan);
 
     commands.run([&] {
         if (plan.buried) {
             commands.prepare({&resources.buried});
             commands.begin_span("1a_mark_buried");
-            passes::mark_buried(commands, scene, plan.dims, plan.clip);
+            passes::mark_buried(commands, plan.dims, plan.clip);
             commands.end_span();
         }
         if (plan.edge_field) {
             commands.prepare({&resources.edges});
             commands.begin_span("1_estimate_edges");
-            passes::estimate_edges(commands, scene, plan.dims, plan.estimator, plan.skip_buried);
+            passes::estimate_edges(commands, plan.dims, plan.estimator, plan.skip_buried);
             commands.end_span();
         }
         commands.begin_span("2_collect_splats");
@@ -140,27 +138,25 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
 }
 
 void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
-    const auto frame = targets.frame.address();
     const auto timed = [&](const char* name, const auto& pass) {
         commands.begin_span(name);
         pass();
         commands.end_span();
     };
-    const passes::DrawSplats draw{frame, plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
+    const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
 
     commands.run([&] {
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
         timed("3_select_footprints",
-              [&] { passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant); });
-        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, frame, plan.variant.sliced); });
+              [&] { passes::select_footprints(commands, plan.params.splat_count, plan.variant); });
+        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant.sliced); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             timed("6_composite_sheet",
-                  [&] { passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group); });
+                  [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
         }
-        timed("7_resolve",
-              [&] { passes::resolve(commands, frame, plan.params.size, plan.variant.payload, plan.gradient); });
+        timed("7_resolve", [&] { passes::resolve(commands, plan.params.size, plan.variant.payload, plan.gradient); });
     });
 }
 

@@ -8,7 +8,7 @@
 namespace edgesplat {
 
 /// What pass 2 is given.
-passes::CollectSplats collect_inputs(const CollectionPlan& plan, shader::Address scene);
+passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 
 /// View-independent: volume -> splat list. Allocates what the plan calls for in `resources`, which holds the uploaded
 /// volume (and coefficients), and fills `splats`, `splat_count` and the box. Runs, waits, and returns

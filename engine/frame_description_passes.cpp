@@ -83,7 +83,7 @@ class Passes {
             add("setup", "1_estimate_edges", kRates.normal_voxel * voxels + rate * 3 * splats, shaders);
         }
         add("setup", "2_collect_splats", kRates.collect_voxel * voxels + kRates.collect_splat * splats,
-            {variant("2_collect_splats.comp", passes::collect_constants(collect_inputs(plan, {})))});
+            {variant("2_collect_splats.comp", passes::collect_constants(collect_inputs(plan)))});
     }
 
     void add_reach(const FrameRequest& request, const FrameForecast& f) {

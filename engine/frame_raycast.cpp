@@ -88,6 +88,7 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
     block = plan.block;
     block.rays.pixels = output_.address();
     bindings_.write(volume, {}, {});
+    bindings_.write_block(shader::BIND_RAYS, block_);
     bind(device, shader::BIND_BRICKS, bricks_);
 }
 
@@ -100,7 +101,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
         commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
         commands.prepare({&scratch});
         commands.begin_span("raycast_bricks");
-        passes::classify_bricks(commands, block_.address(), plan.block.scene.dims);
+        passes::classify_bricks(commands, plan.block.scene.dims);
         commands.end_span();
     });
     // The slot must not be left with an image that is gone.
@@ -113,7 +114,7 @@ void RaycastResources::cast(gpu::Commands& commands, const RaycastPlan& plan) co
     commands.run([&] {
         commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
         commands.begin_span("raycast");
-        passes::cast_rays(commands, block_.address(), plan.variant, plan.size);
+        passes::cast_rays(commands, plan.variant, plan.size);
         commands.end_span();
     });
 }

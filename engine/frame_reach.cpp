@@ -191,8 +191,8 @@ std::uint64_t light_layer_bytes(const FramePlan& plan) {
     return side * side * plan.params.sheet_count * sizeof(float);
 }
 
-std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, const Volume& volume,
-                                    const OcclusionPlan& plan, VolumeResources& resources) {
+std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                                    const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources) {
     resources.occlusion = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t), gpu::Buffer::Place::Device,
                                       "splat occlusion");
     const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, "occlusion parameters");
@@ -205,14 +205,12 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
     const passes::ClipCount clip =
         place_clip(plan.matter.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.splat_count = static_cast<std::uint32_t>(resources.splat_count);
-    params.scene = resources.scene.address();
     params.reach = resources.occlusion.address();
+    bindings.write_block(shader::BIND_OCCLUSION, block);
     commands.run([&] {
         commands.begin_span("2b_occlude_ambient");
-        passes::occlude_ambient(commands, {.params = block.address(),
-                                           .splat_count = resources.splat_count,
-                                           .clip = clip,
-                                           .transfer = !plan.matter.transfer.empty()});
+        passes::occlude_ambient(
+            commands, {.splat_count = resources.splat_count, .clip = clip, .transfer = !plan.matter.transfer.empty()});
         commands.end_span();
     });
     return commands.span_times();
@@ -220,22 +218,21 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
 
 std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                       std::uint32_t channel) {
-    const auto frame = targets.frame.address();
-    const passes::DrawSplats draw{frame, plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
+    const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
     commands.run([&] {
         commands.begin_span("2c_sweep_light");
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        passes::select_footprints(commands, frame, plan.params.splat_count, plan.variant);
-        passes::sort_sheets(commands, frame, plan.variant.sliced);
+        passes::select_footprints(commands, plan.params.splat_count, plan.variant);
+        passes::sort_sheets(commands, plan.variant.sliced);
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             passes::draw_splats(commands, draw, group);
-            passes::sweep_light(commands, frame, plan.params.size, group);
-            passes::composite_sheet(commands, frame, targets.accumulated, plan.variant.payload, group);
+            passes::sweep_light(commands, plan.params.size, group);
+            passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
         }
         commands.end_span();
         commands.begin_span("2d_shadow_splats");
-        passes::shadow_splats(commands, frame, plan.params.splat_count, plan.variant.clip, channel);
+        passes::shadow_splats(commands, plan.params.splat_count, plan.variant.clip, channel);
         commands.end_span();
     });
     return commands.span_times();

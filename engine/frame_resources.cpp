@@ -20,8 +20,10 @@ gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool vol
 }  // namespace
 
 Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : device_(&device) {
-    const std::array sizes{vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, 4),
-                           vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_COUNT - 4)};
+    const std::array sizes{
+        vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, 4),
+        vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_SCENE - 4),
+        vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, shader::BIND_COUNT - shader::BIND_SCENE)};
     pool_ = vk::raii::DescriptorPool(device.handle(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
     const auto layout = pipelines.set_layout();
     set_ = std::move(vk::raii::DescriptorSets(device.handle(), {*pool_, layout}).front());
@@ -34,6 +36,7 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
     no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
+    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder");
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 
@@ -67,6 +70,15 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
             slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
     }
     device_->handle().updateDescriptorSets(writes, nullptr);
+    write_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
+    write_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
+    write_block(shader::BIND_OCCLUSION, no_block_);
+}
+
+void Bindings::write_block(std::uint32_t binding, const gpu::Buffer& block) const {
+    const vk::DescriptorBufferInfo info(block.handle(), 0, block.bytes());
+    const vk::WriteDescriptorSet write(*set_, binding, 0, vk::DescriptorType::eUniformBuffer, {}, info);
+    device_->handle().updateDescriptorSets(write, nullptr);
 }
 
 namespace {

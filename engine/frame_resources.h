@@ -56,8 +56,8 @@ struct TargetResources {
     gpu::Buffer output;         ///< (height, width) vec4, mapped; 7 -> host
 };
 
-/// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image, since
-/// not every driver allows holes.
+/// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image or
+/// zeros, since not every driver allows holes.
 class Bindings {
   public:
     Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines);
@@ -66,6 +66,8 @@ class Bindings {
     void prepare(gpu::Commands& commands) const;
     void write(const VolumeResources& volume, const FootprintResources& footprints,
                const TargetResources& targets) const;
+    /// Puts a buffer into the slot of a uniform block, until the next write().
+    void write_block(std::uint32_t binding, const gpu::Buffer& block) const;
 
   private:
     const gpu::Device* device_;
@@ -73,6 +75,7 @@ class Bindings {
     vk::raii::DescriptorSet set_ = nullptr;
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_array_, no_picture_;
+    gpu::Buffer no_block_;
 };
 
 /// Size of the staging buffer that upload_image uses for such an image.

@@ -24,7 +24,7 @@ bool RendererState::occlude(const Scene& scene) {
     occluded.reset();
     volume_resources.occlusion = {};
     bindings.write(volume_resources, {}, {});
-    add_times(collection_times, run_occlusion(device, commands, *volume, wanted, volume_resources));
+    add_times(collection_times, run_occlusion(device, commands, bindings, *volume, wanted, volume_resources));
     occluded = wanted;
     return true;
 }

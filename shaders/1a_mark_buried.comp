@@ -12,7 +12,7 @@ layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_BURIED, r8ui) uniform uimage3D buried;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
-layout(push_constant) uniform Push { SceneRef params; };
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 
 #include "shaders/lib/material.glsl"
 #define CLIP_PARAMS params.scene

@@ -14,7 +14,7 @@ layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_EDGES, rg32ui) uniform writeonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
-layout(push_constant) uniform Push { SceneRef params; };
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 
 ivec3 dims;
 #include "shaders/lib/material.glsl"

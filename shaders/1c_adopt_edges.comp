@@ -11,7 +11,7 @@ layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform coherent uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
-layout(push_constant) uniform Push { SceneRef params; };
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 
 #include "shaders/lib/material.glsl"
 

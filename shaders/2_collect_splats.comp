@@ -19,10 +19,8 @@ layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
-layout(push_constant) uniform Push {
-    SceneRef params;
-    uint write;
-};
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+layout(push_constant) uniform Push { uint write; };
 
 ivec3 dims;
 #include "shaders/lib/material.glsl"

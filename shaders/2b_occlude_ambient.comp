@@ -10,7 +10,8 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // planes
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
-layout(push_constant) uniform Push { OcclusionRef occlusion; };
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+layout(binding = BIND_OCCLUSION, scalar) uniform Occlusion { OcclusionParams at; } occlusion;
 #define CLIP_PARAMS occlusion.at
 #include "shaders/lib/surface_point.glsl"
 #include "shaders/lib/transfer.glsl"
@@ -19,7 +20,6 @@ const float DARK = 12.0;  // optical depth from which on 16 bits hold nothing
 // Cosine and sine of the golden angle: successive points of Vogel's spiral (1979).
 const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
 
-SceneRef params;
 #include "shaders/lib/material.glsl"
 #include "shaders/lib/clip.glsl"
 
@@ -61,7 +61,6 @@ mat3 frame_of(vec3 n) {
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= occlusion.at.splat_count) return;
-    params = SceneRef(occlusion.at.scene);
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
     uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);

@@ -8,10 +8,8 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = BIND_SHEETS) uniform sampler2DArray sheets;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;

@@ -7,8 +7,8 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(push_constant) uniform Push {
-    FrameRef params;
     uint channel;  // 0 or 1: which half of the splat's word
 };
 #define CLIP_PARAMS params.frame

@@ -11,7 +11,7 @@ layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
-layout(push_constant) uniform Push { FrameRef params; };
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/lib/splat_projection.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/lib/clip.glsl"

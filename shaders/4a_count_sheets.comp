@@ -2,11 +2,12 @@
 // consecutive splats and one column of the histogram, so there is no race and the sort is stable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(push_constant) uniform Push { FrameRef params; };
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 void main() {
     uint block = gl_GlobalInvocationID.x;

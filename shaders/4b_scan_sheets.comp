@@ -2,10 +2,11 @@
 // One workgroup: each invocation sums a run of counters, the runs are scanned in shared memory.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
-layout(push_constant) uniform Push { FrameRef params; };
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 shared uint sums[256];
 
 void main() {

@@ -1,11 +1,12 @@
 // Counting sort, last third: every splat number goes to its place; inside a sheet the order of the records stays.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(push_constant) uniform Push { FrameRef params; };
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 void main() {
     uint block = gl_GlobalInvocationID.x;

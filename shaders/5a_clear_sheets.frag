@@ -5,10 +5,8 @@
 #include "shaders/shared/frame_params.h"
 
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 layout(location = 0) out vec4 sheet;
 
 void main() {

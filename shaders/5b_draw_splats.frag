@@ -13,16 +13,11 @@ layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
-const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
-const uint EDGE = 0u, PAPER = 1u;
-#include "shaders/lib/footprint.glsl"
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_TABLE) uniform sampler2DArray table;
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 
 layout(location = 0) in vec3 offset;
 layout(location = 1) flat in vec3 from_eye;
@@ -35,119 +30,10 @@ layout(location = 7) flat in uvec2 number_material;
 layout(location = 8) flat in vec4 filtered;
 layout(location = 0) out vec4 sheet;
 
-#define CLIP_PARAMS params.frame
-#include "shaders/lib/clip.glsl"
-#include "shaders/lib/clip_ray.glsl"
-#include "shaders/lib/shading.glsl"
-
-float footprint(float rho2, float pn, float un, Slice slice) {
-    if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2, slice);
-    float d = normal_distance.w, d2 = shape.x;
-    if (WARP == PAPER) {
-        float warped = FOOTPRINTS == WARP2D ? footprint_paper_warp2d(rho2, pn, un, d, slice, params.frame.footprint)
-                                            : footprint_paper_procedural(rho2, pn, un, d, slice, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
-    }
-    if (FOOTPRINTS == WARP2D) {
-        float warped = footprint_warp2d(rho2, pn, un, d, slice, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
-    }
-    int faces = d2 < 0.0 ? 0 : footprint_faces(d, d2, params.frame.footprint);
-    // Walls are plane.
-    float curved = 0.0;
-    int bent = CURVED == 1u && faces == 1 ? 1 : 0;
-    for (int run = bent; run > 0; --run)
-        curved = footprint_curved(rho2, pn, un, d, shape.y, slice, params.frame.footprint);
-    if (CURVED == 1u) faces = faces == 1 ? 0 : faces;
-    // The table knows one plane face and no slices; everything else is integrated. Without faces the loop is empty and the
-    // result is the plain footprint: lavapipe runs both sides of a branch, but no loop that is empty in every lane.
-    bool integrate = FOOTPRINTS == PROCEDURAL || SLICED == 1u || CURVED == 1u;
-    int integrated = integrate || faces == 2 ? faces : 0;
-    float warped = footprint_procedural(rho2, pn, un, d, d2, integrated, slice, params.frame.footprint);
-    if (CURVED == 1u) warped = bent == 1 ? curved : warped;
-    if (integrate || faces != 1) return warped;
-    return FOOTPRINTS == TABLE ? footprint_table_nearest(table, rho2, pn, un, d, params.frame.footprint)
-                               : footprint_table_lerp(table, rho2, pn, un, d, params.frame.footprint);
-}
-
-// |x|^2 of the widened kernel where the ray passes it.
-float filtered_rho2(float rho2) { return filtered.y * dot(pixels, pixels) + filtered.z * rho2; }
-
-// Where the ray passes the voxel's depth, z from p: the pixel's filter lies across the view, and so its kernels keep their depths.
-float voxel_depth_on_ray(vec3 p, vec3 u) { return -dot(params.frame.view_z, p) / dot(params.frame.view_z, u); }
-
-// The footprint, or as much of the widened one as the pixel's size calls for. `z`: voxel_depth_on_ray.
-float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
-    float value = footprint(rho2, pn, un, slice);
-    if (ANTIALIAS == 1u) {
-        float wide = filtered.w * footprint_isotropic(filtered_rho2(rho2), Slice(slice.low - z, slice.high - z));
-        value = filtered.x > 0.0 ? mix(value, wide, filtered.x) : value;
-    }
-    return value;
-}
-
-// What a splat carries where a ray enters its matter through a clip plane, z from p.
-vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
-    vec3 world_normal = normalize(params.frame.normal_to_world * face);
-    if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
-    float depth = dot(params.frame.view_z, from_eye + p + z * u);
-    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
-    vec3 to_eye = -normalize(params.frame.index_to_world * u);
-    return shade(Surface(matter, number_material.y, number_material.x, true, world_normal, false, entry, to_eye, depth));
-}
-
-// The splat between `slice`, in the pieces of the ray that clip planes leave: (sum of integrals times payload, their sum).
-vec4 clipped_footprint(vec3 p, vec3 u, Slice slice) {
-    float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
-    Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
-    // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
-    float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
-    float far = ANTIALIAS == 1u ? 8.0 + abs(z) : 8.0;
-    int faces = footprint_faces(normal_distance.w, shape.x, params.frame.footprint);
-    faces = FOOTPRINTS == WARP2D ? 1 : faces;
-    vec4 sum = vec4(0.0);
-    bool some = kept.before.low < kept.before.high && kept.before.low < far && kept.before.high > -far;
-    bool more = CLIP_REMOVE > 0u && kept.behind.low < kept.behind.high && kept.behind.low < far && kept.behind.high > -far;
-    int first = some ? 0 : 1, last = more ? 2 : 1;
-    for (int i = first; i < last; ++i) {
-        Slice piece = CLIP_REMOVE > 0u && i == 1 ? kept.behind : kept.before;
-        vec3 face = CLIP_REMOVE > 0u && i == 1 ? kept.behind_face : kept.before_face;
-        float t = pn + piece.low * un;
-        float matter2 = rho2 + piece.low * piece.low;
-        if (ANTIALIAS == 1u && filtered.x >= 1.0) matter2 = filtered_rho2(rho2) + (piece.low - z) * (piece.low - z);
-        bool cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 &&
-                   is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
-                                CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
-        vec3 payload = color_sigma.rgb;
-        for (int run = cap ? 1 : 0; run > 0; --run) payload = cap_payload(face, p, u, piece.low);
-        Slice cut = Slice(piece.low < -far ? -1e9 : piece.low, piece.high > far ? 1e9 : piece.high);
-        cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
-        float value = cut.low < cut.high ? drawn_footprint(rho2, pn, un, z, cut) : 0.0;
-        sum += value * vec4(payload, 1.0);
-    }
-    return sum;
-}
+#include "shaders/lib/splat_value.glsl"
 
 void main() {
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
-    Slice slice = Slice(-1e9, 1e9);
-    float in_front = 1.0;
-    if (SLICED == 1u) {
-        float depth_along = dot(params.frame.view_z, u);
-        vec2 z = (shape.zw - dot(params.frame.view_z, p)) / depth_along;
-        slice = Slice(z.x, z.y);
-    } else if (CLIP_KEEP + CLIP_REMOVE == 0u) {
-        // Only the part of the kernel in front of the eye counts.
-        in_front = smoothstep(-params.frame.support, params.frame.support, dot(from_eye, u));
-    }
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-        sheet = color_sigma.a * length(params.frame.index_to_world * u) * clipped_footprint(p, u, slice);
-        return;
-    }
-    float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
-    float value = drawn_footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), z, slice);
-    float tau = color_sigma.a * length(params.frame.index_to_world * u) * value * in_front;
-    sheet = vec4(tau * color_sigma.rgb, tau);
+    sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));
 }

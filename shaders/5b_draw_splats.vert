@@ -16,13 +16,12 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
 #include "shaders/lib/transfer.glsl"
+#include "shaders/lib/splat_inputs.glsl"
 
 layout(location = 0) out vec3 offset;              // a point of the pixel's ray, relative to the voxel, index space
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
@@ -70,49 +69,17 @@ void main() {
         : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
     if (!p.at_eye) offset += p.centre;
 
-    vec4 material = vec4(0.0);
-    if (TRANSFER == 1u)
-        material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
-    else
-        material = params.frame.materials[splat.edge >> 28];
-    // A surface faces its lower values, whichever side of it the splat is on.
-    vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
-    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
-    vec3 world_from_eye = params.frame.index_to_world * from_eye;
-    vec3 to_eye = -unit_or_zero(world_from_eye);
-    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
-    bool turned = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
-    if (turned) world_normal = -world_normal;
-    float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
-    vec3 payload = vec3(0.0);
-    if (PAYLOAD == PAYLOAD_COLOR) {
-        bool has_normal = e.state >= (LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
-        payload = shade(Surface(material.rgb, splat.edge >> 28, number, has_normal, world_normal, turned, world_from_eye, to_eye, depth));
-    }
-    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
-        float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
-        payload = vec3(depth, signed_distance, 0.0);
-    }
-    if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
-    color_sigma = vec4(payload, material.a);
+    SplatInputs s = splat_inputs(number, splat, e, p, depths);
+    color_sigma = s.color_sigma;
+    normal_distance = s.normal_distance;
+    shape = s.shape;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-        matter = material.rgb;
-        number_material = uvec2(number, splat.edge >> 28);
+        matter = s.matter;
+        number_material = s.number_material;
     }
-    normal_distance = vec4(e.n, e.d);
-    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
-    vec2 traits = vec2(0.0, 1.0);
-    if (CURVED == 1u || WEIGHTED == 1u)
-        traits = unpack_traits(UintsRef(params.frame.traits).at[number], params.frame.curvature_unit);
-    shape = vec4(warped ? e.d2 : -1.0, CURVED == 1u ? traits.x : 0.0, depths);
-    if (WEIGHTED == 1u) color_sigma.a *= traits.y;
     if (ANTIALIAS == 1u) {
-        LowPass f = p.filtered;
         pixels = (p.slope + slope - p.view.xy / p.view.z) / params.frame.pixel;
-        // Weights belong to the warped kernel.
-        float matter = (warped ? matter_of_voxel(e.d, e.d2) : 1.0) / (WEIGHTED == 1u ? traits.y : 1.0);
-        filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
-        if (f.share >= 1.0) shape.x = -1.0;
+        filtered = s.filtered;
     }
 
     vec2 ndc = (p.slope + slope) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);

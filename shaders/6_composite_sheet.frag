@@ -7,10 +7,8 @@
 
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(binding = BIND_SHEETS) uniform sampler2DArray sheets;
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 layout(location = 0) out vec4 accumulated;
 
 // 1 - exp(-tau) to a relative error of 1e-6: Vulkan's exp alone loses every digit of a small tau.

@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(push_constant) uniform Push { FrameRef params; };
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;

@@ -2,12 +2,11 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
+#include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(push_constant) uniform Push {
-    FrameRef params;
-    uint group;
-};
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
 
 void main() {
     ivec4 rect = GroupsRef(params.frame.groups).at[group].rect;

@@ -5,7 +5,7 @@
 #include "shaders/shared/raycast_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(push_constant) uniform Push { RaycastRef params; };
+layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 #include "shaders/lib/raycast.glsl"
 
 void main() {

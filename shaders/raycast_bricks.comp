@@ -7,7 +7,7 @@
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_BRICK_SCRATCH, r8ui) uniform writeonly uimage3D scratch;
-layout(push_constant) uniform Push { RaycastRef params; };
+layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 #include "shaders/lib/material.glsl"
 
 void main() {

@@ -9,7 +9,7 @@ layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
 layout(constant_id = SPEC_AXIS) const uint AXIS = 0u;
 layout(binding = BIND_BRICKS, r8ui) uniform uimage3D bricks;
 layout(binding = BIND_BRICK_SCRATCH, r8ui) uniform uimage3D scratch;
-layout(push_constant) uniform Push { RaycastRef params; };
+layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 
 uint distance_at(ivec3 brick, ivec3 count) {
     if (any(lessThan(brick, ivec3(0))) || any(greaterThanEqual(brick, count))) return BRICK_FAR;

@@ -39,9 +39,8 @@ void Commands::run(const std::function<void()>& body) {
     counted_ = 0;
     for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
         if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCounted);
-    for (const auto point : {vk::PipelineBindPoint::eCompute, vk::PipelineBindPoint::eGraphics}) {
-        buffer_.bindDescriptorSets(point, pipelines_->layout(), 0, set_, nullptr);
-    }
+    buffer_.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_->layout(), 0, set_, nullptr);
+    draws_ = false;
     body();
     barrier();
     buffer_.end();
@@ -52,22 +51,24 @@ void Commands::run(const std::function<void()>& body) {
     device_->handle().resetFences(*fence_);
 }
 
-void Commands::dispatch(const char* shader, const Specialization& constants, const shader::FramePush& push,
-                        Groups groups) {
+void Commands::dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups) {
     buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants));
-    buffer_.pushConstants<shader::FramePush>(
+    buffer_.pushConstants<std::uint32_t>(
         pipelines_->layout(),
         vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
-        push);
+        number);
     buffer_.dispatch(groups.x, groups.y, groups.z);
 }
 
-void Commands::bind_draw(const DrawState& state, const shader::FramePush& push) {
+void Commands::bind_draw(const DrawState& state, std::uint32_t number) {
     buffer_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state));
-    buffer_.pushConstants<shader::FramePush>(
+    // Not before: lavapipe looks for the pipeline of a descriptor set with uniform blocks.
+    if (!draws_) buffer_.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_->layout(), 0, set_, nullptr);
+    draws_ = true;
+    buffer_.pushConstants<std::uint32_t>(
         pipelines_->layout(),
         vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
-        push);
+        number);
 }
 
 void Commands::barrier() {

@@ -33,8 +33,8 @@ class Commands {
     /// Records `body`, submits it and waits until the device is done.
     void run(const std::function<void()>& body);
 
-    void dispatch(const char* shader, const Specialization& constants, const shader::FramePush& push, Groups groups);
-    void bind_draw(const DrawState& state, const shader::FramePush& push);
+    void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
+    void bind_draw(const DrawState& state, std::uint32_t number);
     /// Everything before, visible to everything after.
     void barrier();
     /// Brings fresh images into layout GENERAL.
@@ -59,6 +59,7 @@ class Commands {
     const Device* device_;
     Pipelines* pipelines_;
     vk::DescriptorSet set_;
+    bool draws_ = false;  ///< the set is bound for draws
     vk::raii::CommandPool pool_ = nullptr;
     vk::raii::CommandBuffer buffer_ = nullptr;
     vk::raii::Fence fence_ = nullptr;

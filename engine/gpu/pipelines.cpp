@@ -52,13 +52,17 @@ vk::PipelineColorBlendAttachmentState blend_state(DrawState::Blend blend) {
 
 Pipelines::Pipelines(const Device& device) : device_(&device) {
     using Type = vk::DescriptorType;
-    const auto stages = vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment;
+    const auto stages =
+        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
     std::array<vk::DescriptorSetLayoutBinding, shader::BIND_COUNT> bindings;
     for (std::uint32_t i = 0; i < shader::BIND_COUNT; ++i) {
-        bindings.at(i) = {i, i <= shader::BIND_BURIED ? Type::eStorageImage : Type::eCombinedImageSampler, 1, stages};
+        const auto type = i <= shader::BIND_BURIED ? Type::eStorageImage
+                          : i < shader::BIND_SCENE ? Type::eCombinedImageSampler
+                                                   : Type::eUniformBuffer;
+        bindings.at(i) = {i, type, 1, stages};
     }
     set_layout_ = vk::raii::DescriptorSetLayout(device.handle(), {{}, bindings});
-    const vk::PushConstantRange push(stages | vk::ShaderStageFlagBits::eVertex, 0, sizeof(shader::FramePush));
+    const vk::PushConstantRange push(stages, 0, sizeof(std::uint32_t));
     layout_ = vk::raii::PipelineLayout(device.handle(), {{}, *set_layout_, push});
 }
 

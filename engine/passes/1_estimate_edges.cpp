@@ -10,14 +10,14 @@ gpu::Groups voxel_groups(const glm::ivec3& dims) {  // local size 8 x 4 x 2 in t
 
 }  // namespace
 
-void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, const ClipCount& clip) {
+void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, const ClipCount& clip) {
     const glm::uvec3 n(dims);
     const std::uint32_t lines[3] = {n.y * n.z, n.x * n.z, n.x * n.y};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         commands.dispatch(
             "1a_mark_buried.comp",
             {{shader::SPEC_AXIS, axis}, {shader::SPEC_CLIP_KEEP, clip.keep}, {shader::SPEC_CLIP_REMOVE, clip.remove}},
-            {scene, 0, 0}, gpu::groups_for(lines[axis], 64));
+            0, gpu::groups_for(lines[axis], 64));
         commands.barrier();
     }
 }
@@ -27,13 +27,11 @@ gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried
             {shader::SPEC_BURIED, skip_buried ? 1 : 0}};
 }
 
-void estimate_edges(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, EdgeEstimator estimator,
-                    bool skip_buried) {
-    const shader::FramePush push{scene, 0, 0};
-    commands.dispatch("1b_estimate_edges.comp", estimate_constants(estimator, skip_buried), push, voxel_groups(dims));
+void estimate_edges(gpu::Commands& commands, const glm::ivec3& dims, EdgeEstimator estimator, bool skip_buried) {
+    commands.dispatch("1b_estimate_edges.comp", estimate_constants(estimator, skip_buried), 0, voxel_groups(dims));
     commands.barrier();
     if (estimator != EdgeEstimator::March && estimator != EdgeEstimator::Cubic) return;
-    commands.dispatch("1c_adopt_edges.comp", {{shader::SPEC_BURIED, skip_buried ? 1 : 0}}, push, voxel_groups(dims));
+    commands.dispatch("1c_adopt_edges.comp", {{shader::SPEC_BURIED, skip_buried ? 1 : 0}}, 0, voxel_groups(dims));
     commands.barrier();
 }
 

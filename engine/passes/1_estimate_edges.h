@@ -8,7 +8,7 @@
 namespace edgesplat::passes {
 
 /// Marks voxels that opaque ones hide from every side (three line sweeps). What `clip` cuts away is not opaque.
-void mark_buried(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, const ClipCount& clip = {});
+void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, const ClipCount& clip = {});
 
 /// Specialization of 1b_estimate_edges.comp.
 gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried);
@@ -16,7 +16,6 @@ gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
 /// per voxel. With `skip_buried`, voxels marked by
 /// mark_buried get none. View-independent. With EdgeEstimator::Off only normals for light are written.
-void estimate_edges(gpu::Commands& commands, shader::Address scene, const glm::ivec3& dims, EdgeEstimator estimator,
-                    bool skip_buried);
+void estimate_edges(gpu::Commands& commands, const glm::ivec3& dims, EdgeEstimator estimator, bool skip_buried);
 
 }  // namespace edgesplat::passes

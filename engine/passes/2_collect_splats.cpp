@@ -4,7 +4,7 @@ namespace edgesplat::passes {
 namespace {
 
 void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool write) {
-    commands.dispatch("2_collect_splats.comp", collect_constants(in), {in.scene, write ? 1U : 0U, 0},
+    commands.dispatch("2_collect_splats.comp", collect_constants(in), write ? 1U : 0U,
                       gpu::groups_for(collect_runs(in.dims), 64));
     commands.barrier();
 }

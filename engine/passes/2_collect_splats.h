@@ -7,7 +7,6 @@
 namespace edgesplat::passes {
 
 struct CollectSplats {
-    shader::Address scene;  ///< SceneParams
     glm::ivec3 dims;
     bool edges = true;           ///< the edge field exists
     bool buried = true;          ///< the buried mask exists: `mark_buried` has run

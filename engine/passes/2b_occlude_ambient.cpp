@@ -9,7 +9,7 @@ gpu::Specialization occlude_constants(const ClipCount& clip, bool transfer) {
 }
 
 void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in) {
-    commands.dispatch("2b_occlude_ambient.comp", occlude_constants(in.clip, in.transfer), {in.params, 0, 0},
+    commands.dispatch("2b_occlude_ambient.comp", occlude_constants(in.clip, in.transfer), 0,
                       gpu::groups_for(in.splat_count, 64));
     commands.barrier();
 }

@@ -8,7 +8,6 @@
 namespace edgesplat::passes {
 
 struct OccludeAmbient {
-    shader::Address params;  ///< OcclusionParams
     std::uint64_t splat_count = 0;
     ClipCount clip{};
     bool transfer = false;  ///< extinction by SceneParams::transfer

@@ -10,10 +10,8 @@ gpu::Specialization select_constants(const DrawVariant& variant) {
             {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U}};
 }
 
-void select_footprints(gpu::Commands& commands, shader::Address frame, std::uint64_t splat_count,
-                       const DrawVariant& variant) {
-    commands.dispatch("3_select_footprints.comp", select_constants(variant), {frame, 0, 0},
-                      gpu::groups_for(splat_count, 64));
+void select_footprints(gpu::Commands& commands, std::uint64_t splat_count, const DrawVariant& variant) {
+    commands.dispatch("3_select_footprints.comp", select_constants(variant), 0, gpu::groups_for(splat_count, 64));
     commands.barrier();
 }
 

@@ -6,6 +6,6 @@
 namespace edgesplat::passes {
 
 /// FrameParams at `frame`: reads `sheets`, uses `counters` (which must be zero), writes `order`, `groups` and `draws`.
-void sort_sheets(gpu::Commands& commands, shader::Address frame, bool sliced);
+void sort_sheets(gpu::Commands& commands, bool sliced);
 
 }  // namespace edgesplat::passes

@@ -43,7 +43,6 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
                                             vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore);
     const auto layers = static_cast<std::uint32_t>(target.layers);
     const auto& raw = commands.raw();
-    const shader::FramePush push{in.frame, group, 0};
 
     raw.beginRendering(vk::RenderingInfo({}, area, layers, 0, color, &depth));
     raw.setViewport(0, vk::Viewport(0, 0, static_cast<float>(target.size.x), static_cast<float>(target.size.y), 0, 1));
@@ -53,7 +52,7 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
                         .constants = {},
                         .color = target.format,
                         .depth = in.depth.shape().format},
-                       push);
+                       group);
     raw.draw(4, layers, 0, 0);
     commands.bind_draw({.vertex = "5b_draw_splats.vert",
                         .fragment = "5b_draw_splats.frag",
@@ -62,7 +61,7 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
                         .depth = in.depth.shape().format,
                         .blend = gpu::DrawState::Blend::Add,
                         .depth_use = gpu::DrawState::Depth::TestLess},
-                       push);
+                       group);
     raw.bindIndexBuffer(in.indices.handle(), 0, vk::IndexType::eUint32);
     commands.begin_count();
     raw.drawIndexedIndirect(in.draws.handle(), group * sizeof(shader::DrawCommand), 1, sizeof(shader::DrawCommand));

@@ -34,7 +34,6 @@ struct DrawVariant {
 gpu::Specialization draw_constants(const DrawVariant& variant);
 
 struct DrawSplats {
-    shader::Address frame;
     DrawVariant variant;
     const gpu::GpuImage& sheets;  ///< (sheets_per_group, height, width) colour layers
     const gpu::GpuImage& depth;   ///< likewise, D16: 0 closes a pixel that is opaque already

@@ -8,8 +8,8 @@ void clear_accumulated(gpu::Commands& commands, const gpu::GpuImage& accumulated
     commands.barrier();
 }
 
-void composite_sheet(gpu::Commands& commands, shader::Address frame, const gpu::GpuImage& accumulated,
-                     std::uint32_t payload, std::uint32_t group) {
+void composite_sheet(gpu::Commands& commands, const gpu::GpuImage& accumulated, std::uint32_t payload,
+                     std::uint32_t group) {
     const auto& target = accumulated.shape();
     const vk::Rect2D area({0, 0},
                           {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
@@ -25,7 +25,7 @@ void composite_sheet(gpu::Commands& commands, shader::Address frame, const gpu::
                         .constants = {{shader::SPEC_PAYLOAD, payload}},
                         .color = target.format,
                         .blend = blend},
-                       {frame, group, 0});
+                       group);
     raw.draw(4, 1, 0, 0);
     raw.endRendering();
     commands.barrier();

@@ -10,7 +10,7 @@ void clear_accumulated(gpu::Commands& commands, const gpu::GpuImage& accumulated
 
 /// Puts the group's sheets behind what `accumulated` (RGBA32F) holds, within the pixels that the group touches.
 /// `payload` is shader::PAYLOAD_*; optical depth is summed instead.
-void composite_sheet(gpu::Commands& commands, shader::Address frame, const gpu::GpuImage& accumulated,
-                     std::uint32_t payload, std::uint32_t group);
+void composite_sheet(gpu::Commands& commands, const gpu::GpuImage& accumulated, std::uint32_t payload,
+                     std::uint32_t group);
 
 }  // namespace edgesplat::passes

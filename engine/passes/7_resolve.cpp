@@ -2,11 +2,10 @@
 
 namespace edgesplat::passes {
 
-void resolve(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t payload,
-             bool gradient) {
+void resolve(gpu::Commands& commands, const glm::ivec2& size, std::uint32_t payload, bool gradient) {
     const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
     commands.dispatch("7_resolve.comp", {{shader::SPEC_PAYLOAD, payload}, {shader::SPEC_GRADIENT, gradient ? 1U : 0U}},
-                      {frame, 0, 0}, {groups.x, groups.y});
+                      0, {groups.x, groups.y});
     commands.barrier();
 }
 

@@ -7,7 +7,6 @@ namespace edgesplat::passes {
 
 /// FrameParams at `frame`: writes `output_pixels`, (height, width) vec4, linear light. `gradient`: the background is of
 /// two colours.
-void resolve(gpu::Commands& commands, shader::Address frame, const glm::ivec2& size, std::uint32_t payload,
-             bool gradient);
+void resolve(gpu::Commands& commands, const glm::ivec2& size, std::uint32_t payload, bool gradient);
 
 }  // namespace edgesplat::passes

@@ -11,7 +11,7 @@ glm::ivec3 brick_count(const glm::ivec3& dims);
 
 /// Volume -> distance of every brick to the nearest one that is not transparent. `block` is a RaycastBlock; the ray
 /// caster's descriptor set is bound.
-void classify_bricks(gpu::Commands& commands, shader::Address block, const glm::ivec3& dims);
+void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims);
 
 /// Pipeline variant of the ray caster: every member is a specialization constant.
 struct RaycastVariant {
@@ -23,6 +23,6 @@ struct RaycastVariant {
 };
 
 /// Writes FrameParams::output_pixels of the block, (height, width) vec4, linear light.
-void cast_rays(gpu::Commands& commands, shader::Address block, const RaycastVariant& variant, const glm::ivec2& size);
+void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec2& size);
 
 }  // namespace edgesplat::passes

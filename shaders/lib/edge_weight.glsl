@@ -1,5 +1,5 @@
 // The weight of a kernel by its distance to the edge: what one side of an edge draws then reaches up to it.
-// docs/method.md, pass 2. The including shader declares `params` (SceneRef) and includes lib/edge_record.glsl.
+// docs/method.md, pass 2. The including shader declares the uniform block `params.scene` and includes lib/edge_record.glsl.
 float weight_at(float distance) {
     float at = clamp(distance, 0.0, EDGE_WEIGHT_REACH) * (float(EDGE_WEIGHT_STEPS) / EDGE_WEIGHT_REACH);
     uint cell = min(uint(at), EDGE_WEIGHT_STEPS - 1u);

@@ -48,7 +48,7 @@ struct Slice {
 
 // Integral of K along the line from its nearest point to z; kernel_chord in kernel.cpp has the recurrence.
 float kernel_chord(float rho2, float z) {
-    float w = max(0.0, 1.0 - rho2 / KERNEL_R2);
+    float w = max(0.0, 1.0 - rho2 * KERNEL_INVERSE_R2);
     float half_chord = KERNEL_R * sqrt(w);
     float s = clamp(z / max(half_chord, 1e-6), -1.0, 1.0);
     float c = 1.0 - s * s;
@@ -114,36 +114,75 @@ float chord_plain(Chord c, float first, float last) {
     return kernel_between(c.rho2, clamp((first - c.pn) / c.un, c.low, c.high), clamp((last - c.pn) / c.un, c.low, c.high));
 }
 
-// The warped kernel over the ray's part with t in [first, last], on one side of the face at `face`.
-float edge_piece(Chord c, float first, float last, float face, float a, float k) {
-    float start = max((first - c.pn) / c.un, c.low);
-    float len = max(0.0, min((last - c.pn) / c.un, c.high) - start);
+// What of a warped kernel is the same for all rays: the band of its faces and, of the first, between which t it is integrated.
+struct FaceBand {
+    float a;
+    float k;
+    float inverse_a;
+    float first;
+    float last;
+};
+
+// w in [-R, R] is all the kernel there is.
+float face_first(float face, float a, float k) { return max(face - a, face + edge_warp_inverse(-KERNEL_R - face, a, k)); }
+float face_last(float face, float a, float k) { return min(face + a, face + edge_warp_inverse(KERNEL_R - face, a, k)); }
+
+FaceBand face_band(float D, float D2, int faces, FootprintParams params) {
+    float thickness = D + D2;
+    FaceBand band;
+    band.a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
+    band.k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
+    band.inverse_a = 1.0 / band.a;
+    band.first = face_first(D, band.a, band.k);
+    band.last = face_last(D, band.a, band.k);
+    return band;
+}
+
+// The warped kernel over the ray's part between z = start and start + len, on one side of the face at `face`: side = 1 where t
+// is larger there, else -1. With v = |t - face| / a and w = face + side a g(v), the rational quadratic of edge_warp,
+// w^2 - t^2 = a (g - v) (a (g + v) + 2 side face): no division but that of g.
+float edge_piece(Chord c, float start, float len, float side, float face, FaceBand band) {
+    float a = band.a;
+    float k = band.k;
+    float v0 = side * (c.pn + start * c.un - face) * band.inverse_a;
+    float dv = side * len * c.un * band.inverse_a;
+    float twice_face = 2.0 * side * face;
     float sum = 0.0;
     for (int i = 0; i < FOOTPRINT_NODES; ++i) {
         float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
-        float t = c.pn + z * c.un;
-        float w = face + edge_warp(t - face, a, k);
-        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] * kernel(c.rho2 + z * z + (w - t) * (w + t));
+        float v = clamp(v0 + dv * FOOTPRINT_NODE[FOOTPRINT_RULE + i], 0.0, 1.0);
+        float b = v - v * v;
+        float g = (v + (k - 1.0) * b) / (1.0 + (k - 1.0) * b);
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] * kernel(c.rho2 + z * z + a * (g - v) * (a * (g + v) + twice_face));
     }
     return len * sum;
 }
 
-float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, Slice slice, FootprintParams params) {
-    float thickness = D + D2;
-    float a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
-    float k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
+float footprint_of_faces(float rho2, float pn, float un, float D, float D2, int faces, FaceBand band, Slice slice) {
     Chord c = chord_of(rho2, pn, un, slice);
     float sum = footprint_isotropic(rho2, slice);
+    float inverse_un = 1.0 / c.un;
     float face = D;
+    float first = band.first;
+    float last = band.last;
     for (int i = 0; i < faces; ++i) {
-        // w in [-R, R] is all the kernel there is.
-        float first = max(face - a, face + edge_warp_inverse(-KERNEL_R - face, a, k));
-        float last = min(face + a, face + edge_warp_inverse(KERNEL_R - face, a, k));
-        sum += edge_piece(c, first, face, face, a, k) + edge_piece(c, face, last, face, a, k) -
-               chord_plain(c, face - a, face + a);
-        face = -D2;
+        float start = max((first - c.pn) * inverse_un, c.low);
+        float middle = (face - c.pn) * inverse_un;
+        float end = min((last - c.pn) * inverse_un, c.high);
+        float behind = max(middle, c.low);
+        sum += edge_piece(c, start, max(min(middle, c.high) - start, 0.0), -1.0, face, band) +
+               edge_piece(c, behind, max(end - behind, 0.0), 1.0, face, band) - chord_plain(c, face - band.a, face + band.a);
+        for (int more = faces - 1 - i; more > 0; --more) {
+            face = -D2;
+            first = face_first(face, band.a, band.k);
+            last = face_last(face, band.a, band.k);
+        }
     }
     return max(sum, 0.0);
+}
+
+float footprint_procedural(float rho2, float pn, float un, float D, float D2, int faces, Slice slice, FootprintParams params) {
+    return footprint_of_faces(rho2, pn, un, D, D2, faces, face_band(D, D2, faces, params), slice);
 }
 
 // ---- curved edges (footprints/edge_warp.cpp, procedural_footprint.cpp)

@@ -1,5 +1,5 @@
 // The weight that makes the kernels around a voxel sum to one where its own kernel is largest. docs/method.md, pass 2.
-// The including shader declares `params` (SceneRef) and `edges` (rg32ui uimage3D).
+// The including shader declares the uniform block `params.scene` and `edges` (rg32ui uimage3D).
 #include "shaders/lib/edge_record.glsl"
 #include "shaders/lib/kernel.glsl"
 

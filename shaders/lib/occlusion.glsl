@@ -1,5 +1,7 @@
 // How much of the ambient light reaches a splat: what 2b_occlude_ambient left. The including shader declares the push
-// constant `FrameRef params`. `turned`: of a wall, the face on the other side.
+// block `params.frame`. `turned`: of a wall, the face on the other side.
+#ifndef EDGESPLAT_OCCLUSION_GLSL
+#define EDGESPLAT_OCCLUSION_GLSL
 
 layout(constant_id = SPEC_OCCLUSION) const uint OCCLUSION = 0u;
 
@@ -8,3 +10,4 @@ float ambient_reach(uint splat, bool turned) {
     vec2 reach = unpackUnorm2x16(UintsRef(params.frame.splat_occlusion).at[splat]);
     return 1.0 - params.frame.occlusion_strength * (1.0 - (turned ? reach.y : reach.x));
 }
+#endif

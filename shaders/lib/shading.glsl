@@ -1,5 +1,7 @@
 // What a splat looks like from the eye: its colour, what the lights make of it, silhouette and fog. docs/method.md,
-// Shading. The including shader declares the push constant `FrameRef params`.
+// Shading. The including shader declares the uniform block `params.frame`.
+#ifndef EDGESPLAT_SHADING_GLSL
+#define EDGESPLAT_SHADING_GLSL
 #include "shaders/shared/frame_params.h"
 #include "shaders/lib/occlusion.glsl"
 #include "shaders/lib/shadow.glsl"
@@ -68,3 +70,4 @@ vec3 shade(Surface s) {
     }
     return color;
 }
+#endif

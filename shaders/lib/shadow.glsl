@@ -1,5 +1,7 @@
 // How much of a light reaches a splat past what stands in its way: what 2d_shadow_splats left. The including shader declares
-// the push constant `FrameRef params`.
+// the uniform block `params.frame`.
+#ifndef EDGESPLAT_SHADOW_GLSL
+#define EDGESPLAT_SHADOW_GLSL
 
 layout(constant_id = SPEC_SHADOWS) const uint SHADOWS = 0u;
 
@@ -9,3 +11,4 @@ float light_reach(uint splat, uint light) {
     vec2 reach = unpackUnorm2x16(UintsRef(params.frame.splat_shadows).at[splat]);
     return channel == 0u ? 1.0 : channel == 1u ? reach.x : reach.y;
 }
+#endif

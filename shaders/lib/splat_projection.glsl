@@ -1,5 +1,7 @@
-// Where a splat's support lies on the screen. The including shader declares the push constant `FrameRef params` (its fields are
+// Where a splat's support lies on the screen. The including shader declares the uniform block `params.frame` (its fields are
 // read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS and ANTIALIAS.
+#ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
+#define EDGESPLAT_SPLAT_PROJECTION_GLSL
 #include "shaders/lib/antialias.glsl"
 #include "shaders/lib/edge_record.glsl"
 #include "shaders/shared/frame_params.h"
@@ -134,3 +136,4 @@ ivec4 pixel_box(Projection p) {
     vec2 high = (p.slope + p.high) * scale + 0.5 * vec2(params.frame.size);
     return ivec4(clamp(ivec2(floor(low)), ivec2(0), params.frame.size), clamp(ivec2(ceil(high)), ivec2(0), params.frame.size));
 }
+#endif

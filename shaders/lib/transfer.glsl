@@ -1,5 +1,7 @@
 // Colour and extinction of a value: exact between the points of the transfer function. docs/method.md, Transfer
 // functions.
+#ifndef EDGESPLAT_TRANSFER_GLSL
+#define EDGESPLAT_TRANSFER_GLSL
 #include "shaders/shared/transfer_rows.h"
 
 vec4 transfer_at(TransferRef rows, float value) {
@@ -9,3 +11,4 @@ vec4 transfer_at(TransferRef rows, float value) {
     float t = clamp((value - low) / (high - low), 0.0, 1.0);
     return mix(rows.at[i].matter, rows.at[i + 1u].matter, t);
 }
+#endif

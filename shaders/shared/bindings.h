@@ -1,4 +1,5 @@
-// The one descriptor set. Buffers are not in it: they travel as device addresses.
+// The one descriptor set. Lists travel as device addresses; what every invocation reads alike is a uniform block, which
+// lavapipe loads once for eight of them (through an address: eight times).
 #ifndef EDGESPLAT_BINDINGS_H
 #define EDGESPLAT_BINDINGS_H
 #include "shaders/shared/glue.h"
@@ -11,7 +12,10 @@ EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = every voxel around
 EDGESPLAT_CONSTANT uint BIND_SHEETS = 4u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
 EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 5u;   // rgba32f, premultiplied colour and alpha so far
 EDGESPLAT_CONSTANT uint BIND_TABLE = 6u;         // r16f, footprint layers
-EDGESPLAT_CONSTANT uint BIND_COUNT = 7u;
+EDGESPLAT_CONSTANT uint BIND_SCENE = 7u;         // SceneParams
+EDGESPLAT_CONSTANT uint BIND_FRAME = 8u;         // FrameParams
+EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 9u;     // OcclusionParams
+EDGESPLAT_CONSTANT uint BIND_COUNT = 10u;
 
 EDGESPLAT_SHARED_END
 #endif

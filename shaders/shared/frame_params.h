@@ -88,27 +88,16 @@ struct FrameParams {
     Address values;         // (splat_count) float: what each splat is classified by, scaled; likewise
 };
 
-/// Push constants of every pass of the frame.
-struct FramePush {
-    Address frame;
-    uint group;  // sheet group drawn or composited
-    uint pad;
-};
-
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
 static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
-static_assert(sizeof(edgesplat::shader::FramePush) == 16);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1416);
 static_assert(sizeof(edgesplat::shader::FrameParams) == 1920);
 #else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer FrameRef {
-    FrameParams frame;
-};
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
 };

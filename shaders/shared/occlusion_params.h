@@ -16,17 +16,12 @@ struct OcclusionParams {
     vec4 clip_remove[8];
     uint splat_count;
     uint pad;
-    Address scene;          // SceneParams
     Address reach;          // (splat_count) uint: unorm16 of the face that the normal looks out of, and of the other
 };
 
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::OcclusionParams) == 384);
-#else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer OcclusionRef {
-    OcclusionParams at;
-};
+static_assert(sizeof(edgesplat::shader::OcclusionParams) == 376);
 #endif
 #endif

@@ -4,9 +4,11 @@
 #include "shaders/shared/frame_params.h"
 EDGESPLAT_SHARED_BEGIN
 
-// The ray caster has a descriptor set of its own, of the common layout; two slots hold other images there.
+// The ray caster has a descriptor set of its own, of the common layout; three slots hold something else there.
 EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 1u;  // r8ui, while distances are found
 EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x), bricks to the nearest one that is not transparent
+
+EDGESPLAT_CONSTANT uint BIND_RAYS = 8u;          // RaycastBlock
 
 EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured best on lavapipe, 8^3 takes 5-13 % longer
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this
@@ -44,7 +46,7 @@ struct RayParams {
 };
 
 #ifdef __cplusplus
-/// What a RaycastRef points to.
+/// The uniform block of the ray caster.
 struct RaycastBlock {
     SceneParams scene;
     RayParams rays;
@@ -57,10 +59,5 @@ EDGESPLAT_SHARED_END
 static_assert(offsetof(edgesplat::shader::RayParams, index_to_world) == 64);
 static_assert(offsetof(edgesplat::shader::RayParams, materials) == 168);
 static_assert(sizeof(edgesplat::shader::RayParams) == 464);
-#else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer RaycastRef {
-    SceneParams scene;
-    RayParams rays;
-};
 #endif
 #endif

@@ -50,9 +50,6 @@ static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);
 #else
-layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer SceneRef {
-    SceneParams scene;
-};
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer UintsRef {
     uint at[];
 };

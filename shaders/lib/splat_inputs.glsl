@@ -1,0 +1,65 @@
+// What a fragment needs of its splat, for all of its pixels: place, footprint, colour. docs/method.md, pass 5. After
+// shaders/lib/splat_projection.glsl, shading.glsl and transfer.glsl.
+#ifndef EDGESPLAT_SPLAT_INPUTS_GLSL
+#define EDGESPLAT_SPLAT_INPUTS_GLSL
+
+struct SplatInputs {
+    vec3 from_eye;         // voxel centre minus eye, index space
+    vec4 color_sigma;      // payload, extinction per mm
+    vec4 normal_distance;  // n, D
+    vec4 shape;            // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
+    vec3 matter;           // colour before light: what a cut shows; with clip planes only
+    uvec2 number_material; // of the splat, likewise
+    vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
+};
+
+SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
+    SplatInputs s;
+    s.from_eye = p.position - params.frame.eye;
+    vec4 material = vec4(0.0);
+    if (TRANSFER == 1u)
+        material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
+    else
+        material = params.frame.materials[splat.edge >> 28];
+    // A surface faces its lower values, whichever side of it the splat is on.
+    vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
+    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
+    vec3 world_from_eye = params.frame.index_to_world * s.from_eye;
+    vec3 to_eye = -unit_or_zero(world_from_eye);
+    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    bool turned = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
+    if (turned) world_normal = -world_normal;
+    float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
+    vec3 payload = vec3(0.0);
+    if (PAYLOAD == PAYLOAD_COLOR) {
+        bool has_normal = e.state >= (LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
+        payload = shade(Surface(material.rgb, splat.edge >> 28, number, has_normal, world_normal, turned, world_from_eye, to_eye, depth));
+    }
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
+        float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
+        payload = vec3(depth, signed_distance, 0.0);
+    }
+    if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
+    s.color_sigma = vec4(payload, material.a);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        s.matter = material.rgb;
+        s.number_material = uvec2(number, splat.edge >> 28);
+    }
+    s.normal_distance = vec4(e.n, e.d);
+    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
+    vec2 traits = vec2(0.0, 1.0);
+    if (CURVED == 1u || WEIGHTED == 1u)
+        traits = unpack_traits(UintsRef(params.frame.traits).at[number], params.frame.curvature_unit);
+    s.shape = vec4(warped ? e.d2 : -1.0, CURVED == 1u ? traits.x : 0.0, depths);
+    if (WEIGHTED == 1u) s.color_sigma.a *= traits.y;
+    if (ANTIALIAS == 1u) {
+        LowPass f = p.filtered;
+        // Weights belong to the warped kernel.
+        float matter = (warped ? matter_of_voxel(e.d, e.d2) : 1.0) / (WEIGHTED == 1u ? traits.y : 1.0);
+        s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
+        if (f.share >= 1.0) s.shape.x = -1.0;
+    }
+
+    return s;
+}
+#endif
