@@ -37,7 +37,7 @@ struct CaseResult {
     Sampled setup;      ///< wall ms: estimation and collection
     NamedTimes setup_passes;
     ColdStart cold;
-    RenderStats stats;  ///< of a picture with its setup; counts of one more
+    RenderStats stats;  ///< of the cold start's picture, with its setup, counted
     std::uint64_t host_peak_bytes = 0;
 
     double voxels() const { return static_cast<double>(stats.voxels); }

@@ -26,6 +26,11 @@ std::string mebibytes(std::uint64_t bytes) {
     return brief(static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
 
+/// Nothing of fewer than three: they hardly scatter.
+std::string scatter(const Sampled& s) {
+    return s.count < 3 ? "-" : fmt::format("{}-{}", brief(s.low), brief(s.high));
+}
+
 /// All names in the order of their first appearance.
 std::vector<std::string> names_in(const std::vector<CaseResult>& cases, NamedTimes CaseResult::*times) {
     std::vector<std::string> names;
@@ -47,8 +52,8 @@ std::string time_table(const BenchRun& run) {
                "first picture ms", "start-up ms", "pipelines", "ms"}};
     for (const CaseResult& c : run.cases)
         rows.push_back({c.name, brief(c.frame.median), brief(c.frame.p95), brief(c.raycast.median),
-                        brief(c.ratio.median), fmt::format("{}-{}", brief(c.ratio.low), brief(c.ratio.high)),
-                        brief(c.wall_ratio.median), fmt::format("{}", c.frame.count), brief(c.setup.median),
+                        brief(c.ratio.median), scatter(c.ratio), brief(c.wall_ratio.median),
+                        fmt::format("{}", c.frame.count), brief(c.setup.median),
                         brief(c.setup.median * 1e6 / c.voxels()), brief(c.cold.first_picture_ms),
                         brief(c.cold.startup_ms), fmt::format("{}", c.cold.pipelines), brief(c.cold.pipeline_ms)});
     return fmt::format("Times; ratio: frame over ray caster by {} time, of the same frames in turns\n{}", run.clock,
