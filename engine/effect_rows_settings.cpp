@@ -119,7 +119,7 @@ std::vector<Effect> settings_effects() {
                         return fmt::format("sheets are `sliced`, {} voxel apart", r.settings.sheet_spacing);
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.sheets = SheetCut::Sliced; },
-                    .resized = {"splat order", "sort counters", "sheet groups", "draw commands"},
+                    .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets"},
                     .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 10}}});
     rows.push_back({.name = "half sheets",
                     .help = "a sheet's colour and depth take half the memory",
@@ -128,6 +128,7 @@ std::vector<Effect> settings_effects() {
                         return drawn_settings(r).sheet_format == SheetFormat::Half ? "sheet_format is `half`" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Half; },
+                    .base = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Float; },
                     .resized = {"sheet group"}});
     rows.push_back({.name = "half accumulation",
                     .help = "the picture that sheets are composited into takes half the memory",
@@ -136,6 +137,7 @@ std::vector<Effect> settings_effects() {
                         return drawn_settings(r).accumulation == SheetFormat::Half ? "accumulation is `half`" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.accumulation = SheetFormat::Half; },
+                    .base = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Float; },
                     .resized = {"accumulated picture"}});
     rows.push_back({.name = "buried voxels",
                     .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",

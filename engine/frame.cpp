@@ -137,6 +137,16 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     return times;
 }
 
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
+    for (const PassTime& time : times) {
+        const auto same = std::ranges::find(sums, time.name, &PassTime::name);
+        if (same == sums.end())
+            sums.push_back(time);
+        else
+            same->milliseconds += time.milliseconds;
+    }
+}
+
 void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
     const auto timed = [&](const char* name, const auto& pass) {
         commands.begin_span(name);
@@ -150,13 +160,13 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
         passes::clear_accumulated(commands, targets.accumulated);
         timed("3_select_footprints",
               [&] { passes::select_footprints(commands, plan.params.splat_count, plan.variant); });
-        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant.sliced); });
+        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             timed("6_composite_sheet",
                   [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
         }
-        timed("7_resolve", [&] { passes::resolve(commands, plan.params.size, plan.variant.payload, plan.gradient); });
+        timed("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
     });
 }
 

@@ -16,6 +16,9 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
                                      const CollectionPlan& plan, VolumeResources& resources);
 
+/// Adds times to those of the same name.
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times);
+
 /// View-dependent: splat list -> pixels in `targets.output`. Runs and waits.
 void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
 

@@ -9,6 +9,9 @@
 #include "engine/passes/2_collect_splats.h"
 #include "engine/passes/2b_occlude_ambient.h"
 #include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/5_draw_tiles.h"
+#include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
 namespace {
@@ -53,7 +56,7 @@ double fragments(const FrameRequest& request, const FramePlan& plan) {
 
 class Passes {
   public:
-    explicit Passes(bool software) : milliseconds_per_(software ? 1e-6 : 1e-6 / kGpuFactor) {}
+    explicit Passes(bool software) : milliseconds_per_(software ? 1e-6 : 1e-6 / kGpuFactor), software_(software) {}
 
     void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
         out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
@@ -122,28 +125,36 @@ class Passes {
         const int samples = plan.variant.payload == shader::PAYLOAD_COLOR ? request.scene.effects.samples : 1;
         again_ = samples * samples;
         const gpu::Specialization sliced{{shader::SPEC_SLICED, plan.variant.sliced ? 1U : 0U}};
+        const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
+        const double drawing = kRates.draw_entry * entries +
+                               (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan);
         add(name, "3_select_footprints", kRates.select_splat * splats,
             {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
-            {variant("4a_count_sheets.comp", sliced), variant("4b_scan_sheets.comp", {}),
+            {variant("4a_count_sheets.comp", sliced),
+             variant("4b_scan_sheets.comp", passes::scan_constants(plan.variant.tiles)),
              variant("4c_scatter_splats.comp", sliced)});
-        const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
-        add(name, "5_draw_splats",
-            kRates.draw_entry * entries +
-                (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan),
-            {"group_rect.vert, 5a_clear_sheets.frag",
-             variant("5b_draw_splats.vert, 5b_draw_splats.frag", passes::draw_constants(plan.variant))});
-        add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
-            {variant("group_rect.vert, 6_composite_sheet.frag", {{shader::SPEC_PAYLOAD, plan.variant.payload}})});
+        if (plan.variant.tiles) {
+            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
+                {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});
+            add(name, "5_draw_tiles", drawing,
+                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_}))});
+        } else {
+            add(name, "5_draw_splats", drawing,
+                {"group_rect.vert, 5a_clear_sheets.frag",
+                 variant("5b_draw_splats.vert, 5b_draw_splats.frag", passes::draw_constants(plan.variant))});
+            add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
+                {variant("group_rect.vert, 6_composite_sheet.frag", {{shader::SPEC_PAYLOAD, plan.variant.payload}})});
+        }
         add(name, "7_resolve", kRates.resolve_pixel * pixels,
-            {variant("7_resolve.comp", {{shader::SPEC_PAYLOAD, plan.variant.payload},
-                                        {shader::SPEC_GRADIENT, plan.gradient ? 1U : 0U}})});
+            {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
     }
 
     std::vector<PassDescription> take() { return std::move(out_); }
 
   private:
     double milliseconds_per_;
+    bool software_;
     int again_ = 1;  ///< how often a pass runs
     std::vector<PassDescription> out_;
 };

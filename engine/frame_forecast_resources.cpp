@@ -4,6 +4,7 @@
 #include "engine/frame_forecast.h"
 #include "engine/frame_reach.h"
 #include "engine/frame_resources.h"
+#include "engine/frame_tiles.h"
 #include "engine/passes/2_collect_splats.h"
 #include "engine/renderer_state.h"
 #include "shaders/shared/occlusion_params.h"
@@ -72,10 +73,11 @@ std::uint64_t order_bytes(const FramePlan& plan) {
 /// What every renderer holds from the beginning.
 void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(on_host(buffer("frame parameters", sizeof(shader::FrameParams), "(1) FrameParams", "host", "3-7")));
-    out.push_back(on_host(buffer("drawn splats", sizeof(std::uint32_t), "(1) uint", "4", "host")));
+    out.push_back(on_host(buffer("drawn splats", 4 * sizeof(std::uint32_t), "(4) uint", "4, 5", "host")));
     out.push_back(on_host(buffer("quad indices", passes::quad_indices().size() * sizeof(std::uint32_t),
                                  "(quads x 6) uint", "host", "5")));
 
+    out.push_back(on_host(buffer("placeholder block", sizeof(shader::FrameParams), "zeros", "-", "-")));
     const auto add = [&](vk::Format format, bool volume, bool array, Usage usage) {
         out.push_back(image("placeholder",
                             {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage},
@@ -154,20 +156,14 @@ void add_reach(const FrameForecast& f, std::vector<PlannedResource>& out) {
     out.back().held = Held::Sweeping;
 }
 
-/// What pictures are drawn with: the one that is asked for, or a light's.
-void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held held, std::vector<PlannedResource>& all) {
-    std::vector<PlannedResource> out;
+/// Sheets as layers: images, and what their draws take.
+void add_layers(const std::vector<FramePlan>& f, std::vector<PlannedResource>& out) {
     const auto sheet_bytes = [](const FramePlan& p) { return texel_bytes(p.sheet_format) * p.params.sheets_per_group; };
     const FramePlan& sheets = largest(f, sheet_bytes);
     const FramePlan& depth = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheets_per_group}; });
     const FramePlan& accumulated = largest(f, [](const FramePlan& p) { return texel_bytes(p.accumulated_format); });
-    const FramePlan& order = largest(f, order_bytes);
-    const FramePlan& most_sheets = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheet_count}; });
     const FramePlan& groups = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.group_count}; });
     const glm::ivec3 size(sheets.params.size, 1);
-    const auto pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
-    constexpr std::uint64_t word = sizeof(std::uint32_t);
-
     out.push_back(image("sheet group",
                         {.format = sheets.sheet_format,
                          .size = size,
@@ -188,17 +184,51 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
                .size = size,
                .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
               "(y, x) colour and opacity so far", "6", "5, 7"));
-    out.push_back(growing(buffer("sheets of splats", splats * word, "(splats) uint", "3", "4, 5")));
-    out.push_back(growing(buffer("splat order", order_bytes(order), "(splats x sheets each) uint", "4", "5")));
-    out.push_back(
-        growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,
-                       "(sheets, blocks) uint", "4", "4, 5")));
     out.push_back(
         on_host(growing(buffer("sheet groups", groups.params.group_count * std::uint64_t{sizeof(shader::SheetGroup)},
                                "(groups) SheetGroup", "host, 3, 4", "5, 6"))));
     out.push_back(
         growing(buffer("draw commands", groups.params.group_count * std::uint64_t{sizeof(shader::DrawCommand)},
                        "(groups) DrawCommand", "4", "5")));
+}
+
+/// Sheets that are summed tile by tile: lists of what touches each tile.
+void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedResource>& out) {
+    constexpr std::uint64_t word = sizeof(std::uint32_t);
+    const std::uint64_t sheets = plan.params.sheet_count;
+    const auto tiles =
+        static_cast<std::uint64_t>(plan.params.tiles.x) * static_cast<std::uint64_t>(plan.params.tiles.y);
+    out.push_back(growing(buffer("tiles of splats", splats * 2 * word, "(splats) uvec2", "3", "4")));
+    out.push_back(on_host(growing(buffer("pairs of sheets", sheets * word, "(sheets) uint", "3", "host"))));
+    out.push_back(on_host(growing(buffer("sheet starts", (sheets + 1) * word, "(sheets + 1) uint", "4", "4, host"))));
+    out.push_back(on_host(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
+    out.push_back(
+        growing(buffer("tile counters", tiles * plan.params.tile_blocks * word, "(tiles, blocks) uint", "4", "4")));
+    out.push_back(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5")));
+    out.push_back(growing(
+        buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word, "(pairs at once) splat, sheet", "4", "5")));
+    out.push_back(growing(buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4")));
+    const glm::u64vec2 size(plan.params.size);
+    out.push_back(growing(buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5")));
+}
+
+/// What pictures are drawn with: the one that is asked for, or a light's.
+void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held held, std::vector<PlannedResource>& all) {
+    std::vector<PlannedResource> out;
+    const FramePlan& order = largest(f, order_bytes);
+    const FramePlan& most_sheets = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheet_count}; });
+    const glm::ivec2 size = f.front().params.size;
+    const auto pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+    constexpr std::uint64_t word = sizeof(std::uint32_t);
+    if (f.front().variant.tiles)
+        add_tiles(most_sheets, splats, out);
+    else
+        add_layers(f, out);
+    out.push_back(growing(buffer("sheets of splats", splats * word, "(splats) uint", "3", "4, 5")));
+    out.push_back(growing(buffer("splat order", order_bytes(order), "(splats x sheets each) uint", "4", "5")));
+    out.push_back(
+        growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,
+                       "(sheets, blocks) uint", "4", "4, 5")));
     out.push_back(on_host(growing(buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host"))));
     for (PlannedResource& resource : out) {
         resource.held = held;

@@ -201,6 +201,12 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
         offer("--sheet-format half", changed);
     }
     const FrameRequest half = changed;
+    const std::string halved = half.settings == request.settings ? "" : "--sheet-format half";
+    changed = request;
+    if (request.settings.sheet_format != SheetFormat::Tiles) {
+        changed.settings.sheet_format = SheetFormat::Tiles;
+        offer("--sheet-format tiles", changed);
+    }
     changed = request;
     if (request.settings.sheets == SheetCut::Sliced) {
         changed.settings.sheets = SheetCut::Whole;
@@ -233,11 +239,13 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
         }
     };
     offer_crop("", request);
-    if (changes.empty()) offer_size("--sheet-format half and ", half);
+    if (changes.empty() && !halved.empty()) offer_size(halved + " and ", half);
     if (changes.empty()) {
         changed = half;
         changed.size = glm::max(request.size / 4, glm::ivec2(1));
-        offer_crop(fmt::format("--sheet-format half, --size {}x{} and ", changed.size.x, changed.size.y), changed);
+        offer_crop(
+            fmt::format("{}{}--size {}x{} and ", halved, halved.empty() ? "" : ", ", changed.size.x, changed.size.y),
+            changed);
     }
     return changes;
 }

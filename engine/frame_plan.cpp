@@ -24,7 +24,8 @@ constexpr int kMaxBuryDistance = 10;
 // to 8.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
 constexpr std::uint32_t kMaxSheetsPerGroup = 8;
-constexpr double kMaxSheets = 65536;
+// Each invocation of 4b_scan_sheets goes through four counters a sheet.
+constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
 constexpr double kFewNodesSpacing = 0.3;
 constexpr double kFarthestPointLight = 1e12;  // mm
@@ -172,6 +173,12 @@ passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, c
     return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
 }
 
+std::uint32_t tile_blocks(const glm::ivec2& tiles) {
+    // All of the histogram is scanned for each chunk, by 256 invocations, twice.
+    const auto most = 128.0 * shader::MOST_ITERATIONS / (static_cast<double>(tiles.x) * tiles.y);
+    return static_cast<std::uint32_t>(std::clamp(most, 1.0, 64.0));
+}
+
 std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
 }
@@ -278,6 +285,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
                                                                                   : 10U};
+    plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.variant.transfer = !scene.transfer.empty();
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR
@@ -351,6 +359,12 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
         std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));
     p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
     p.dims = geometry.dims;
+    p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
+    p.tile_blocks = tile_blocks(p.tiles);
+    // A splat of a sliced view goes round once more for each sheet.
+    p.sort_segment = std::max(shader::MOST_ITERATIONS / 2 / (plan.sheets_per_splat + 2), 1U);
+    const std::uint32_t per_block = (p.splat_count + shader::SORT_BLOCKS - 1) / shader::SORT_BLOCKS;
+    plan.sort_segments = std::max((per_block + p.sort_segment - 1) / p.sort_segment, 1U);
     p.splat_count = static_cast<std::uint32_t>(splat_count);
     p.size = size;
     // Optical depth is wanted whole, and what accumulates then is no opacity.

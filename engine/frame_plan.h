@@ -51,6 +51,7 @@ struct FramePlan {
     vk::Format accumulated_format{};
     bool gradient = false;               ///< colour over a background of two colours
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
+    std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
     shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
 };
 
@@ -59,6 +60,9 @@ struct FramePlan {
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
+
+/// Columns of the tiles' histogram that can be scanned: 1 to 64.
+std::uint32_t tile_blocks(const glm::ivec2& tiles);
 
 /// Spheres that hold the kernels of some settings.
 struct SupportSpheres {

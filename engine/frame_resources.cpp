@@ -36,7 +36,7 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
     no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
-    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder");
+    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder block");
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 

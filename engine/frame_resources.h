@@ -40,7 +40,8 @@ struct FootprintResources {
     double farthest_reach = 0;  ///< of any kernel, voxels
 };
 
-/// What stands until the picture's size, the number of sheets or of splats changes.
+/// What stands until the picture's size, the number of sheets or of splats changes. A picture whose sheets are layers
+/// has the first three, `groups` and `draws`, one that is summed tile by tile what is of tiles.
 struct TargetResources {
     gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f or rgba16f; 5 -> 6
     gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
@@ -50,9 +51,18 @@ struct TargetResources {
     gpu::Buffer counters;       ///< (sheet_count, SORT_BLOCKS) uint; 4
     gpu::Buffer groups;         ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
     gpu::Buffer draws;          ///< (group_count) DrawCommand; 4 -> 5
-    gpu::Buffer drawn;          ///< (1) uint, mapped: splats drawn; 4 -> host
+    gpu::Buffer drawn;          ///< (4) uint, mapped: FrameParams::drawn; 4, 5 -> host
     gpu::Buffer frame;          ///< FrameParams, mapped; host -> 3..7
     gpu::Buffer indices;        ///< quad_indices(); host -> 5
+    gpu::Buffer tile_rects;     ///< (splat_count) uvec2: tiles each splat touches; 3 -> 4
+    gpu::Buffer sheet_pairs;    ///< (sheet_count) uint, mapped: pairs of splats and tiles; 3 -> host
+    gpu::Buffer sheet_starts;   ///< (sheet_count + 1) uint, mapped: into `order`; 4 -> 4, host
+    gpu::Buffer chunks;         ///< (sheet_count) uvec2, mapped: parts of `order`; host -> 4
+    gpu::Buffer tile_counters;  ///< (tiles, tile_blocks) uint; 4
+    gpu::Buffer tile_ranges;    ///< (tiles) uvec2: parts of tile_entries; 4 -> 5
+    gpu::Buffer tile_entries;   ///< (pairs of the largest chunk) uvec2: splat, sheet; 4 -> 5
+    gpu::Buffer tile_closed;    ///< (tiles) uint: pixels that take no more; 5 -> 4
+    gpu::Buffer tile_sheets;    ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
     gpu::Buffer output;         ///< (height, width) vec4, mapped; 7 -> host
 };
 

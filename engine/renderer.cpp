@@ -22,18 +22,6 @@ double milliseconds_since(Clock::time_point start) {
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
-/// Makes `buffer` at least `bytes` long; what it held is lost if it grows.
-void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
-    if (buffer && buffer.bytes() >= bytes) return;
-    buffer = {};
-    buffer = gpu::Buffer(device, bytes, place, name);
-}
-
-bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
-    return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) &&
-           image.shape().layers >= layers;
-}
-
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
 Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {
     Image image(size.x, size.y, count);
@@ -47,16 +35,6 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
 }
 
 }  // namespace
-
-void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
-    for (const PassTime& time : times) {
-        const auto same = std::ranges::find(sums, time.name, &PassTime::name);
-        if (same == sums.end())
-            sums.push_back(time);
-        else
-            same->milliseconds += time.milliseconds;
-    }
-}
 
 FootprintTableSize table_size_of(TableSize size) {
     switch (size) {
@@ -76,7 +54,7 @@ bool uses_table(const Settings& settings) {
 
 RendererState::RendererState(const DeviceChoice& choice) : device(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
-    targets.drawn = gpu::Buffer(device, sizeof(std::uint32_t), Place::Host, "drawn splats");
+    targets.drawn = gpu::Buffer(device, 4 * sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
     targets.indices = gpu::Buffer(device, indices.size() * sizeof(indices[0]), Place::Host, "quad indices");
     std::copy(indices.begin(), indices.end(), targets.indices.mapped<std::uint32_t>(indices.size()).begin());
@@ -183,71 +161,6 @@ void RendererState::provide_footprints(const Settings& settings) {
     footprint_resources.params.paper_rise = static_cast<float>(paper.rise);
 }
 
-void RendererState::provide_targets(FramePlan& plan_in_use) {
-    auto& p = plan_in_use.params;
-    const auto layers = static_cast<int>(p.sheets_per_group);
-    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
-        !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
-        !has_shape(targets.accumulated, plan_in_use.accumulated_format, p.size, 1)) {
-        targets.sheets = {};
-        targets.depth = {};
-        targets.accumulated = {};
-        const glm::ivec3 size(p.size, 1);
-        targets.sheets = gpu::GpuImage(device,
-                                       {.format = plan_in_use.sheet_format,
-                                        .size = size,
-                                        .layers = layers,
-                                        .array = true,
-                                        .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc},
-                                       "sheet group");
-        targets.depth = gpu::GpuImage(device,
-                                      {.format = vk::Format::eD16Unorm,
-                                       .size = size,
-                                       .layers = layers,
-                                       .array = true,
-                                       .usage = Usage::eDepthStencilAttachment},
-                                      "sheet depth");
-        targets.accumulated = gpu::GpuImage(
-            device,
-            {.format = plan_in_use.accumulated_format,
-             .size = size,
-             .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
-            "accumulated picture");
-        commands.run([&] { commands.prepare({&targets.sheets, &targets.depth, &targets.accumulated}); });
-    }
-    const auto words = sizeof(std::uint32_t);
-    grow(device, targets.sheet_of, p.splat_count * words, Place::Device, "sheets of splats");
-    grow(device, targets.order, std::size_t{p.splat_count} * plan_in_use.sheets_per_splat * words, Place::Device,
-         "splat order");
-    grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * words, Place::Device,
-         "sort counters");
-    grow(device, targets.groups, p.group_count * sizeof(shader::SheetGroup), Place::Host, "sheet groups");
-    grow(device, targets.draws, p.group_count * sizeof(shader::DrawCommand), Place::Device, "draw commands");
-    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
-
-    p.splats = volume_resources.splats.address();
-    p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
-    p.splat_occlusion = volume_resources.occlusion ? volume_resources.occlusion.address() : 0;
-    p.splat_shadows = volume_resources.shadows ? volume_resources.shadows.address() : 0;
-    p.transfer = volume_resources.transfer ? volume_resources.transfer.address() : 0;
-    p.values = volume_resources.values ? volume_resources.values.address() : 0;
-    p.sheets = targets.sheet_of.address();
-    p.order = targets.order.address();
-    p.counters = targets.counters.address();
-    p.groups = targets.groups.address();
-    p.draws = targets.draws.address();
-    p.drawn = targets.drawn.address();
-    p.output_pixels = targets.output.address();
-    p.footprint = footprint_resources.params;
-    std::ranges::copy(footprint_resources.supports, p.support_table);
-    p.wall_support = footprint_resources.wall_support;
-    targets.frame.mapped<shader::FrameParams>(1)[0] = p;
-    const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
-    std::ranges::fill(targets.groups.mapped<shader::SheetGroup>(p.group_count), empty);
-    bindings.write(volume_resources, footprint_resources, targets);
-}
-
 void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
                          std::uint32_t payload, const glm::dvec2& offset) {
     plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
@@ -255,7 +168,16 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
                       draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
     if (offset != glm::dvec2(0)) shift_rays(plan, offset);
     provide_targets(plan);
-    run_frame(commands, plan, targets);
+    if (!plan.variant.tiles) {
+        run_frame(commands, plan, targets);
+        draw_times = commands.span_times();
+        return;
+    }
+    const Chunks chunks = sort_frame(commands, plan, targets);
+    draw_times = commands.span_times();
+    provide_chunks(chunks);
+    add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
+                                     {.rounds = device.is_software(), .count = counting}));
 }
 
 Renderer::Renderer(const DeviceChoice& choice) {
@@ -326,7 +248,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         SampleMean mean(size);
         for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
             self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
-            add_times(times, self.commands.span_times());
+            add_times(times, self.draw_times);
             self.add_counts(result.stats);
             if (scene.effects.samples > 1) mean.add(pixels());
         }
@@ -339,7 +261,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
 
         const auto draw_output = [&](const char* name, std::uint32_t payload) {
             self.draw(scene, camera, settings, size, payload);
-            for (const PassTime& pass : self.commands.span_times())
+            for (const PassTime& pass : self.draw_times)
                 result.stats.passes.push_back({std::string(name) + ": " + pass.name, pass.milliseconds});
         };
         if (aovs.tau) {

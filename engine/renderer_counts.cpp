@@ -4,6 +4,19 @@
 #include "engine/renderer_state.h"
 
 namespace edgesplat {
+namespace {
+
+/// Of the picture's pixels, those in tiles that a sheet's splats touch; on average over the sheets. Tiles that several
+/// splats of a sheet touch count for each, up to all of the picture.
+double dirty_share_of_tiles(const shader::FrameParams& p, const TargetResources& targets) {
+    const double tiles = static_cast<double>(p.tiles.x) * p.tiles.y;
+    double sum = 0;
+    for (const std::uint32_t pairs : targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count))
+        sum += std::min(pairs / tiles, 1.0);
+    return sum / p.sheet_count;
+}
+
+}  // namespace
 
 void Renderer::count_fragments(bool on) {
     state_->counting = on;
@@ -12,6 +25,14 @@ void Renderer::count_fragments(bool on) {
 
 void RendererState::add_counts(RenderStats& stats) const {
     if (!counting) return;
+    if (plan.variant.tiles) {
+        stats.dirty_share = dirty_share_of_tiles(plan.params, targets);
+        const auto counts = targets.drawn.mapped<std::uint32_t>(4);
+        DrawCounts& sum = stats.draw_counts ? *stats.draw_counts : stats.draw_counts.emplace();
+        sum.fragments += counts[2];
+        sum.shaded += counts[3];
+        return;
+    }
     if (const auto counts = commands.draw_counts()) {
         DrawCounts& sum = stats.draw_counts ? *stats.draw_counts : stats.draw_counts.emplace();
         sum.vertices += counts->vertices;

@@ -7,6 +7,7 @@
 #include "engine/frame_memory.h"
 #include "engine/frame_raycast.h"
 #include "engine/frame_reach.h"
+#include "engine/frame_tiles.h"
 #include "footprints/footprint_cache.h"
 #include "footprints/footprint_table.h"
 
@@ -41,6 +42,10 @@ struct RendererState {
     void provide_footprints(const Settings& settings);
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
+    void provide_layers(FramePlan& plan);
+    void provide_tiles(shader::FrameParams& p);
+    /// Room for the pairs of the largest chunk; brings the chunks to the device.
+    void provide_chunks(const Chunks& chunks);
     /// Passes 3 to 7 with one payload; the picture is left in targets.output. `offset`: of its rays from the pixels'
     /// centres, in pixels.
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
@@ -69,13 +74,11 @@ struct RendererState {
     std::optional<EdgeBand> band_in_use;  ///< what the support spheres were made for
     FramePlan plan;                       ///< of the last draw
     std::vector<PassTime> collection_times;
+    std::vector<PassTime> draw_times;                                ///< of the last draw
     bool counting = false;                                           ///< see Renderer::count_fragments
     std::uint64_t memory_budget = 0;                                 ///< bytes; 0: what the device has
     std::vector<std::pair<std::string, std::uint64_t>> checked_fit;  ///< resources that were last found to fit
 };
-
-/// Adds times to those of the same name.
-void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times);
 
 /// Whether footprints are looked up, and how large the table is.
 bool uses_table(const Settings& settings);

@@ -1,4 +1,4 @@
-// For every splat record: is it in the picture, in which sheet, and which pixels does its sheet group touch.
+// For every splat record: is it in the picture, in which sheet, and which tiles does it touch, or which pixels its sheet group.
 // docs/method.md, pass 3.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -11,6 +11,7 @@ layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/lib/splat_projection.glsl"
 #define CLIP_PARAMS params.frame
@@ -23,6 +24,19 @@ void grow(GroupsRef groups, uint g, ivec4 box) {
     if (box.y < now.y) atomicMin(groups.at[g].rect.y, box.y);
     if (box.z > now.z) atomicMax(groups.at[g].rect.z, box.z);
     if (box.w > now.w) atomicMax(groups.at[g].rect.w, box.w);
+}
+
+// Where splat i lies on the screen, for those who draw it with sheets `first` to `last`.
+void note(uint i, uint first, uint last, ivec4 box) {
+    if (TILES == 1u) {
+        uvec4 tiles = uvec4(uvec2(box.xy) / TILE, (uvec2(box.zw) + TILE - 1u) / TILE);
+        PairsRef(params.frame.tile_rects).at[i] = uvec2(tiles.x | tiles.y << 16, tiles.z | tiles.w << 16);
+        uint pairs = (tiles.z - tiles.x) * (tiles.w - tiles.y);
+        for (uint s = first; s <= last; ++s) atomicAdd(UintsRef(params.frame.sheet_pairs).at[s], pairs);
+    } else {
+        for (uint g = first / params.frame.sheets_per_group; g <= last / params.frame.sheets_per_group; ++g)
+            grow(GroupsRef(params.frame.groups), g, box);
+    }
 }
 
 void main() {
@@ -42,13 +56,11 @@ void main() {
         int first = clamp(int(floor((middle - reach) / params.frame.sheet_thickness)), 0, most);
         int last = clamp(int(floor((middle + reach) / params.frame.sheet_thickness)), first, most);
         UintsRef(params.frame.sheets).at[i] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
-        int per_group = int(params.frame.sheets_per_group);
-        int groups = drawn ? last / per_group : first / per_group - 1;
-        for (int g = first / per_group; g <= groups; ++g) grow(GroupsRef(params.frame.groups), uint(g), box);
+        if (drawn) note(i, uint(first), uint(last), box);
     } else {
         int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
         UintsRef(params.frame.sheets).at[i] = drawn ? uint(sheet) : SHEET_NONE;
-        if (drawn) grow(GroupsRef(params.frame.groups), uint(sheet) / params.frame.sheets_per_group, box);
+        if (drawn) note(i, uint(sheet), uint(sheet), box);
     }
 }

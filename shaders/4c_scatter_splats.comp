@@ -7,11 +7,13 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint segment; };  // of each block: one after another
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
     uint per_block = (params.frame.splat_count + SORT_BLOCKS - 1u) / SORT_BLOCKS;
-    uint first = block * per_block, last = min(first + per_block, params.frame.splat_count);
+    uint end = min((block + 1u) * per_block, params.frame.splat_count);
+    uint first = block * per_block + segment * params.frame.sort_segment, last = min(first + params.frame.sort_segment, end);
     UintsRef sheets = UintsRef(params.frame.sheets), counters = UintsRef(params.frame.counters);
     UintsRef order = UintsRef(params.frame.order);
     for (uint i = first; i < last; ++i) {

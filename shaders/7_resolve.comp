@@ -8,13 +8,17 @@
 layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
+layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
     if (any(greaterThanEqual(pixel, size))) return;
-    vec4 sum = texelFetch(accumulated, pixel, 0);
+    PixelsRef picture = PixelsRef(params.frame.output_pixels);
+    vec4 sum = vec4(0.0);
+    if (TILES == 1u) sum = picture.at[pixel.y * size.x + pixel.x];
+    else sum = texelFetch(accumulated, pixel, 0);
     if (PAYLOAD == PAYLOAD_COLOR) {
         vec3 behind = params.frame.background;
         if (GRADIENT == 1u) {
@@ -28,5 +32,5 @@ void main() {
         float norm = length(sum.rgb);
         sum.rgb = norm > 0.0 ? sum.rgb / norm : vec3(0.0);
     }
-    PixelsRef(params.frame.output_pixels).at[pixel.y * size.x + pixel.x] = sum;
+    picture.at[pixel.y * size.x + pixel.x] = sum;
 }

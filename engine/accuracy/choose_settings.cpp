@@ -29,18 +29,18 @@ std::vector<Settings> candidates(const Settings& base, Tier tier) {
     };
     using F = FootprintMode;
     using S = SheetCut;
-    const std::vector<Row> cheap{{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Half},
-                                 {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Half},
-                                 {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Float},
-                                 {F::Procedural, S::Whole, 1, 0.98, SheetFormat::Float},
-                                 {F::Procedural, S::Whole, 0.5, 0.99, SheetFormat::Float},
-                                 {F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Float},
-                                 {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Float}};
-    const std::vector<Row> dear{{F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Float},
-                                {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Float},
-                                {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Float},
-                                {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Float},
-                                {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Float}};
+    const std::vector<Row> cheap{{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Tiles},
+                                 {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Tiles},
+                                 {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Tiles},
+                                 {F::Procedural, S::Whole, 1, 0.98, SheetFormat::Tiles},
+                                 {F::Procedural, S::Whole, 0.5, 0.99, SheetFormat::Tiles},
+                                 {F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Tiles},
+                                 {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Tiles}};
+    const std::vector<Row> dear{{F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Tiles},
+                                {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Tiles},
+                                {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Tiles},
+                                {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Tiles},
+                                {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Tiles}};
     std::vector<Settings> list;
     if (tier == Tier::Cheap) list.push_back(base);
     std::vector<std::string> known{settings_key(base)};

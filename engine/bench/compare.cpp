@@ -26,12 +26,14 @@ struct Metric {
     Kind kind;
 };
 
-constexpr std::array<Metric, 16> kMetrics{{{"frame", "/frame_ms", Kind::Sampled},
+constexpr std::array<Metric, 18> kMetrics{{{"frame", "/frame_ms", Kind::Sampled},
                                            {"ratio", "/ratio", Kind::Sampled},
                                            {"processor", "/processor_ms", Kind::Sampled},
                                            {"ray", "/raycast_ms", Kind::Sampled},
                                            {"select", "/passes_ms/3_select_footprints", Kind::Sampled},
                                            {"sort", "/passes_ms/4_sort_sheets", Kind::Sampled},
+                                           {"tiles", "/passes_ms/4_sort_tiles", Kind::Sampled},
+                                           {"draw tiles", "/passes_ms/5_draw_tiles", Kind::Sampled},
                                            {"draw", "/passes_ms/5_draw_splats", Kind::Sampled},
                                            {"composite", "/passes_ms/6_composite_sheet", Kind::Sampled},
                                            {"setup", "/setup_ms", Kind::Sampled},

@@ -7,7 +7,8 @@ gpu::Specialization select_constants(const DrawVariant& variant) {
             {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
-            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U}};
+            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
+            {shader::SPEC_TILES, variant.tiles ? 1U : 0U}};
 }
 
 void select_footprints(gpu::Commands& commands, std::uint64_t splat_count, const DrawVariant& variant) {

@@ -28,9 +28,10 @@ struct DrawVariant {
     bool fog = false;
     ClipCount clip{};        ///< kernels are cut at planes
     bool antialias = false;  ///< no footprint is narrower than a pixel
+    bool tiles = false;      ///< sheets are summed tile by tile, not in layers
 };
 
-/// Specialization of 5b_draw_splats.vert and .frag.
+/// Specialization of 5b_draw_splats.vert and .frag, and of 5_draw_tiles.comp.
 gpu::Specialization draw_constants(const DrawVariant& variant);
 
 struct DrawSplats {

@@ -1,12 +1,15 @@
 // Accumulated picture -> pixels for the host.
 #pragma once
 
-#include "engine/gpu/commands.h"
+#include "engine/passes/5_draw_splats.h"
 
 namespace edgesplat::passes {
 
-/// FrameParams at `frame`: writes `output_pixels`, (height, width) vec4, linear light. `gradient`: the background is of
-/// two colours.
-void resolve(gpu::Commands& commands, const glm::ivec2& size, std::uint32_t payload, bool gradient);
+/// Specialization of 7_resolve.comp.
+gpu::Specialization resolve_constants(const DrawVariant& variant, bool gradient);
+
+/// FrameParams: writes `output_pixels`, (height, width) vec4, linear light; sheets that were summed tile by tile are
+/// there already. `gradient`: the background is of two colours.
+void resolve(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size, bool gradient);
 
 }  // namespace edgesplat::passes

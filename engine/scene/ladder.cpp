@@ -155,16 +155,16 @@ std::vector<Knob> make_ladder() {
          .get = get_number<&Settings::sheet_spacing>,
          .assign = set_number<&Settings::sheet_spacing>});
     knobs.push_back({.name = "sheet-format",
-                     .help = "Precision of a sheet",
+                     .help = "Where sheets are summed: in layers of 16 or 32 bit, or tile by tile in registers",
                      .kind = KnobKind::Method,
                      .steps = all(sheet_format_names()),
                      .others = {},
                      .get = get_name<&Settings::sheet_format>,
                      .assign = [](Settings& s, const Knob&, View v) { s.sheet_format = sheet_format_named(v); }});
     knobs.push_back({.name = "accumulation",
-                     .help = "Precision of the picture that sheets are composited into",
+                     .help = "Precision of the picture that layers are composited into",
                      .kind = KnobKind::Method,
-                     .steps = all(sheet_format_names()),
+                     .steps = all(accumulation_names()),
                      .others = {},
                      .get = get_name<&Settings::accumulation>,
                      .assign = [](Settings& s, const Knob&, View v) { s.accumulation = sheet_format_named(v); }});
@@ -208,7 +208,6 @@ std::span<const Preset> presets() {
         Settings draft;
         draft.sheets = SheetCut::Sliced;
         draft.sheet_spacing = 0.5;
-        draft.sheet_format = SheetFormat::Half;
         draft.saturation = 0.98;
         Settings balanced;
         balanced.sheets = SheetCut::Sliced;

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 2> kEdgeShapes{"plane", "curved"};
 constexpr std::array<std::string_view, 3> kNormalisations{"off", "edge", "voxel"};
 constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
-constexpr std::array<std::string_view, 2> kSheetFormats{"half", "float"};
+constexpr std::array<std::string_view, 3> kSheetFormats{"half", "float", "tiles"};
 
 template <typename Enum>
 Enum named(std::string_view name, const char* what, std::span<const std::string_view> names) {
@@ -116,6 +116,9 @@ std::span<const std::string_view> sheet_cut_names() {
 std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;
 }
+std::span<const std::string_view> accumulation_names() {
+    return std::span(kSheetFormats).first(2);
+}
 
 bool draws_warped(const Settings& settings) {
     return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
@@ -161,6 +164,8 @@ Settings drawn_as(const Settings& settings, bool clipped) {
         s.footprints = FootprintMode::Procedural;
     }
     if (!asks_for_table(s)) s.table_size = usual.table_size;
+    // Registers hold floats.
+    if (s.sheet_format == SheetFormat::Tiles) s.accumulation = usual.accumulation;
     return s;
 }
 
@@ -179,6 +184,7 @@ void validate(const Settings& settings) {
     check("edge_strength", settings.edge_strength, in(settings.edge_strength, 1, 64), "[1, 64]");
     check("sheet_spacing", settings.sheet_spacing, in(settings.sheet_spacing, 0.05, 16), "[0.05, 16] voxels");
     check("saturation", full, full > 0 && full <= 1, "(0, 1]");
+    if (settings.accumulation == SheetFormat::Tiles) fail("accumulation: tiles, expected half or float");
 }
 
 }  // namespace edgesplat

@@ -17,7 +17,8 @@ enum class EdgeShape { Plane, Curved };  ///< what an edge is within a kernel's 
 enum class Normalisation { Off, Edge, Voxel };
 enum class TableSize { Coarse, Medium, Fine };
 enum class SheetCut { Whole, Sliced };  ///< a kernel lies in one sheet whole, or is cut at the sheets' planes
-enum class SheetFormat { Half, Float };
+/// Where sheets are summed: in layers of 16 or 32 bit a channel, or in registers, tile of pixels by tile.
+enum class SheetFormat { Half, Float, Tiles };
 
 struct Settings {
     EdgeEstimator edges = EdgeEstimator::March;
@@ -30,8 +31,8 @@ struct Settings {
     TableSize table_size = TableSize::Medium;  ///< footprints `table` and `table-lerp`
     SheetCut sheets = SheetCut::Whole;
     double sheet_spacing = 0.25;  ///< voxels along the view axis, [0.05, 16]
-    SheetFormat sheet_format = SheetFormat::Float;
-    SheetFormat accumulation = SheetFormat::Float;  ///< of the picture that the sheets are composited into
+    SheetFormat sheet_format = SheetFormat::Tiles;
+    SheetFormat accumulation = SheetFormat::Float;  ///< of the picture that layers are composited into; not Tiles
     double saturation = 0.999;  ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
     bool cull_buried = true;    ///< drop voxels that opaque ones hide from every side
     bool operator==(const Settings&) const = default;
@@ -62,6 +63,7 @@ std::span<const std::string_view> normalisation_names();
 std::span<const std::string_view> table_size_names();
 std::span<const std::string_view> sheet_cut_names();
 std::span<const std::string_view> sheet_format_names();
+std::span<const std::string_view> accumulation_names();
 
 /// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
 bool draws_warped(const Settings& settings);

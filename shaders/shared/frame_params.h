@@ -74,7 +74,7 @@ struct FrameParams {
     Address order;          // (drawn) uint: splat numbers sorted by sheet
     Address groups;         // (group_count) SheetGroup
     Address draws;          // (group_count) DrawCommand
-    Address drawn;          // (1) uint: splats drawn
+    Address drawn;          // (4) uint: splats drawn; entries of the longest list of a tile; footprints evaluated, and those of open pixels
     Address output_pixels;  // (size.y, size.x) vec4
     Address traits;         // (splat_count) uint: curvature and weight (edge_record.glsl); edges curved or kernels normalised
     Address splat_shadows;    // (splat_count) uint: unorm16 of what reaches the splat of either light with shadows
@@ -86,6 +86,19 @@ struct FrameParams {
     vec4 clip_remove[8];
     Address transfer;       // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
     Address values;         // (splat_count) float: what each splat is classified by, scaled; likewise
+    // Where sheets are summed tile by tile: tiles of TILE x TILE pixels, row by row, and chunks of sheets that are drawn at once.
+    Address tile_rects;     // (splat_count) uvec2: tiles that a splat touches: x0 | y0 << 16, x1 | y1 << 16, half open
+    Address sheet_pairs;    // (sheet_count) uint: pairs of a splat and a tile that it touches
+    Address sheet_starts;   // (sheet_count + 1) uint: where each sheet begins in `order`
+    Address chunks;         // (chunks) uvec2: the part of `order` that is drawn at once, half open
+    Address tile_counters;  // (tiles, tile_blocks) uint: counts, then offsets
+    Address tile_ranges;    // (tiles) uvec2: parts of tile_entries, half open
+    Address tile_entries;   // (pairs of the chunk) uvec2: splat number, sheet; by tile, sheet, number
+    Address tile_closed;    // (tiles) uint: pixels that take no more
+    Address tile_sheets;    // (size.y, size.x) vec4: sums of a sheet whose entries go on in the next round
+    ivec2 tiles;
+    uint tile_blocks;       // columns of the tiles' histogram
+    uint sort_segment;      // splats of a block that are sorted at once
 };
 
 EDGESPLAT_SHARED_END
@@ -96,13 +109,16 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1416);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1920);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 2008);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatsRef {
     float at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer PairsRef {
+    uvec2 at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer DrawsRef {
     DrawCommand at[];

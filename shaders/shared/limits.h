@@ -16,6 +16,12 @@ EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_coll
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
+// lavapipe ends every loop of an invocation once all of them together have gone round 65535 times, without a word. What follows
+// keeps them below.
+EDGESPLAT_CONSTANT uint MOST_ITERATIONS = 50000u;
+EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are drawn at once, each good for 128 at most
+EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram
+EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
 EDGESPLAT_CONSTANT uint EDGE_WEIGHT_STEPS = 12u;     // of a kernel's weight by its distance to the edge
@@ -50,6 +56,9 @@ EDGESPLAT_CONSTANT uint SPEC_RESPONSE = 21u;   // 1: materials answer to light e
 EDGESPLAT_CONSTANT uint SPEC_OCCLUSION = 22u;  // 1: ambient light is what reaches a splat
 EDGESPLAT_CONSTANT uint SPEC_SHADOWS = 23u;    // number of lights with shadows
 EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
+EDGESPLAT_CONSTANT uint SPEC_ROUNDS = 26u;     // 1: a tile's list is drawn TILE_ROUND entries at a time
+EDGESPLAT_CONSTANT uint SPEC_COUNT = 27u;      // 1: footprints are counted
+EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

@@ -186,6 +186,7 @@ std::vector<ImageCase> later_cases() {
     half_sheets.settings.sheet_format = SheetFormat::Half;
     cases.push_back({"torus, sheets in half precision", half_sheets, Output::Color, 60});
     Shot half = torus;
+    half.settings.sheet_format = SheetFormat::Float;
     half.settings.accumulation = SheetFormat::Half;
     // 11 bits of a value near 1 are off by 2.4e-4 a sheet, to either side.
     cases.push_back({"torus, accumulated in half precision", half, Output::Color, 65});

@@ -22,7 +22,7 @@ struct Drawn {
 };
 
 Drawn drawn(RendererState& state, const PassScene& s) {
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
     Drawn result;
     for (const std::uint32_t code :
          download<std::uint32_t>(state, state.targets.sheet_of, state.volume_resources.splat_count)) {

@@ -16,7 +16,7 @@ struct Drawn {
 };
 
 Drawn drawn(RendererState& state, const PassScene& s) {
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
     const auto n = state.volume_resources.splat_count;
     const std::size_t count = state.targets.drawn.mapped<std::uint32_t>(1)[0];
     const auto groups = state.targets.groups.mapped<shader::SheetGroup>(state.plan.params.group_count);

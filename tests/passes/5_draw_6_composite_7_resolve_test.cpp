@@ -183,7 +183,7 @@ TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
         s = in_one_group(s, FootprintMode::TableLerp, WarpFamily::Edge);
         SCOPED_TRACE(s.name);
         RendererState& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+        state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
         const auto sheets = download<glm::vec4>(state, state.targets.sheets);
         const auto got = download<glm::vec4>(state, state.targets.accumulated);
         const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
@@ -216,13 +216,13 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
             frame.emplace_back(pixel);
         return frame;
     };
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
     const Image color = reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
         ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], color.pixels[i], 1e-6F);
     EXPECT_FALSE(state.plan.gradient);
     s.scene.effects.background_top = glm::dvec3(0.9, 0, 0.25);
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
     EXPECT_TRUE(state.plan.gradient);
     const Image two =
         reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background, s.scene.effects.background_top);
@@ -238,28 +238,31 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
             ASSERT_EQ(glm::vec3(pixel), glm::vec3(plain)) << "row " << y;
         }
     EXPECT_GT(seen, kSize.x);
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_DEPTH_DISTANCE);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_DEPTH_DISTANCE);
     EXPECT_FALSE(state.plan.gradient);
     const Image depth = reference::resolve_mean(accumulated(), kSize.x, kSize.y);
     for (std::size_t i = 0; i < kPixels; ++i)
         ASSERT_NEAR(output()[i].x, depth.pixels[i], 1e-4F);
-    state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_NORMAL);
+    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_NORMAL);
     const Image normal = reference::resolve_normal(accumulated(), kSize.x, kSize.y);
     for (std::size_t i = 0; i < kPixels * 3; ++i)
         ASSERT_NEAR(output()[i / 3][static_cast<int>(i % 3)], normal.pixels[i], 1e-5F);
 }
 
 TEST(Frame, RepeatsBitForBit) {
-    for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
+    for (const auto& [sheets, format] :
+         {std::pair{SheetCut::Whole, SheetFormat::Float}, std::pair{SheetCut::Sliced, SheetFormat::Float},
+          std::pair{SheetCut::Whole, SheetFormat::Tiles}, std::pair{SheetCut::Sliced, SheetFormat::Tiles}}) {
         PassScene s = pass_scenes()[1];
         s.settings.sheets = sheets;
         s.settings.edge_shape = sheets == SheetCut::Sliced ? EdgeShape::Curved : EdgeShape::Plane;
         s.settings = drawn_as(s.settings);
         RendererState& state = prepared(s);
-        const auto render = [&] {
+        const auto render = [&, format = format] {
             state.collected.reset();
             state.collect(s.scene, s.settings, false);
-            state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
+            state.draw(s.scene, s.camera, format == SheetFormat::Tiles ? s.settings : layered(s.settings), kSize,
+                       shader::PAYLOAD_COLOR);
             const auto pixels = state.targets.output.mapped<glm::vec4>(kPixels);
             return std::vector<glm::vec4>(pixels.begin(), pixels.end());
         };

@@ -171,6 +171,12 @@ inline Reaches reaches_of(const PassScene& s, gpu::Buffer VolumeResources::*buff
     return out;
 }
 
+/// With sheets in layers, which can be looked at.
+inline Settings layered(Settings settings) {
+    settings.sheet_format = SheetFormat::Float;
+    return settings;
+}
+
 /// The sheets of a picture's last group: all of them where there is one group.
 struct DrawnSheets {
     std::vector<reference::SplatRecord> records;
@@ -179,7 +185,7 @@ struct DrawnSheets {
 };
 
 inline DrawnSheets drawn_sheets(RendererState& state, const PassScene& s, const glm::ivec2& size) {
-    state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), size, shader::PAYLOAD_COLOR);
     return {device_records(state), download<glm::vec4>(state, state.targets.sheets),
             state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect};
 }

@@ -49,7 +49,7 @@ Frame draw(const FrameRequest& request) {
         frame.passes.insert(pass.name);
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         state.draw(request.scene, request.camera, settings, request.size, payload);
-        for (const PassTime& pass : state.commands.span_times())
+        for (const PassTime& pass : state.draw_times)
             frame.passes.insert(pass.name);
     }
     frame.variants = state.pipelines.used();

@@ -135,7 +135,7 @@ TEST_F(MemoryBudget, WhatDoesNotFitIsRefusedBeforeAnythingIsAllocated) {
     EXPECT_EQ(held(), before);
     EXPECT_THAT(message, HasSubstr("1.00 MiB are available (the memory budget)"));
     EXPECT_THAT(message, HasSubstr("volume"));
-    EXPECT_THAT(message, HasSubstr("sheet group"));
+    EXPECT_THAT(message, HasSubstr("tile entries"));
     EXPECT_THAT(message, HasSubstr("--size"));
 
     // With what it says it needs, it does fit; with a byte less it does not.

@@ -56,7 +56,7 @@ TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
     const ProgramRun first = run("bench tiny.toml --repeat 1 -o one");
     ASSERT_EQ(first.status, 0) << first.err;
     EXPECT_THAT(first.out, HasSubstr("skipped gone/plain/512x512: gone.nrrd: no such file"));
-    EXPECT_THAT(first.out, HasSubstr("5_draw_splats"));
+    EXPECT_THAT(first.out, HasSubstr("5_draw_tiles"));
     EXPECT_THAT(first.out, HasSubstr("frame_ms_of_splats_drawn"));
     const ordered_json one = json("one");
     for (const char* key : {"schema", "program", "command", "suite", "device", "cores", "ratio_clock", "rounds",
@@ -74,7 +74,7 @@ TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
               "cold",         "splats",      "vertices",     "fragments", "shaded_fragments", "sheets",
               "sheet_groups", "dirty_share", "device_bytes", "memory",    "host_peak_bytes"})
             EXPECT_TRUE(entry.contains(key) && !entry[key].is_null()) << key;
-        for (const char* pass : {"3_select_footprints", "4_sort_sheets", "5_draw_splats", "6_composite_sheet"})
+        for (const char* pass : {"3_select_footprints", "4_sort_sheets", "4_sort_tiles", "5_draw_tiles"})
             EXPECT_TRUE(entry["passes_ms"].contains(pass)) << pass;
         EXPECT_TRUE(entry["setup_passes_ms"].contains("2_collect_splats"));
         EXPECT_GT(entry["ratio"]["median"], 0);

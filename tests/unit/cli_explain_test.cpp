@@ -16,7 +16,7 @@ class CliExplain : public CliTest {};
 TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
     const ProgramRun plan = run("render builtin:sphere:24 --size 40x30 --explain");
     ASSERT_EQ(plan.status, 0) << plan.err;
-    for (const char* text : {"5_draw_splats", "edge field", "light: lights[0] is a headlight", "at most at once",
+    for (const char* text : {"5_draw_tiles", "edge field", "light: lights[0] is a headlight", "at most at once",
                              "splat record, 12 bytes", "left out", "curved edges", "--edge-shape curved"})
         EXPECT_THAT(plan.out, HasSubstr(text));
     EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));
@@ -47,15 +47,15 @@ TEST_F(CliExplain, NeitherOutputNorExplainIsAnError) {
 }
 
 TEST_F(CliExplain, APictureBeyondTheBudgetIsRefusedWithWhatWouldFit) {
-    const ProgramRun refused = run("render builtin:sphere:24 --size 400x300 --memory-budget 6 -o a.png --json a.json");
+    const ProgramRun refused = run("render builtin:sphere:24 --size 400x300 --memory-budget 4 -o a.png --json a.json");
     EXPECT_EQ(refused.status, 1);
-    EXPECT_THAT(refused.err, HasSubstr("6.00 MiB are available (the memory budget)"));
-    EXPECT_THAT(refused.err, HasSubstr("sheet group"));
+    EXPECT_THAT(refused.err, HasSubstr("4.00 MiB are available (the memory budget)"));
+    EXPECT_THAT(refused.err, HasSubstr("tile entries"));
     EXPECT_TRUE(std::filesystem::is_empty(folder_));
     const auto at = refused.err.find("--size ");
     ASSERT_NE(at, std::string::npos) << refused.err;
     const std::string offer = refused.err.substr(at, refused.err.find('\n', at) - at);
-    const ProgramRun fits = run("render builtin:sphere:24 --memory-budget 6 -o a.png -q " + offer);
+    const ProgramRun fits = run("render builtin:sphere:24 --memory-budget 4 -o a.png -q " + offer);
     EXPECT_EQ(fits.status, 0) << offer << ": " << fits.err;
 }
 

@@ -72,7 +72,7 @@ TEST(Ladder, EnumsHaveAllTheirNames) {
     expect_names("table-size", table_size_names());
     expect_names("sheets", sheet_cut_names());
     expect_names("sheet-format", sheet_format_names());
-    expect_names("accumulation", sheet_format_names());
+    expect_names("accumulation", accumulation_names());
 }
 
 TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
@@ -241,8 +241,10 @@ TEST(DrawnAs, KnobsWithoutASayAreDropped) {
     settings.edge_shape = EdgeShape::Curved;
     settings.normalisation = Normalisation::Voxel;
     settings.sheet_spacing = 2;
+    settings.sheet_format = SheetFormat::Float;
     settings.accumulation = SheetFormat::Half;
     Settings plain;
+    plain.sheet_format = SheetFormat::Float;
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
     plain.sheet_spacing = 2;

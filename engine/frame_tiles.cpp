@@ -1,0 +1,101 @@
+#include "engine/frame_tiles.h"
+
+#include <algorithm>
+
+#include "engine/frame.h"
+#include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/4_sort_tiles.h"
+#include "engine/passes/7_resolve.h"
+
+namespace edgesplat {
+
+std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
+    const auto count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    const std::uint64_t most = std::uint64_t{tile_blocks(tiles)} * shader::BLOCK_PAIRS;
+    return std::min(most, std::max(256 * count, std::uint64_t{1} << 14U));
+}
+
+Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit) {
+    Chunks chunks;
+    std::uint64_t sum = 0;
+    std::uint32_t begin = 0;
+    const auto close = [&](std::uint32_t end) {
+        if (end > begin) chunks.parts.emplace_back(begin, end);
+        chunks.most_pairs = std::max(chunks.most_pairs, sum);
+        begin = end;
+        sum = 0;
+    };
+    for (std::size_t sheet = 0; sheet < pairs.size(); ++sheet) {
+        if (sum > 0 && sum + pairs[sheet] > limit) close(starts[sheet]);
+        sum += pairs[sheet];
+    }
+    close(starts.back());
+    return chunks;
+}
+
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+    const auto& p = plan.params;
+    commands.run([&] {
+        for (const gpu::Buffer* zeroed :
+             {&targets.counters, &targets.sheet_pairs, &targets.tile_closed, &targets.output})
+            commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
+        commands.barrier();
+        commands.begin_span("3_select_footprints");
+        passes::select_footprints(commands, p.splat_count, plan.variant);
+        commands.end_span();
+        commands.begin_span("4_sort_sheets");
+        passes::sort_sheets(commands, plan.variant.sliced, true, plan.sort_segments);
+        commands.end_span();
+    });
+    return plan_chunks(targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count),
+                       targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1),
+                       chunk_pairs(p.tiles));
+}
+
+std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                 std::uint32_t chunks, passes::TileDraw how) {
+    const auto timed = [&](const char* name, const auto& pass) {
+        commands.begin_span(name);
+        pass();
+        commands.end_span();
+    };
+    const auto sort = [&](std::uint32_t chunk) {
+        timed("4_sort_tiles",
+              [&] { passes::sort_tiles(commands, targets.tile_counters, plan.params.tile_blocks, chunk); });
+    };
+    const auto draw = [&](std::uint32_t round) {
+        timed("5_draw_tiles", [&] { passes::draw_tiles(commands, plan.variant, plan.params.tiles, how, round); });
+    };
+    const auto resolve = [&] {
+        timed("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+    };
+    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(4).last(2), 0U);
+    if (!how.rounds) {
+        commands.run([&] {
+            for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
+                sort(chunk);
+                draw(0);
+            }
+            resolve();
+        });
+        return commands.span_times();
+    }
+    std::vector<PassTime> times;
+    std::uint32_t longest = 0;
+    for (std::uint32_t chunk = 0; chunk <= chunks; ++chunk) {
+        commands.run([&] {
+            for (std::uint32_t round = 0; round * shader::TILE_ROUND < longest; ++round)
+                draw(round);
+            if (chunk < chunks)
+                sort(chunk);
+            else
+                resolve();
+        });
+        longest = targets.drawn.mapped<std::uint32_t>(2)[1];
+        add_times(times, commands.span_times());
+    }
+    return times;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,35 @@
+// The frame whose sheets are summed tile by tile: selection and sort, then chunks of sheets one after another.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "engine/frame_plan.h"
+#include "engine/frame_resources.h"
+#include "engine/passes/5_draw_tiles.h"
+
+namespace edgesplat {
+
+/// Pairs of a splat and a tile that a chunk of sheets may have. Small chunks close tiles early for those behind; each
+/// costs four dispatches.
+std::uint64_t chunk_pairs(const glm::ivec2& tiles);
+
+/// Consecutive sheets that are drawn at once.
+struct Chunks {
+    std::vector<glm::uvec2> parts;  ///< of the sorted order, half open; empty ones are left out
+    std::uint64_t most_pairs = 0;   ///< of any chunk
+};
+
+/// `pairs` per sheet; `starts`: where each sheet begins in the order, and where the last one ends. A sheet is never
+/// divided: one with more than `limit` pairs is a chunk of its own.
+Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit);
+
+/// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn. Milliseconds are left in `commands`.
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
+
+/// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
+/// With rounds, each chunk is waited for.
+std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                 std::uint32_t chunks, passes::TileDraw how);
+
+}  // namespace edgesplat

@@ -1,0 +1,14 @@
+// Sorted splats -> lists by tile: the splats of a chunk of sheets that touch each tile, sheet by sheet. A stable
+// counting sort.
+#pragma once
+
+#include "engine/gpu/buffer.h"
+#include "engine/gpu/commands.h"
+
+namespace edgesplat::passes {
+
+/// FrameParams: reads part `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`,
+/// which are `counters`; writes `tile_ranges` and `tile_entries`. Tiles that are closed get nothing.
+void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint32_t blocks, std::uint32_t chunk);
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,23 @@
+// Lists by tile -> picture: passes 5 and 6 in one, each pixel's sums in registers.
+#pragma once
+
+#include "engine/passes/5_draw_splats.h"
+
+namespace edgesplat::passes {
+
+/// What of drawing is no matter of the picture.
+struct TileDraw {
+    bool rounds = true;  ///< only entries [round * TILE_ROUND, (round + 1) * TILE_ROUND) of each list
+    bool count = false;  ///< FrameParams::drawn counts footprints
+};
+
+/// FrameParams: reads `tile_ranges`, `tile_entries` and the splats, puts the chunk's sheets behind what `output_pixels`
+/// holds (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum), and counts closed pixels in `tile_closed`.
+/// `tile_sheets` holds what a round leaves unfinished.
+void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& tiles, TileDraw how,
+                std::uint32_t round);
+
+/// Specialization of 5_draw_tiles.comp.
+gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how);
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,153 @@
+// RendererState: what a picture is drawn into.
+#include <algorithm>
+
+#include "engine/error.h"
+#include "engine/renderer_state.h"
+
+namespace edgesplat {
+namespace {
+
+using Place = gpu::Buffer::Place;
+using Usage = vk::ImageUsageFlagBits;
+
+constexpr std::size_t kWord = sizeof(std::uint32_t);
+
+/// Makes `buffer` at least `bytes` long; what it held is lost if it grows.
+void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
+    if (buffer && buffer.bytes() >= bytes) return;
+    buffer = {};
+    buffer = gpu::Buffer(device, bytes, place, name);
+}
+
+bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
+    return image && image.shape().format == format && image.shape().size == glm::ivec3(size, 1) &&
+           image.shape().layers >= layers;
+}
+
+}  // namespace
+
+void RendererState::provide_targets(FramePlan& plan_in_use) {
+    auto& p = plan_in_use.params;
+    grow(device, targets.sheet_of, p.splat_count * kWord, Place::Device, "sheets of splats");
+    grow(device, targets.order, std::size_t{p.splat_count} * plan_in_use.sheets_per_splat * kWord, Place::Device,
+         "splat order");
+    grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * kWord, Place::Device,
+         "sort counters");
+    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
+    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
+
+    p.splats = volume_resources.splats.address();
+    p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
+    p.splat_occlusion = volume_resources.occlusion ? volume_resources.occlusion.address() : 0;
+    p.splat_shadows = volume_resources.shadows ? volume_resources.shadows.address() : 0;
+    p.transfer = volume_resources.transfer ? volume_resources.transfer.address() : 0;
+    p.values = volume_resources.values ? volume_resources.values.address() : 0;
+    p.sheets = targets.sheet_of.address();
+    p.order = targets.order.address();
+    p.counters = targets.counters.address();
+    p.drawn = targets.drawn.address();
+    p.output_pixels = targets.output.address();
+    if (plan_in_use.variant.tiles)
+        provide_tiles(p);
+    else
+        provide_layers(plan_in_use);
+    p.footprint = footprint_resources.params;
+    std::ranges::copy(footprint_resources.supports, p.support_table);
+    p.wall_support = footprint_resources.wall_support;
+    targets.frame.mapped<shader::FrameParams>(1)[0] = p;
+    bindings.write(volume_resources, footprint_resources, targets);
+}
+
+void RendererState::provide_layers(FramePlan& plan_in_use) {
+    auto& p = plan_in_use.params;
+    const auto layers = static_cast<int>(p.sheets_per_group);
+    for (gpu::Buffer* unused :
+         {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
+          &targets.tile_ranges, &targets.tile_entries, &targets.tile_closed, &targets.tile_sheets})
+        *unused = {};
+    if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
+        !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
+        !has_shape(targets.accumulated, plan_in_use.accumulated_format, p.size, 1)) {
+        targets.sheets = {};
+        targets.depth = {};
+        targets.accumulated = {};
+        const glm::ivec3 size(p.size, 1);
+        targets.sheets = gpu::GpuImage(device,
+                                       {.format = plan_in_use.sheet_format,
+                                        .size = size,
+                                        .layers = layers,
+                                        .array = true,
+                                        .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc},
+                                       "sheet group");
+        targets.depth = gpu::GpuImage(device,
+                                      {.format = vk::Format::eD16Unorm,
+                                       .size = size,
+                                       .layers = layers,
+                                       .array = true,
+                                       .usage = Usage::eDepthStencilAttachment},
+                                      "sheet depth");
+        targets.accumulated = gpu::GpuImage(
+            device,
+            {.format = plan_in_use.accumulated_format,
+             .size = size,
+             .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
+            "accumulated picture");
+        commands.run([&] { commands.prepare({&targets.sheets, &targets.depth, &targets.accumulated}); });
+    }
+    grow(device, targets.groups, p.group_count * sizeof(shader::SheetGroup), Place::Host, "sheet groups");
+    grow(device, targets.draws, p.group_count * sizeof(shader::DrawCommand), Place::Device, "draw commands");
+    p.groups = targets.groups.address();
+    p.draws = targets.draws.address();
+    const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
+    std::ranges::fill(targets.groups.mapped<shader::SheetGroup>(p.group_count), empty);
+}
+
+void RendererState::provide_tiles(shader::FrameParams& p) {
+    for (gpu::GpuImage* unused : {&targets.sheets, &targets.depth, &targets.accumulated})
+        *unused = {};
+    targets.groups = {};
+    targets.draws = {};
+    const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
+    grow(device, targets.tile_rects, p.splat_count * 2 * kWord, Place::Device, "tiles of splats");
+    grow(device, targets.sheet_pairs, p.sheet_count * kWord, Place::Host, "pairs of sheets");
+    grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Host, "sheet starts");
+    grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
+    grow(device, targets.tile_counters, tiles * p.tile_blocks * kWord, Place::Device, "tile counters");
+    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Device, "tile ranges");
+    grow(device, targets.tile_entries, chunk_pairs(p.tiles) * 2 * kWord, Place::Device, "tile entries");
+    grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
+    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
+    grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets");
+    p.tile_rects = targets.tile_rects.address();
+    p.sheet_pairs = targets.sheet_pairs.address();
+    p.sheet_starts = targets.sheet_starts.address();
+    p.chunks = targets.chunks.address();
+    p.tile_counters = targets.tile_counters.address();
+    p.tile_ranges = targets.tile_ranges.address();
+    p.tile_entries = targets.tile_entries.address();
+    p.tile_closed = targets.tile_closed.address();
+    p.tile_sheets = targets.tile_sheets.address();
+}
+
+void RendererState::provide_chunks(const Chunks& chunks) {
+    grow(device, targets.tile_entries, chunks.most_pairs * 2 * kWord, Place::Device, "tile entries");
+    auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
+    const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
+    if (blocks > p.tile_blocks) {
+        const double counters = static_cast<double>(blocks) * p.tiles.x * p.tiles.y;
+        if (counters > 128.0 * shader::MOST_ITERATIONS) {
+            fail(
+                "a sheet of this view has {} pairs of splat and tile, more than can be sorted: choose a smaller "
+                "--sheet-spacing, or --sheet-format float",
+                chunks.most_pairs);
+        }
+        plan.params.tile_blocks = p.tile_blocks = blocks;
+    }
+    const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
+    grow(device, targets.tile_counters, tiles * p.tile_blocks * kWord, Place::Device, "tile counters");
+    p.tile_counters = targets.tile_counters.address();
+    p.tile_entries = targets.tile_entries.address();
+    std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,49 @@
+// Second third: exclusive prefix sum over (tile, block), and each tile's range. One workgroup: each invocation sums a run of
+// counters, the runs are scanned in shared memory.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 256) in;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+shared uint sums[256];
+
+void main() {
+    UintsRef counters = UintsRef(params.frame.tile_counters);
+    PairsRef ranges = PairsRef(params.frame.tile_ranges);
+    uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;
+    uint tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
+    uint per_run = (tiles + 255u) / 256u;
+    uint first = min(me * per_run, tiles), last = min(first + per_run, tiles);
+
+    uint sum = 0u;
+    for (uint i = first * blocks; i < last * blocks; ++i) sum += counters.at[i];
+    sums[me] = sum;
+    barrier();
+    for (uint step = 1u; step < 256u; step *= 2u) {
+        uint left = me >= step ? sums[me - step] : 0u;
+        barrier();
+        sums[me] += left;
+        barrier();
+    }
+    uint offset = sums[me] - sum, longest = 0u;
+    for (uint tile = first; tile < last; ++tile) {
+        uint begin = offset;
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
+            uint n = counters.at[i];
+            counters.at[i] = offset;
+            offset += n;
+        }
+        ranges.at[tile] = uvec2(begin, offset);
+        longest = max(longest, offset - begin);
+    }
+    barrier();
+    sums[me] = longest;
+    barrier();
+    for (uint step = 128u; step > 0u; step /= 2u) {
+        if (me < step) sums[me] = max(sums[me], sums[me + step]);
+        barrier();
+    }
+    if (me == 0u) UintsRef(params.frame.drawn).at[1] = sums[0];
+}

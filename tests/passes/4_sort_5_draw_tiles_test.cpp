@@ -1,0 +1,179 @@
+// Sheets that are summed tile by tile: the lists of tiles, and the picture against that of layers.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr int kTile = static_cast<int>(shader::TILE);
+const glm::ivec2 kSize(70, 45);  // neither side is a multiple of a tile's
+
+std::vector<glm::vec4> picture(RendererState& state, const PassScene& s, const Settings& settings,
+                               std::uint32_t payload) {
+    state.draw(s.scene, s.camera, settings, kSize, payload);
+    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    return {pixels.begin(), pixels.end()};
+}
+
+/// Draws the last picture again, in chunks of so many pairs. How many there were.
+std::size_t in_chunks(RendererState& state, std::uint64_t limit) {
+    sort_frame(state.commands, state.plan, state.targets);
+    const std::uint32_t sheets = state.plan.params.sheet_count;
+    const Chunks chunks = plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
+                                      state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
+    state.provide_chunks(chunks);
+    draw_frame(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()), {});
+    return chunks.parts.size();
+}
+
+/// Of the last chunk drawn.
+struct Lists {
+    std::vector<glm::uvec2> ranges, entries, rects;
+    std::vector<std::uint32_t> sheet_of;
+};
+
+Lists lists_of(RendererState& state) {
+    const auto& p = state.plan.params;
+    const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
+    Lists lists;
+    lists.ranges = download<glm::uvec2>(state, state.targets.tile_ranges, tiles);
+    lists.entries = download<glm::uvec2>(state, state.targets.tile_entries, lists.ranges.back().y);
+    lists.rects = download<glm::uvec2>(state, state.targets.tile_rects, p.splat_count);
+    lists.sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, p.splat_count);
+    return lists;
+}
+
+TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
+    for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
+        for (const PassScene& s : pass_scenes()) {
+            SCOPED_TRACE(s.name);
+            RendererState& state = prepared(s);
+            Settings settings = s.settings;
+            settings.sheets = sheets;
+            settings.sheet_spacing = 1;
+            picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
+            in_chunks(state, ~std::uint64_t{0});
+            const Lists lists = lists_of(state);
+            const auto tiles_x = static_cast<std::size_t>(state.plan.params.tiles.x);
+            std::vector<std::vector<glm::uvec2>> want(lists.ranges.size());
+            for (std::uint32_t i = 0; i < lists.rects.size(); ++i) {
+                const std::uint32_t code = lists.sheet_of[i];
+                if (code == shader::SHEET_NONE) continue;
+                const bool sliced = sheets == SheetCut::Sliced;
+                const std::uint32_t first = sliced ? code & ((1U << shader::SHEET_BITS) - 1) : code;
+                const std::uint32_t last = sliced ? first + (code >> shader::SHEET_BITS) : code;
+                const glm::uvec2 low(lists.rects[i].x & 0xffffU, lists.rects[i].x >> 16U);
+                const glm::uvec2 high(lists.rects[i].y & 0xffffU, lists.rects[i].y >> 16U);
+                ASSERT_TRUE(low.x < high.x && low.y < high.y);
+                for (std::size_t y = low.y; y < high.y; ++y)
+                    for (std::size_t x = low.x; x < high.x; ++x)
+                        for (std::uint32_t sheet = first; sheet <= last; ++sheet)
+                            want[y * tiles_x + x].emplace_back(i, sheet);
+            }
+            std::size_t pairs = 0;
+            for (std::size_t tile = 0; tile < want.size(); ++tile) {
+                std::ranges::stable_sort(want[tile], {}, [](const glm::uvec2& entry) { return entry.y; });
+                const glm::uvec2 range = lists.ranges[tile];
+                ASSERT_EQ(range.y - range.x, want[tile].size()) << "tile " << tile;
+                for (std::size_t k = 0; k < want[tile].size(); ++k)
+                    ASSERT_EQ(lists.entries[range.x + k], want[tile][k]) << "tile " << tile << ", entry " << k;
+                pairs += want[tile].size();
+            }
+            EXPECT_GT(pairs, 0U);
+            const auto counted = state.targets.sheet_pairs.mapped<std::uint32_t>(state.plan.params.sheet_count);
+            EXPECT_EQ(std::accumulate(counted.begin(), counted.end(), std::size_t{0}), pairs);
+        }
+    }
+}
+
+TEST(DrawTiles, PicturesAreThoseOfLayers) {
+    for (const std::uint32_t payload :
+         {shader::PAYLOAD_COLOR, shader::PAYLOAD_TAU, shader::PAYLOAD_DEPTH_DISTANCE, shader::PAYLOAD_NORMAL}) {
+        for (PassScene s : pass_scenes()) {
+            SCOPED_TRACE(s.name);
+            // Layers close pixels group by group, tiles sheet by sheet.
+            s.settings.saturation = 1;
+            RendererState& state = prepared(s);
+            const auto layers = picture(state, s, layered(s.settings), payload);
+            const auto tiles = picture(state, s, s.settings, payload);
+            ASSERT_TRUE(state.plan.variant.tiles);
+            float peak = 0, worst = 0;
+            // Means are weighed by how opaque they are: at the rim of a footprint one of the two may have nothing.
+            const bool means = payload == shader::PAYLOAD_DEPTH_DISTANCE || payload == shader::PAYLOAD_NORMAL;
+            for (std::size_t i = 0; i < tiles.size(); ++i) {
+                for (int c = 0; c < 4; ++c) {
+                    const float a = means && c < 3 ? layers[i].a : 1, b = means && c < 3 ? tiles[i].a : 1;
+                    ASSERT_TRUE(std::isfinite(tiles[i][c]));
+                    peak = std::max(peak, std::abs(a * layers[i][c]));
+                    worst = std::max(worst, std::abs(b * tiles[i][c] - a * layers[i][c]));
+                }
+            }
+            EXPECT_GT(peak, 0);
+            std::printf("payload %u %-24s worst of peak %.1e\n", payload, s.name.c_str(),
+                        static_cast<double>(worst / peak));
+            EXPECT_LE(worst, 5e-4F * peak);
+        }
+    }
+}
+
+TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
+    PassScene s = pass_scenes()[0];
+    for (Material& material : s.scene.materials)
+        material.extinction *= 40;
+    RendererState& state = prepared(s);
+    const auto whole = picture(
+        state, s,
+        [&] {
+            Settings settings = s.settings;
+            settings.saturation = 1;
+            return settings;
+        }(),
+        shader::PAYLOAD_COLOR);
+    Settings closing = s.settings;
+    closing.saturation = 0.9;
+    const auto pixels = picture(state, s, closing, shader::PAYLOAD_COLOR);
+    const auto closed = download<std::uint32_t>(
+        state, state.targets.tile_closed,
+        static_cast<std::size_t>(state.plan.params.tiles.x) * static_cast<std::size_t>(state.plan.params.tiles.y));
+    std::vector<std::uint32_t> want(closed.size(), 0);
+    for (int y = 0; y < kSize.y; ++y) {
+        for (int x = 0; x < kSize.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * kSize.x + x);
+            const bool full = pixels[i].a >= 0.9F;
+            want[static_cast<std::size_t>(y / kTile * state.plan.params.tiles.x + x / kTile)] += full ? 1 : 0;
+            if (full) {
+                EXPECT_LE(pixels[i].a, whole[i].a + 1e-5F);
+            } else {
+                EXPECT_NEAR(pixels[i].a, whole[i].a, 1e-5F);
+            }
+        }
+    }
+    EXPECT_EQ(closed, want);
+    EXPECT_GT(*std::ranges::max_element(closed), 0U);
+}
+
+TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
+    const std::vector<std::uint32_t> pairs{5, 0, 4, 3, 20, 1, 0, 2}, starts{0, 2, 2, 4, 6, 9, 10, 10, 12};
+    const Chunks chunks = plan_chunks(pairs, starts, 10);
+    const std::vector<glm::uvec2> want{{0, 4}, {4, 6}, {6, 9}, {9, 12}};
+    EXPECT_EQ(chunks.parts, want);
+    EXPECT_EQ(chunks.most_pairs, 20U);
+    EXPECT_TRUE(plan_chunks(std::vector<std::uint32_t>{0, 0}, std::vector<std::uint32_t>{0, 0, 0}, 10).parts.empty());
+    EXPECT_EQ(plan_chunks(pairs, starts, 1000).parts, (std::vector<glm::uvec2>{{0, 12}}));
+}
+
+TEST(DrawTiles, ManyChunksMakeTheSamePicture) {
+    const PassScene s = pass_scenes()[1];
+    RendererState& state = prepared(s);
+    const auto once = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
+    EXPECT_GT(in_chunks(state, 1), 3U);
+    const auto pixels = state.targets.output.mapped<glm::vec4>(once.size());
+    EXPECT_TRUE(std::ranges::equal(pixels, once));
+}
+
+}  // namespace
+}  // namespace edgesplat::test
