@@ -156,6 +156,42 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
     EXPECT_GT(*std::ranges::max_element(closed), 0U);
 }
 
+TEST(SortSheets, InSegmentsIsTheSameOrder) {
+    for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
+        const PassScene s = pass_scenes()[1];
+        RendererState& state = prepared(s);
+        Settings settings = s.settings;
+        settings.sheets = sheets;
+        picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
+        const std::size_t entries = state.targets.drawn.mapped<std::uint32_t>(4)[0];
+        const auto at_once = download<std::uint32_t>(state, state.targets.order, entries);
+        const std::uint32_t per_block = (state.plan.params.splat_count + shader::SORT_BLOCKS - 1) / shader::SORT_BLOCKS;
+        ASSERT_GT(per_block, 1U);
+        EXPECT_GE(state.plan.sort_segments * state.plan.params.sort_segment, per_block);
+        state.plan.sort_segments = per_block;
+        state.targets.frame.mapped<shader::FrameParams>(1)[0].sort_segment = 1;
+        sort_frame(state.commands, state.plan, state.targets);
+        EXPECT_EQ(state.targets.drawn.mapped<std::uint32_t>(4)[0], entries);
+        EXPECT_EQ(download<std::uint32_t>(state, state.targets.order, entries), at_once);
+    }
+}
+
+TEST(SortSheets, SegmentsCoverEveryList) {
+    const PassScene& s = pass_scenes()[0];
+    for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
+        Settings settings = s.settings;
+        settings.sheets = sheets;
+        for (const std::uint64_t splats : {1ULL, 1000ULL, 586473ULL, 20000000ULL, 300000000ULL}) {
+            const FramePlan plan =
+                plan_frame(s.volume, s.scene, s.camera, drawn_as(settings), kSize, shader::PAYLOAD_COLOR, splats,
+                           glm::ivec3(0), s.volume.geometry.dims - 1, 2.5);
+            const std::uint64_t covered = std::uint64_t{plan.sort_segments} * plan.params.sort_segment;
+            EXPECT_GE(covered * shader::SORT_BLOCKS, splats);
+            EXPECT_LE(std::uint64_t{plan.params.sort_segment} * (plan.sheets_per_splat + 1), shader::MOST_ITERATIONS);
+        }
+    }
+}
+
 TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
     const std::vector<std::uint32_t> pairs{5, 0, 4, 3, 20, 1, 0, 2}, starts{0, 2, 2, 4, 6, 9, 10, 10, 12};
     const Chunks chunks = plan_chunks(pairs, starts, 10);
