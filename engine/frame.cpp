@@ -89,19 +89,14 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     commands.run([&] {
         if (plan.buried) {
             commands.prepare({&resources.buried});
-            commands.begin_span("1a_mark_buried");
-            passes::mark_buried(commands, plan.dims, plan.clip);
-            commands.end_span();
+            commands.span("1a_mark_buried", [&] { passes::mark_buried(commands, plan.dims, plan.clip); });
         }
         if (plan.edge_field) {
             commands.prepare({&resources.edges});
-            commands.begin_span("1_estimate_edges");
-            passes::estimate_edges(commands, plan.dims, plan.estimator, plan.skip_buried);
-            commands.end_span();
+            commands.span("1_estimate_edges",
+                          [&] { passes::estimate_edges(commands, plan.dims, plan.estimator, plan.skip_buried); });
         }
-        commands.begin_span("2_collect_splats");
-        passes::count_splats(commands, collect);
-        commands.end_span();
+        commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
     });
 
     auto times = commands.span_times();
@@ -125,11 +120,7 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
             gpu::Buffer(device, resources.splat_count * sizeof(float), gpu::Buffer::Place::Device, "classified values");
         params.values = resources.values.address();
     }
-    commands.run([&] {
-        commands.begin_span("2_collect_splats");
-        passes::write_splats(commands, collect);
-        commands.end_span();
-    });
+    commands.run([&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect); }); });
     const auto edges = resources.run_offsets.mapped<std::uint32_t>(runs);
     resources.edge_splat_count = std::accumulate(edges.begin(), edges.end(), std::uint64_t{0});
     for (const auto& writing : commands.span_times())
@@ -148,25 +139,21 @@ void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) 
 }
 
 void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
-    const auto timed = [&](const char* name, const auto& pass) {
-        commands.begin_span(name);
-        pass();
-        commands.end_span();
-    };
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
 
     commands.run([&] {
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        timed("3_select_footprints",
-              [&] { passes::select_footprints(commands, plan.params.splat_count, plan.variant); });
-        timed("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments); });
+        commands.span("3_select_footprints",
+                      [&] { passes::select_footprints(commands, plan.params.splat_count, plan.variant); });
+        commands.span("4_sort_sheets",
+                      [&] { passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
-            timed("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
-            timed("6_composite_sheet",
-                  [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
+            commands.span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
+            commands.span("6_composite_sheet",
+                          [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
         }
-        timed("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
     });
 }
 

@@ -174,9 +174,8 @@ passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, c
 }
 
 std::uint32_t tile_blocks(const glm::ivec2& tiles) {
-    // All of the histogram is scanned for each chunk, by 256 invocations, twice.
-    const auto most = 128.0 * shader::MOST_ITERATIONS / (static_cast<double>(tiles.x) * tiles.y);
-    return static_cast<std::uint32_t>(std::clamp(most, 1.0, 64.0));
+    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, 64));
 }
 
 std::uint32_t light_code(const Scene& scene) {

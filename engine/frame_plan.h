@@ -61,7 +61,10 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
 
-/// Columns of the tiles' histogram that can be scanned: 1 to 64.
+/// Counters of the tiles' histogram that can be scanned: 256 invocations go through all of them, twice.
+inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::MOST_ITERATIONS;
+
+/// Columns of that histogram, 1 to 64, as far as can be scanned.
 std::uint32_t tile_blocks(const glm::ivec2& tiles);
 
 /// Spheres that hold the kernels of some settings.

@@ -100,9 +100,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
     commands.run([&] {
         commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
         commands.prepare({&scratch});
-        commands.begin_span("raycast_bricks");
-        passes::classify_bricks(commands, plan.block.scene.dims);
-        commands.end_span();
+        commands.span("raycast_bricks", [&] { passes::classify_bricks(commands, plan.block.scene.dims); });
     });
     // The slot must not be left with an image that is gone.
     bind(device, shader::BIND_BRICK_SCRATCH, bricks_);
@@ -113,9 +111,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
 void RaycastResources::cast(gpu::Commands& commands, const RaycastPlan& plan) const {
     commands.run([&] {
         commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
-        commands.begin_span("raycast");
-        passes::cast_rays(commands, plan.variant, plan.size);
-        commands.end_span();
+        commands.span("raycast", [&] { passes::cast_rays(commands, plan.variant, plan.size); });
     });
 }
 

@@ -208,10 +208,11 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
     params.reach = resources.occlusion.address();
     bindings.write_block(shader::BIND_OCCLUSION, block);
     commands.run([&] {
-        commands.begin_span("2b_occlude_ambient");
-        passes::occlude_ambient(
-            commands, {.splat_count = resources.splat_count, .clip = clip, .transfer = !plan.matter.transfer.empty()});
-        commands.end_span();
+        commands.span("2b_occlude_ambient", [&] {
+            passes::occlude_ambient(
+                commands,
+                {.splat_count = resources.splat_count, .clip = clip, .transfer = !plan.matter.transfer.empty()});
+        });
     });
     return commands.span_times();
 }
@@ -220,20 +221,19 @@ std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& 
                                       std::uint32_t channel) {
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
     commands.run([&] {
-        commands.begin_span("2c_sweep_light");
-        commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
-        passes::clear_accumulated(commands, targets.accumulated);
-        passes::select_footprints(commands, plan.params.splat_count, plan.variant);
-        passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments);
-        for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
-            passes::draw_splats(commands, draw, group);
-            passes::sweep_light(commands, plan.params.size, group);
-            passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
-        }
-        commands.end_span();
-        commands.begin_span("2d_shadow_splats");
-        passes::shadow_splats(commands, plan.params.splat_count, plan.variant.clip, channel);
-        commands.end_span();
+        commands.span("2c_sweep_light", [&] {
+            commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
+            passes::clear_accumulated(commands, targets.accumulated);
+            passes::select_footprints(commands, plan.params.splat_count, plan.variant);
+            passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments);
+            for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
+                passes::draw_splats(commands, draw, group);
+                passes::sweep_light(commands, plan.params.size, group);
+                passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
+            }
+        });
+        commands.span("2d_shadow_splats",
+                      [&] { passes::shadow_splats(commands, plan.params.splat_count, plan.variant.clip, channel); });
     });
     return commands.span_times();
 }

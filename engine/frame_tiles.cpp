@@ -41,12 +41,9 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
              {&targets.counters, &targets.sheet_pairs, &targets.tile_closed, &targets.output})
             commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
         commands.barrier();
-        commands.begin_span("3_select_footprints");
-        passes::select_footprints(commands, p.splat_count, plan.variant);
-        commands.end_span();
-        commands.begin_span("4_sort_sheets");
-        passes::sort_sheets(commands, plan.variant.sliced, true, plan.sort_segments);
-        commands.end_span();
+        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.splat_count, plan.variant); });
+        commands.span("4_sort_sheets",
+                      [&] { passes::sort_sheets(commands, plan.variant.sliced, true, plan.sort_segments); });
     });
     return plan_chunks(targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count),
                        targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1),
@@ -55,20 +52,16 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
 
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how) {
-    const auto timed = [&](const char* name, const auto& pass) {
-        commands.begin_span(name);
-        pass();
-        commands.end_span();
-    };
     const auto sort = [&](std::uint32_t chunk) {
-        timed("4_sort_tiles",
-              [&] { passes::sort_tiles(commands, targets.tile_counters, plan.params.tile_blocks, chunk); });
+        commands.span("4_sort_tiles",
+                      [&] { passes::sort_tiles(commands, targets.tile_counters, plan.params.tile_blocks, chunk); });
     };
     const auto draw = [&](std::uint32_t round) {
-        timed("5_draw_tiles", [&] { passes::draw_tiles(commands, plan.variant, plan.params.tiles, how, round); });
+        commands.span("5_draw_tiles",
+                      [&] { passes::draw_tiles(commands, plan.variant, plan.params.tiles, how, round); });
     };
     const auto resolve = [&] {
-        timed("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
     };
     std::ranges::fill(targets.drawn.mapped<std::uint32_t>(4).last(2), 0U);
     if (!how.rounds) {
@@ -92,7 +85,7 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
             else
                 resolve();
         });
-        longest = targets.drawn.mapped<std::uint32_t>(2)[1];
+        longest = targets.drawn.mapped<std::uint32_t>(4)[1];
         add_times(times, commands.span_times());
     }
     return times;

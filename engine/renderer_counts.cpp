@@ -25,20 +25,19 @@ void Renderer::count_fragments(bool on) {
 
 void RendererState::add_counts(RenderStats& stats) const {
     if (!counting) return;
+    const auto add = [&](const DrawCounts& counts) {
+        DrawCounts& sum = stats.draw_counts ? *stats.draw_counts : stats.draw_counts.emplace();
+        sum.vertices += counts.vertices;
+        sum.fragments += counts.fragments;
+        sum.shaded += counts.shaded;
+    };
     if (plan.variant.tiles) {
         stats.dirty_share = dirty_share_of_tiles(plan.params, targets);
         const auto counts = targets.drawn.mapped<std::uint32_t>(4);
-        DrawCounts& sum = stats.draw_counts ? *stats.draw_counts : stats.draw_counts.emplace();
-        sum.fragments += counts[2];
-        sum.shaded += counts[3];
+        add({.vertices = 0, .fragments = counts[2], .shaded = counts[3]});
         return;
     }
-    if (const auto counts = commands.draw_counts()) {
-        DrawCounts& sum = stats.draw_counts ? *stats.draw_counts : stats.draw_counts.emplace();
-        sum.vertices += counts->vertices;
-        sum.fragments += counts->fragments;
-        sum.shaded += counts->shaded;
-    }
+    if (const auto counts = commands.draw_counts()) add(*counts);
     const auto groups = targets.groups.mapped<shader::SheetGroup>(plan.params.group_count);
     double covered = 0;
     for (const shader::SheetGroup& group : groups)

@@ -132,10 +132,10 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
 void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_entries, chunks.most_pairs * 2 * kWord, Place::Device, "tile entries");
     auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
+    const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
     if (blocks > p.tile_blocks) {
-        const double counters = static_cast<double>(blocks) * p.tiles.x * p.tiles.y;
-        if (counters > 128.0 * shader::MOST_ITERATIONS) {
+        if (blocks * tiles > kMostTileCounters) {
             fail(
                 "a sheet of this view has {} pairs of splat and tile, more than can be sorted: choose a smaller "
                 "--sheet-spacing, or --sheet-format float",
@@ -143,7 +143,6 @@ void RendererState::provide_chunks(const Chunks& chunks) {
         }
         plan.params.tile_blocks = p.tile_blocks = blocks;
     }
-    const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     grow(device, targets.tile_counters, tiles * p.tile_blocks * kWord, Place::Device, "tile counters");
     p.tile_counters = targets.tile_counters.address();
     p.tile_entries = targets.tile_entries.address();

@@ -9,7 +9,7 @@
 layout(local_size_x = 256) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
-shared uint sums[256];
+#include "shaders/lib/workgroup_sums.glsl"
 
 void main() {
     UintsRef counters = UintsRef(params.frame.counters);
@@ -20,15 +20,7 @@ void main() {
 
     uint sum = 0u;
     for (uint i = first; i < last; ++i) sum += counters.at[i];
-    sums[me] = sum;
-    barrier();
-    for (uint step = 1u; step < 256u; step *= 2u) {
-        uint left = me >= step ? sums[me - step] : 0u;
-        barrier();
-        sums[me] += left;
-        barrier();
-    }
-    uint offset = sums[me] - sum;
+    uint offset = sum_before(sum);
     for (uint i = first; i < last; ++i) {
         uint n = counters.at[i];
         counters.at[i] = offset;

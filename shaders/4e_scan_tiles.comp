@@ -7,7 +7,7 @@
 
 layout(local_size_x = 256) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-shared uint sums[256];
+#include "shaders/lib/workgroup_sums.glsl"
 
 void main() {
     UintsRef counters = UintsRef(params.frame.tile_counters);
@@ -19,15 +19,7 @@ void main() {
 
     uint sum = 0u;
     for (uint i = first * blocks; i < last * blocks; ++i) sum += counters.at[i];
-    sums[me] = sum;
-    barrier();
-    for (uint step = 1u; step < 256u; step *= 2u) {
-        uint left = me >= step ? sums[me - step] : 0u;
-        barrier();
-        sums[me] += left;
-        barrier();
-    }
-    uint offset = sums[me] - sum, longest = 0u;
+    uint offset = sum_before(sum), longest = 0u;
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
         for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {

@@ -48,24 +48,17 @@ FaceBand band;
 const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
 #define FACE_BAND(d, d2, faces) band
 #include "shaders/lib/splat_value.glsl"
+#include "shaders/lib/fold_sheet.glsl"
 
 // Consecutive invocations are compact blocks: 8 are 4 x 2 pixels, 32 are 8 x 4, 64 are 8 x 8.
 ivec2 pixel_in_tile(uint i) {
     return ivec2((i & 3u) | (i >> 2 & 4u) | (i >> 3 & 8u), (i >> 2 & 1u) | (i >> 2 & 2u) | (i >> 3 & 4u) | (i >> 4 & 8u));
 }
 
-// 1 - exp(-tau) to a relative error of 1e-6: Vulkan's exp alone loses every digit of a small tau.
-float opacity(float tau) {
-    float series = tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau * (1.0 / 120.0 - tau / 720.0)))));
-    return tau < 0.5 ? series : 1.0 - exp(-tau);
-}
-
-// A sheet behind what is in front of it.
-vec4 folded(vec4 sum, vec4 sheet) {
-    if (PAYLOAD == PAYLOAD_TAU) return sum + sheet;
-    float alpha = opacity(sheet.a);
-    vec3 color = sheet.a > 0.0 ? sheet.rgb / sheet.a : vec3(0.0);
-    return sum + (1.0 - sum.a) * alpha * vec4(color, 1.0);
+// A pixel takes no more once it is opaque.
+void fold(inout vec4 sum, inout bool open, vec4 sheet) {
+    sum = open ? folded(sum, sheet) : sum;
+    open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
 }
 
 void main() {
@@ -84,8 +77,7 @@ void main() {
     ivec2 held = min(pixel, size - 1);
     PixelsRef picture = PixelsRef(params.frame.output_pixels);
     vec4 sum = picture.at[held.y * size.x + held.x];
-    float saturation = params.frame.saturation;
-    bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < saturation);
+    bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
     bool open = was_open;
     uint evaluated = 0u, shaded = 0u;
     for (uint run = subgroupAny(open) ? 1u : 0u; run > 0u; --run) {
@@ -107,10 +99,7 @@ void main() {
             bool same = went_on && PairsRef(params.frame.tile_entries).at[range.x - (went_on ? 1u : 0u)].y == current;
             sheet_sum = same ? unfinished.at[held.y * size.x + held.x] : vec4(0.0);
             // A sheet that ended with the round before.
-            for (uint fold = went_on && !same ? 1u : 0u; fold > 0u; --fold) {
-                sum = open ? folded(sum, unfinished.at[held.y * size.x + held.x]) : sum;
-                open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < saturation);
-            }
+            for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, unfinished.at[held.y * size.x + held.x]);
         }
         for (uint base = range.x; base < range.y && subgroupAny(open); base += gl_SubgroupSize) {
             uint mine = base + gl_SubgroupInvocationID;
@@ -144,9 +133,8 @@ void main() {
             for (uint bits = hits[word]; bits != 0u; bits &= bits - 1u) {
                 uint lane = word * 32u + uint(findLSB(bits));
                 uint sheet = subgroupBroadcast(entry.y, lane);
-                for (uint fold = sheet != current ? 1u : 0u; fold > 0u; --fold) {
-                    sum = open ? folded(sum, sheet_sum) : sum;
-                    open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < saturation);
+                for (uint run = sheet != current ? 1u : 0u; run > 0u; --run) {
+                    fold(sum, open, sheet_sum);
                     sheet_sum = vec4(0.0);
                     current = sheet;
                 }
@@ -186,9 +174,8 @@ void main() {
         }
         // What the next round may go on with is the sheet of the last entry, whether or not it was here.
         bool kept = goes_on && PairsRef(params.frame.tile_entries).at[range.y - 1u].y == current;
-        for (uint fold = kept ? 0u : 1u; fold > 0u; --fold) {
-            sum = open ? folded(sum, sheet_sum) : sum;
-            open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < saturation);
+        for (uint run = kept ? 0u : 1u; run > 0u; --run) {
+            fold(sum, open, sheet_sum);
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) unfinished.at[held.y * size.x + held.x] = sheet_sum;

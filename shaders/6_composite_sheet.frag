@@ -11,25 +11,12 @@ layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params
 layout(push_constant) uniform Push { uint group; };
 layout(location = 0) out vec4 accumulated;
 
-// 1 - exp(-tau) to a relative error of 1e-6: Vulkan's exp alone loses every digit of a small tau.
-float opacity(float tau) {
-    float series = tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau * (1.0 / 120.0 - tau / 720.0)))));
-    return tau < 0.5 ? series : 1.0 - exp(-tau);
-}
+#include "shaders/lib/fold_sheet.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
     int count = int(min(params.frame.sheets_per_group, params.frame.sheet_count - group * params.frame.sheets_per_group));
     vec4 sum = vec4(0.0);
-    for (int i = 0; i < count; ++i) {
-        vec4 sheet = texelFetch(sheets, ivec3(pixel, i), 0);
-        if (PAYLOAD == PAYLOAD_TAU) {
-            sum += sheet;
-        } else {
-            float alpha = opacity(sheet.a);
-            vec3 color = sheet.a > 0.0 ? sheet.rgb / sheet.a : vec3(0.0);
-            sum += (1.0 - sum.a) * alpha * vec4(color, 1.0);
-        }
-    }
+    for (int i = 0; i < count; ++i) sum = folded(sum, texelFetch(sheets, ivec3(pixel, i), 0));
     accumulated = sum;
 }

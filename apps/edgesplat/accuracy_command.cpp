@@ -26,7 +26,6 @@ using edgesplat::accuracy::ReportInput;
 using edgesplat::accuracy::ReportOptions;
 
 constexpr int kFullOrbit = 360;
-constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
 
 /// Everything the command line said.
 struct AccuracyCommand {
@@ -214,11 +213,6 @@ void add_accuracy_command(CLI::App& app, const std::string& command_line, int& e
         "  edgesplat accuracy head.nrrd --iso -400 --report head --size 128x128\n"
         "  edgesplat accuracy head.nrrd --iso -400 --report coarse --downsample 2,4");
     sub.callback([command, command_line, &exit_status] {
-        try {
-            run(*command, command_line);
-        } catch (const edgesplat::accuracy::Interrupted& interrupted) {
-            fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
-            exit_status = kStoppedStatus;
-        }
+        run_until_stopped(exit_status, [&] { run(*command, command_line); });
     });
 }

@@ -14,8 +14,6 @@
 
 namespace {
 
-constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
-
 /// Everything the command line said.
 struct BenchCommand {
     std::string suite = "standard", folder, earlier, later, cases;
@@ -100,11 +98,6 @@ void add_bench_command(CLI::App& app, const std::string& command_line, int& exit
         "  edgesplat bench -o after --compare before/bench.json\n"
         "  edgesplat bench scaling --cases '*/default/*' --repeat 3");
     sub.callback([command, command_line, &exit_status] {
-        try {
-            run(*command, command_line);
-        } catch (const edgesplat::accuracy::Interrupted& interrupted) {
-            fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
-            exit_status = kStoppedStatus;
-        }
+        run_until_stopped(exit_status, [&] { run(*command, command_line); });
     });
 }

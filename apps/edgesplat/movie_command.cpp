@@ -28,7 +28,6 @@ namespace fs = std::filesystem;
 using edgesplat::fail;
 using edgesplat::SceneDocument;
 
-constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
 constexpr int kMostFrames = 1'000'000;
 
 /// First and last frame, both included.

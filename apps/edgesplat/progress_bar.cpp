@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdio>
 
+#include "engine/accuracy/work_list.h"
+
 namespace {
 
 volatile std::sig_atomic_t stop_asked = 0;
@@ -24,6 +26,15 @@ std::string duration_text(double seconds) {
 }
 
 }  // namespace
+
+void run_until_stopped(int& exit_status, const std::function<void()>& body) {
+    try {
+        body();
+    } catch (const edgesplat::accuracy::Interrupted& interrupted) {
+        fmt::print(stderr, "edgesplat: {}\n", interrupted.what());
+        exit_status = kStoppedStatus;
+    }
+}
 
 ProgressBar::ProgressBar(bool quiet) : visible_(!quiet && isatty(STDERR_FILENO) == 1) {}
 

@@ -2,7 +2,13 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <string>
+
+inline constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
+
+/// Runs `body`; where it ends by accuracy::Interrupted, says so and sets kStoppedStatus.
+void run_until_stopped(int& exit_status, const std::function<void()>& body);
 
 /// Draws at most ten times a second; takes its line away when it goes.
 class ProgressBar {

@@ -40,9 +40,13 @@ class Commands {
     /// Brings fresh images into layout GENERAL.
     void prepare(std::initializer_list<const GpuImage*> images);
 
-    /// Opens a named span of device time; spans of one name add up. Must not nest.
-    void begin_span(const char* name);
-    void end_span();
+    /// Records `body` as a named span of device time; spans of one name add up. Must not nest.
+    template <typename Body>
+    void span(const char* name, const Body& body) {
+        begin_span(name);
+        body();
+        end_span();
+    }
     /// Milliseconds of the spans of the last run, in order of first use; empty without timestamps.
     std::vector<PassTime> span_times() const;
 
@@ -55,6 +59,8 @@ class Commands {
     std::optional<DrawCounts> draw_counts() const;
 
   private:
+    void begin_span(const char* name);
+    void end_span();
     void write_timestamp();
     const Device* device_;
     Pipelines* pipelines_;

@@ -18,6 +18,7 @@ ivec3 dims;
 float iso_values[MAX_MATERIALS];
 uint visible_mask;
 
+#include "shaders/lib/opacity.glsl"
 #include "shaders/lib/trilinear.glsl"
 
 // trilinear() with a cheaper choice of the cell: at the last sample it has no width.
@@ -117,12 +118,6 @@ float light_on(vec3 g, vec3 u) {
     vec3 to_light = LIGHT == LIGHT_HEADLIGHT ? -normalize(params.rays.index_to_world * u) : params.rays.light;
     float cosine = dot(g, g) >= GRADIENT_MIN * GRADIENT_MIN ? max(dot(n, to_light), 0.0) : 0.5;
     return params.rays.ambient + params.rays.diffuse * cosine;
-}
-
-// 1 - exp(-tau): Vulkan's exp alone loses every digit of a small tau.
-float opacity(float tau) {
-    float series = tau * (1.0 - tau * (0.5 - tau * (1.0 / 6.0 - tau * (1.0 / 24.0 - tau * (1.0 / 120.0 - tau / 720.0)))));
-    return tau < 0.5 ? series : 1.0 - exp(-tau);
 }
 
 void read_scene() {

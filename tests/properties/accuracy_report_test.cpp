@@ -1,15 +1,9 @@
 // A whole accuracy report on a tiny scene: stopped by Ctrl-C, resumed, and made a second time: every error is the same.
 #include <gmock/gmock.h>
-#include <spawn.h>
 
-#include <chrono>
-#include <csignal>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "tests/unit/cli_program.h"
-
-extern char** environ;  // NOLINT: the system's
 
 namespace edgesplat {
 namespace {
@@ -32,21 +26,10 @@ class AccuracyReport : public CliTest {
 
     /// Starts it, waits for a few finished measurements, and presses Ctrl-C. The exit status.
     int interrupted(const std::string& folder) const {
-        const std::string command = "cd '" + folder_.string() + "' && exec '" EDGESPLAT_PROGRAM "' accuracy " +
-                                    kArguments + " --report " + folder + " 2>/dev/null";
-        std::string shell = "/bin/sh", flag = "-c", text = command;
-        char* arguments[] = {shell.data(), flag.data(), text.data(), nullptr};
-        pid_t child = 0;
-        EXPECT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, arguments, environ), 0);
-        for (int i = 0; i < 3000; ++i) {
+        return CliTest::interrupted("accuracy " + std::string(kArguments) + " --report " + folder, [&] {
             const std::string lines = journal(folder);
-            if (std::count(lines.begin(), lines.end(), '\n') >= 4) break;
-            std::this_thread::sleep_for(std::chrono::milliseconds(10));
-        }
-        kill(child, SIGINT);
-        int status = 0;
-        waitpid(child, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+            return std::count(lines.begin(), lines.end(), '\n') >= 4;
+        });
     }
 
     /// The report without what may differ between two runs.

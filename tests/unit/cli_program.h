@@ -2,16 +2,22 @@
 #pragma once
 
 #include <gtest/gtest.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <thread>
 #include <vector>
+
+extern char** environ;  // NOLINT: the system's
 
 namespace edgesplat {
 
@@ -38,6 +44,24 @@ class CliTest : public ::testing::Test {
         const int status = std::system(command.c_str());  // NOLINT: a shell is wanted here
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(log_folder() / "out"),
                 text_of(log_folder() / "err")};
+    }
+
+    /// Starts `edgesplat ARGUMENTS` likewise and presses Ctrl-C once `ready()`, after half a minute at the latest. The
+    /// exit status; -1: it was killed.
+    template <typename Ready>
+    int interrupted(const std::string& arguments, const Ready& ready) const {
+        const std::string command =
+            "cd '" + folder_.string() + "' && exec '" EDGESPLAT_PROGRAM "' " + arguments + " 2>/dev/null";
+        std::string shell = "/bin/sh", flag = "-c", text = command;
+        char* all[] = {shell.data(), flag.data(), text.data(), nullptr};
+        pid_t child = 0;
+        EXPECT_EQ(posix_spawn(&child, "/bin/sh", nullptr, nullptr, all, environ), 0);
+        for (int i = 0; i < 3000 && !ready(); ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(10));
+        kill(child, SIGINT);
+        int status = 0;
+        waitpid(child, &status, 0);
+        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     }
 
     /// Names of what is in the folder, hidden files too, sorted.
