@@ -23,6 +23,9 @@ add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
 target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
 
+# Packed volumes. A module of CMake's that ITK's own search has already been through.
+find_package(HDF5 REQUIRED COMPONENTS C)
+
 # What ITK's readers lack: bzip2 in NRRD, and a look into (gzipped) NIfTI files before ITK has them.
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)

@@ -351,6 +351,15 @@ AnalyticScene resized(const AnalyticScene& scene, const glm::ivec3& dims) {
     return result;
 }
 
+float sample_at(const AnalyticScene& scene, const glm::ivec3& voxel) {
+    double value = scene.value(glm::dvec3(voxel));
+    if (scene.noise > 0) {
+        const auto dims = glm::u64vec3(scene.dims), at = glm::u64vec3(voxel);
+        value += scene.noise * noise_of((at.z * dims.y + at.y) * dims.x + at.x, scene.noise_seed);
+    }
+    return static_cast<float>(value);
+}
+
 Volume sample(const AnalyticScene& scene) {
     Volume volume;
     volume.name = "builtin:" + scene.name;
@@ -367,11 +376,8 @@ Volume sample(const AnalyticScene& scene) {
     std::size_t index = 0;
     for (int z = 0; z < scene.dims.z; ++z)
         for (int y = 0; y < scene.dims.y; ++y)
-            for (int x = 0; x < scene.dims.x; ++x, ++index) {
-                double value = scene.value(glm::dvec3(x, y, z));
-                if (scene.noise > 0) value += scene.noise * noise_of(index, scene.noise_seed);
-                volume.values[index] = static_cast<float>(value);
-            }
+            for (int x = 0; x < scene.dims.x; ++x)
+                volume.values[index++] = sample_at(scene, {x, y, z});
     finish_volume(volume);
     return volume;
 }
@@ -380,7 +386,7 @@ bool is_builtin(std::string_view path) {
     return path.starts_with("builtin:");
 }
 
-Volume builtin_volume(std::string_view path) {
+AnalyticScene builtin_scene(std::string_view path) {
     if (is_builtin(path)) path.remove_prefix(8);
     const auto colon = path.find(':');
     auto scene = analytic_scene(path.substr(0, colon));
@@ -404,7 +410,11 @@ Volume builtin_volume(std::string_view path) {
             fail("builtin:{}: '{}' is neither one number of voxels nor three like 64x48x32", path, text);
         scene = resized(scene, count == 1 ? glm::ivec3(dims[0]) : glm::ivec3(dims[0], dims[1], dims[2]));
     }
-    return sample(scene);
+    return scene;
+}
+
+Volume builtin_volume(std::string_view path) {
+    return sample(builtin_scene(path));
 }
 
 }  // namespace edgesplat

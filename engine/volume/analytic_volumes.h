@@ -64,11 +64,17 @@ AnalyticScene slab_scene(const glm::ivec3& dims, const glm::dvec3& normal, const
 /// Cube of `side` voxels with a cylindrical hole of `hole_radius` along z (side 12 in the paper), centred in the grid.
 AnalyticScene cube_hole_scene(const glm::ivec3& dims, double side, double hole_radius, const EdgeProfile& profile);
 
+/// The sample at a voxel centre of the scene's grid, with its noise.
+float sample_at(const AnalyticScene& scene, const glm::ivec3& voxel);
+
 /// Samples the scene at the voxel centres of its grid, adds its noise, and finishes the volume.
 Volume sample(const AnalyticScene& scene);
 
 /// Whether the path has the form "builtin:NAME" (NAME may be unknown).
 bool is_builtin(std::string_view path);
+
+/// The scene of "builtin:NAME", or of "builtin:NAME:64" / "builtin:NAME:64x48x32" on another grid. Throws Error.
+AnalyticScene builtin_scene(std::string_view path);
 
 /// Samples "builtin:NAME", or "builtin:NAME:64" / "builtin:NAME:64x48x32" on another grid. Throws Error.
 Volume builtin_volume(std::string_view path);

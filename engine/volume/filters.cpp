@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/volume/packed_internal.h"
 
 namespace edgesplat {
 namespace {
@@ -22,10 +23,7 @@ Volume like(const Volume& volume) {
     return result;
 }
 
-std::size_t bin_of(float value, double low, double scale, std::size_t bins) {
-    const auto bin = static_cast<std::size_t>(std::max(0.0, (static_cast<double>(value) - low) * scale));
-    return std::min(bin, bins - 1);
-}
+using detail::bin_of;
 
 // Gradient magnitude per mm summed over the voxels of each value bin, and how many they were. Axes of one voxel and
 // oblique axes are fine: the differences are taken per voxel and divided by the length of the step.
@@ -87,6 +85,7 @@ std::vector<IsoSuggestion> between_values(const std::vector<std::size_t>& counts
 }  // namespace
 
 Volume box_filter(const Volume& volume) {
+    need_samples(volume, "the box filter");
     const auto& dims = volume.geometry.dims;
     Volume result = like(volume);
     const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
@@ -107,6 +106,7 @@ Volume box_filter(const Volume& volume) {
 }
 
 Volume threshold(const Volume& volume, double iso_value) {
+    need_samples(volume, "the threshold");
     Volume result = like(volume);
     std::transform(volume.values.begin(), volume.values.end(), result.values.begin(),
                    [&](float value) { return static_cast<double>(value) >= iso_value ? 1.0F : 0.0F; });
@@ -120,6 +120,7 @@ double scaled_value(const Volume& volume, double value) {
 }
 
 Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
+    need_samples(volume, "cropping");
     const glm::ivec3 dims = volume.geometry.dims;
     if (glm::any(glm::lessThan(low, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(high, dims)) ||
         glm::any(glm::lessThan(high - low, glm::ivec3(1))))
@@ -138,6 +139,7 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
 }
 
 std::vector<float> scaled_field(const Volume& volume) {
+    need_samples(volume, "the scaled field");
     std::vector<float> field(volume.values.size());
     std::transform(volume.values.begin(), volume.values.end(), field.begin(),
                    [&](float value) { return static_cast<float>(scaled_value(volume, static_cast<double>(value))); });
@@ -177,12 +179,21 @@ Histogram histogram(const Volume& volume, int bins) {
     result.counts.assign(static_cast<std::size_t>(bins), 0);
     const double range = result.high - result.low;
     const double scale = range > 0 ? bins / range : 0.0;
+    if (volume.packed) {
+        // Its own bins are finer. Where they do not fit into these, one goes where its middle lies.
+        const Histogram& stored = volume.packed->histogram();
+        for (std::size_t bin = 0; bin < stored.counts.size(); ++bin)
+            result.counts[(2 * bin + 1) * result.counts.size() / (2 * stored.counts.size())] += stored.counts[bin];
+        return result;
+    }
     for (const float value : volume.values)
         ++result.counts[bin_of(value, result.low, scale, result.counts.size())];
     return result;
 }
 
 std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
+    if (volume.packed)
+        return suggest_iso_values(load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt)), count);
     const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
     if (!(range > 0) || count < 1) return {};
     constexpr std::size_t kBins = 256;

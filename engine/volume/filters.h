@@ -38,7 +38,7 @@ struct Histogram {
 };
 
 /// Counts of all samples in `bins` >= 1 equal bins from the smallest to the largest. A constant volume has all in bin
-/// 0.
+/// 0. A packed volume's are added up from the bins in its file: exact where their number is a multiple of `bins`.
 Histogram histogram(const Volume& volume, int bins);
 
 struct IsoSuggestion {
@@ -48,7 +48,8 @@ struct IsoSuggestion {
 
 /// Values at which surfaces are likely: peaks of the mean gradient magnitude over the value axis (Kindlmann and Durkin
 /// 1998, in their simplest form); halfway between neighbouring values where there are few (masks, labels).
-/// Strongest first, at most `count`; empty for a constant volume.
+/// Strongest first, at most `count`; empty for a constant volume. A packed volume's are those of its finest level of at
+/// most `kMaxVoxelsLookedAt` voxels.
 std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count = 4);
 
 }  // namespace edgesplat

@@ -40,6 +40,8 @@ std::size_t chosen_frame(const std::string& path, const LoadOptions& options, st
 void report(const LoadOptions& options, double fraction, std::string_view what);
 /// Replaces the lengths of the axes by options.spacing, where given.
 void apply_spacing(Volume& volume, const LoadOptions& options);
+/// What a finished volume must say of values that are not as in the file.
+void add_value_notes(Volume& volume);
 /// A long message of a library on one line, without addresses of objects and source lines.
 std::string tidy(std::string_view message);
 

@@ -11,7 +11,9 @@
 #include <fstream>
 
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/hdf5_internal.h"
 #include "engine/volume/load_internal.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
 namespace {
@@ -20,9 +22,8 @@ namespace fs = std::filesystem;
 using namespace detail;
 
 constexpr const char* kFormats =
-    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, VTI, GIPL, TIFF and other images, or raw "
-    "data "
-    "described with --raw DXxDYxDZ:TYPE:little|big";
+    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, VTI, GIPL, TIFF and other images, packed "
+    "volumes, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
 
 bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
     std::string lower;
@@ -84,7 +85,21 @@ Volume load_vtk(const std::string& path, const std::string& head, const LoadOpti
 
 Volume load_minc(const std::string& path, const LoadOptions& options) {
     check_netcdf_is_whole(path);
+    const std::lock_guard lock(hdf5_mutex());
     return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)}, options);
+}
+
+bool is_hdf5(const std::string& path) {
+    std::error_code error;
+    return fs::is_regular_file(path, error) && first_bytes(path).starts_with("\x89HDF\r\n\x1a\n");
+}
+
+Volume load_packed(const std::string& path, const LoadOptions& options) {
+    (void)chosen_component(path, options, 1);
+    (void)chosen_frame(path, options, 1);
+    if (options.spacing)
+        fail("{}: --spacing: a packed volume keeps the spacing it was packed with (edgesplat pack --spacing)", path);
+    return open_packed(path);
 }
 
 Volume load_file(const std::string& path, const LoadOptions& options) {
@@ -187,7 +202,9 @@ Volume load_pattern(const std::string& path, const LoadOptions& options) {
     return volume;
 }
 
-void add_value_notes(Volume& volume) {
+}  // namespace
+
+void detail::add_value_notes(Volume& volume) {
     const float largest = std::max(std::abs(volume.min_value), std::abs(volume.max_value));
     const bool wide =
         volume.stored_type.find("32") != std::string::npos || volume.stored_type.find("64") != std::string::npos;
@@ -198,14 +215,14 @@ void add_value_notes(Volume& volume) {
                                            static_cast<double>(volume.min_value)));
 }
 
-}  // namespace
-
 Volume load_volume(const std::string& path, const LoadOptions& options) {
     if (is_builtin(path)) return builtin_volume(path);
     if (path.empty()) fail("no volume given");
     std::error_code error;
     Volume volume;
     try {
+        if (options.raw.empty() && is_hdf5(path) && !ends_with_any(path, {".mnc", ".mnc2"}))
+            return load_packed(path, options);
         if (fs::is_directory(path, error)) {
             volume = load_folder(path, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {

@@ -30,6 +30,7 @@ struct LoadOptions {
 /// Reads a volume and finishes it (see `finish_volume`). `path` is one of
 ///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, legacy VTK image data, GIPL, VTI (if built with VTK),
 ///    a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
+///  - a packed volume (packed_volume.h), whose samples stay in the file and whose limits are other ones;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;
 ///  - a pattern of slices with one printf number, e.g. "slice_%03d.tif";
 ///  - "builtin:NAME" (see `analytic_volumes.h`).

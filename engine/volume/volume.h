@@ -4,10 +4,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <string>
 #include <vector>
 
 namespace edgesplat {
+
+class PackedVolume;
 
 /// Where the voxels lie. Index space has its origin at the centre of voxel (0,0,0) and one unit per voxel;
 /// world space is in mm (the file's own unit), patient LPS where the file says so.
@@ -39,6 +42,8 @@ struct Volume {
     std::string stored_type;           ///< component type in the file, e.g. "int16"
     std::uint64_t checksum = 0;        ///< FNV-1a over dims, geometry and samples
     std::vector<std::string> notes;    ///< what reading had to assume, choose or correct, one sentence each
+    /// Set: `values` is empty and samples are read from here when asked for (packed_volume.h).
+    std::shared_ptr<const PackedVolume> packed;
 
     float at(int x, int y, int z) const {
         return values[(static_cast<std::size_t>(z) * static_cast<std::size_t>(geometry.dims.y) +

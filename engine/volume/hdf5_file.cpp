@@ -1,0 +1,328 @@
+#include <hdf5.h>
+
+#include <algorithm>
+
+#include "engine/volume/hdf5_internal.h"
+
+namespace edgesplat::detail {
+namespace {
+
+static_assert(sizeof(hid_t) == sizeof(std::int64_t) && sizeof(hsize_t) == sizeof(std::uint64_t));
+
+/// Alone with HDF5, and without the stack of lines that it prints about every failure: messages are ours. What it did
+/// before is set again afterwards, because ITK's MINC reader tells failures by what is printed.
+class Quiet {
+  public:
+    Quiet() : lock_(hdf5_mutex()) {
+        H5Eget_auto2(H5E_DEFAULT, &print_, &data_);
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    }
+    ~Quiet() { H5Eset_auto2(H5E_DEFAULT, print_, data_); }
+    Quiet(const Quiet&) = delete;
+    Quiet& operator=(const Quiet&) = delete;
+
+  private:
+    std::lock_guard<std::recursive_mutex> lock_;
+    H5E_auto2_t print_ = nullptr;
+    void* data_ = nullptr;
+};
+
+/// What HDF5 says was wrong where it began.
+std::string reason() {
+    std::string text;
+    const auto keep_first = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
+        auto& kept = *static_cast<std::string*>(data);
+        if (kept.empty() && error->desc != nullptr) kept = error->desc;
+        return 0;
+    };
+    H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+    return text.empty() ? "no reason given" : text;
+}
+
+hid_t memory_type(SampleType type) {
+    switch (type) {
+        case SampleType::Int8:
+            return H5T_NATIVE_INT8;
+        case SampleType::UInt8:
+            return H5T_NATIVE_UINT8;
+        case SampleType::Int16:
+            return H5T_NATIVE_INT16;
+        case SampleType::UInt16:
+            return H5T_NATIVE_UINT16;
+        case SampleType::Int32:
+            return H5T_NATIVE_INT32;
+        case SampleType::UInt32:
+            return H5T_NATIVE_UINT32;
+        case SampleType::Int64:
+            return H5T_NATIVE_INT64;
+        case SampleType::UInt64:
+            return H5T_NATIVE_UINT64;
+        case SampleType::Float32:
+            return H5T_NATIVE_FLOAT;
+        case SampleType::Float64:
+            return H5T_NATIVE_DOUBLE;
+    }
+    return -1;
+}
+
+hid_t file_type(SampleType type) {
+    switch (type) {
+        case SampleType::Int8:
+            return H5T_STD_I8LE;
+        case SampleType::UInt8:
+            return H5T_STD_U8LE;
+        case SampleType::Int16:
+            return H5T_STD_I16LE;
+        case SampleType::UInt16:
+            return H5T_STD_U16LE;
+        case SampleType::Int32:
+            return H5T_STD_I32LE;
+        case SampleType::UInt32:
+            return H5T_STD_U32LE;
+        case SampleType::Int64:
+            return H5T_STD_I64LE;
+        case SampleType::UInt64:
+            return H5T_STD_U64LE;
+        case SampleType::Float32:
+            return H5T_IEEE_F32LE;
+        case SampleType::Float64:
+            return H5T_IEEE_F64LE;
+    }
+    return -1;
+}
+
+/// False for what is no number of ours.
+bool sample_type_of(hid_t type, SampleType& result) {
+    const H5T_class_t kind = H5Tget_class(type);
+    const bool is_signed = kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
+    const std::size_t bits = 8 * H5Tget_size(type);
+    if (kind != H5T_INTEGER && kind != H5T_FLOAT) return false;
+    return sample_type_named(fmt::format("{}{}",
+                                         kind == H5T_FLOAT ? "float"
+                                         : is_signed       ? "int"
+                                                           : "uint",
+                                         bits),
+                             result);
+}
+
+Hdf5Id space(const Hdf5Extent& extent) {
+    if (extent.empty()) return {H5Screate(H5S_SCALAR), H5Sclose};
+    const std::vector<hsize_t> sizes(extent.begin(), extent.end());
+    return {H5Screate_simple(static_cast<int>(sizes.size()), sizes.data(), nullptr), H5Sclose};
+}
+
+Hdf5Extent extent_of(hid_t space) {
+    const int axes = H5Sget_simple_extent_ndims(space);
+    std::vector<hsize_t> sizes(static_cast<std::size_t>(std::max(axes, 0)));
+    if (axes > 0) H5Sget_simple_extent_dims(space, sizes.data(), nullptr);
+    return {sizes.begin(), sizes.end()};
+}
+
+/// The dataset's space with a box of it selected.
+Hdf5Id selection(hid_t dataset, const Hdf5Extent& low, const Hdf5Extent& size) {
+    Hdf5Id file_space(H5Dget_space(dataset), H5Sclose);
+    const std::vector<hsize_t> start(low.begin(), low.end()), count(size.begin(), size.end());
+    if (H5Sselect_hyperslab(file_space.get(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) < 0)
+        return {};
+    return file_space;
+}
+
+}  // namespace
+
+std::recursive_mutex& hdf5_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
+bool Hdf5Id::close() {
+    if (id_ < 0) return true;
+    const Quiet quiet;
+    return close_(std::exchange(id_, -1)) >= 0;
+}
+
+void Hdf5Dataset::read(const Hdf5Extent& low, const Hdf5Extent& size, SampleType type, void* out) const {
+    const Quiet quiet;
+    const Hdf5Id from = selection(id_.get(), low, size), to = space(size);
+    if (!from || H5Dread(id_.get(), memory_type(type), to.get(), from.get(), H5P_DEFAULT, out) < 0)
+        fail("{}: {}: cannot be read, the file is damaged: {}", file_, name_, reason());
+}
+
+void Hdf5Dataset::write(const Hdf5Extent& low, const Hdf5Extent& size, SampleType type, const void* data) const {
+    const Quiet quiet;
+    const Hdf5Id to = selection(id_.get(), low, size), from = space(size);
+    if (!to || H5Dwrite(id_.get(), memory_type(type), from.get(), to.get(), H5P_DEFAULT, data) < 0)
+        fail("{}: {}: cannot be written: {}", file_, name_, reason());
+}
+
+Hdf5File Hdf5File::open(const std::string& path) {
+    const Quiet quiet;
+    const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+    H5Pset_file_locking(access.get(), false, true);  // locks fail on read-only and some network file systems
+#endif
+    if (H5Fis_hdf5(path.c_str()) <= 0) fail("{}: not an HDF5 file, or one cut off in its first bytes", path);
+    Hdf5File file;
+    file.path_ = path;
+    file.id_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
+    if (!file.id_) fail("{}: cannot be opened, it is truncated or damaged: {}", path, reason());
+    return file;
+}
+
+Hdf5File Hdf5File::create(const std::string& path, const std::string& shown_path) {
+    const Quiet quiet;
+    Hdf5File file;
+    file.path_ = shown_path;
+    file.id_ = Hdf5Id(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    if (!file.id_) fail("{}: cannot be written: {}", shown_path, reason());
+    return file;
+}
+
+void Hdf5File::close() {
+    const Quiet quiet;
+    const bool flushed = H5Fflush(id_.get(), H5F_SCOPE_GLOBAL) >= 0;
+    const std::string why = flushed ? "" : reason();
+    if (!id_.close() || !flushed) fail("{}: cannot be written: {}", path_, why);
+}
+
+bool Hdf5File::has_attribute(const std::string& name) const {
+    const Quiet quiet;
+    return H5Aexists(id_.get(), name.c_str()) > 0;
+}
+
+Hdf5Id Hdf5File::attribute(const std::string& name) const {
+    if (!has_attribute(name)) fail("{}: attribute {}: missing", path_, name);
+    Hdf5Id id(H5Aopen(id_.get(), name.c_str(), H5P_DEFAULT), H5Aclose);
+    if (!id) fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+    return id;
+}
+
+std::string Hdf5File::text(const std::string& name) const {
+    const Quiet quiet;
+    const Hdf5Id id = attribute(name);
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    if (H5Tget_class(stored.get()) != H5T_STRING || H5Sget_simple_extent_npoints(extent.get()) != 1)
+        fail("{}: attribute {}: expected a text", path_, name);
+    const Hdf5Id memory(H5Tcopy(H5T_C_S1), H5Tclose);
+    H5Tset_cset(memory.get(), H5Tget_cset(stored.get()));
+    if (H5Tis_variable_str(stored.get()) > 0) {  // as h5py writes them
+        H5Tset_size(memory.get(), H5T_VARIABLE);
+        char* text = nullptr;
+        if (H5Aread(id.get(), memory.get(), static_cast<void*>(&text)) < 0 || text == nullptr)
+            fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+        std::string result(text);
+        H5free_memory(text);
+        return result;
+    }
+    std::string result(H5Tget_size(stored.get()) + 1, '\0');
+    H5Tset_size(memory.get(), result.size());
+    if (H5Aread(id.get(), memory.get(), result.data()) < 0)
+        fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+    return result.c_str();
+}
+
+std::vector<double> Hdf5File::numbers(const std::string& name, std::size_t count) const {
+    const Quiet quiet;
+    const Hdf5Id id = attribute(name);
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    SampleType type{};
+    const auto found = H5Sget_simple_extent_npoints(extent.get());
+    if (!sample_type_of(stored.get(), type) || found < 0 || static_cast<std::size_t>(found) != count)
+        fail("{}: attribute {}: expected {} number{}", path_, name, count, count == 1 ? "" : "s");
+    std::vector<double> values(count);
+    if (H5Aread(id.get(), H5T_NATIVE_DOUBLE, values.data()) < 0)
+        fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+    return values;
+}
+
+std::uint64_t Hdf5File::whole_number(const std::string& name) const {
+    const Quiet quiet;
+    const Hdf5Id id = attribute(name);
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    std::uint64_t value = 0;
+    if (H5Tget_class(stored.get()) != H5T_INTEGER || H5Sget_simple_extent_npoints(extent.get()) != 1)
+        fail("{}: attribute {}: expected a whole number", path_, name);
+    if (H5Aread(id.get(), H5T_NATIVE_UINT64, &value) < 0)
+        fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+    return value;
+}
+
+void Hdf5File::set_text(const std::string& name, const std::string& value) {
+    const Quiet quiet;
+    const Hdf5Id type(H5Tcopy(H5T_C_S1), H5Tclose), extent = space({});
+    H5Tset_cset(type.get(), H5T_CSET_UTF8);
+    H5Tset_size(type.get(), value.size() + 1);
+    const Hdf5Id id(H5Acreate2(id_.get(), name.c_str(), type.get(), extent.get(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!id || H5Awrite(id.get(), type.get(), value.c_str()) < 0)
+        fail("{}: attribute {}: cannot be written: {}", path_, name, reason());
+}
+
+void Hdf5File::set_numbers(const std::string& name, SampleType type, const Hdf5Extent& extent, const double* values) {
+    const Quiet quiet;
+    const Hdf5Id sizes = space(extent);
+    const Hdf5Id id(H5Acreate2(id_.get(), name.c_str(), file_type(type), sizes.get(), H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+    if (!id || H5Awrite(id.get(), H5T_NATIVE_DOUBLE, values) < 0)
+        fail("{}: attribute {}: cannot be written: {}", path_, name, reason());
+}
+
+void Hdf5File::set_whole_number(const std::string& name, std::uint64_t value) {
+    const Quiet quiet;
+    const Hdf5Id extent = space({});
+    const Hdf5Id id(H5Acreate2(id_.get(), name.c_str(), H5T_STD_U64LE, extent.get(), H5P_DEFAULT, H5P_DEFAULT),
+                    H5Aclose);
+    if (!id || H5Awrite(id.get(), H5T_NATIVE_UINT64, &value) < 0)
+        fail("{}: attribute {}: cannot be written: {}", path_, name, reason());
+}
+
+bool Hdf5File::has(const std::string& path) const {
+    const Quiet quiet;
+    // H5Lexists wants every group on the way to exist.
+    for (auto end = path.find('/', 1);; end = path.find('/', end + 1)) {
+        if (H5Lexists(id_.get(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
+        if (end == std::string::npos) return true;
+    }
+}
+
+Hdf5Dataset Hdf5File::dataset(const std::string& path) const {
+    const Quiet quiet;
+    if (!has(path)) fail("{}: {}: missing", path_, path);
+    Hdf5Dataset result;
+    result.file_ = path_;
+    result.name_ = path;
+    result.id_ = Hdf5Id(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    if (!result.id_) fail("{}: {}: not a dataset, or damaged: {}", path_, path, reason());
+    const Hdf5Id type(H5Dget_type(result.id_.get()), H5Tclose), extent(H5Dget_space(result.id_.get()), H5Sclose);
+    if (!sample_type_of(type.get(), result.type_)) fail("{}: {}: does not hold numbers", path_, path);
+    result.extent_ = extent_of(extent.get());
+    return result;
+}
+
+Hdf5Dataset Hdf5File::create_dataset(const std::string& path, const Hdf5Layout& layout) {
+    const Quiet quiet;
+    const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+    H5Pset_create_intermediate_group(links.get(), 1);
+    if (layout.chunk > 0) {
+        std::vector<hsize_t> sides;  // not beyond the dataset's, which HDF5 refuses
+        for (const auto side : layout.extent)
+            sides.push_back(std::min(side, layout.chunk));
+        H5Pset_chunk(creation.get(), static_cast<int>(sides.size()), sides.data());
+        H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
+        if (layout.compress) {
+            H5Pset_shuffle(creation.get());
+            H5Pset_deflate(creation.get(), 1);
+        }
+    }
+    const Hdf5Id extent = space(layout.extent);
+    Hdf5Dataset result;
+    result.file_ = path_;
+    result.name_ = path;
+    result.id_ = Hdf5Id(H5Dcreate2(id_.get(), path.c_str(), file_type(layout.type), extent.get(), links.get(),
+                                   creation.get(), H5P_DEFAULT),
+                        H5Dclose);
+    if (!result.id_) fail("{}: {}: cannot be written: {}", path_, path, reason());
+    result.extent_ = layout.extent;
+    result.type_ = layout.type;
+    return result;
+}
+
+}  // namespace edgesplat::detail

@@ -1,0 +1,143 @@
+#include "engine/volume/pack_source_internal.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <thread>
+
+#include "engine/volume/analytic_volumes.h"
+
+namespace edgesplat::detail {
+namespace {
+
+/// Calls work(first, last) for parts of 0..count, one a core.
+template <typename Work>
+void in_parallel(int count, const Work& work) {
+    const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, std::max(count, 1));
+    std::vector<std::jthread> pool;
+    for (int i = 1; i < threads; ++i)
+        pool.emplace_back([&work, i, count, threads] { work(count * i / threads, count * (i + 1) / threads); });
+    work(0, count / threads);
+}
+
+class AnalyticSource final : public PackSource {
+  public:
+    explicit AnalyticSource(const std::string& path) : scene_(builtin_scene(path)) {
+        description.name = "builtin:" + scene_.name;
+        description.stored_type = "float64";
+        description.geometry.dims = scene_.dims;
+        for (int axis = 0; axis < 3; ++axis)
+            description.geometry.index_to_world_axes[axis][axis] = scene_.spacing[axis];
+    }
+    void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
+        in_parallel(size.y * size.z, [&](int first, int last) {
+            for (int row = first; row < last; ++row) {
+                float* const to = out.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(size.x);
+                for (int x = 0; x < size.x; ++x)
+                    to[x] = sample_at(scene_, low + glm::ivec3(x, row % size.y, row / size.y));
+            }
+        });
+    }
+
+  private:
+    AnalyticScene scene_;
+};
+
+class MemorySource final : public PackSource {
+  public:
+    explicit MemorySource(const Volume& volume) : volume_(&volume) { describe(); }
+    explicit MemorySource(Volume&& volume) : owned_(std::move(volume)), volume_(&owned_) { describe(); }
+    bool streamed() const override { return false; }
+    void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
+        const glm::i64vec3 dims(volume_->geometry.dims);
+        float* to = out.data();
+        for (int z = low.z; z < low.z + size.z; ++z)
+            for (int y = low.y; y < low.y + size.y; ++y)
+                to = std::copy_n(volume_->values.begin() + (z * dims.y + y) * dims.x + low.x, size.x, to);
+    }
+
+  private:
+    void describe() {
+        description.geometry = volume_->geometry;
+        description.in_patient = volume_->in_patient;
+        description.name = volume_->name;
+        description.stored_type = volume_->stored_type;
+        description.notes = volume_->notes;
+        description.non_finite_count = volume_->non_finite_count;
+    }
+    Volume owned_;
+    const Volume* volume_;
+};
+
+class FileSource final : public PackSource {
+  public:
+    FileSource(FileLayout layout, const Volume& described) : layout_(std::move(layout)) {
+        description = described;
+        file_ = open(layout_.file.c_str(), O_RDONLY | O_CLOEXEC);
+        if (file_ < 0) fail("{}: cannot be read: {}", layout_.file, std::strerror(errno));
+    }
+    ~FileSource() override { close(file_); }
+    FileSource(const FileSource&) = delete;
+    FileSource& operator=(const FileSource&) = delete;
+
+    void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
+        const glm::i64vec3 dims(description.geometry.dims);
+        const bool whole_rows = size.x == dims.x;
+        const int rows = whole_rows ? size.y : 1;  // that lie one after the other
+        const auto run = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(rows);
+        std::vector<char> bytes(run * size_of(layout_.type));
+        float* to = out.data();
+        for (int z = low.z; z < low.z + size.z; ++z)
+            for (int y = low.y; y < low.y + size.y; y += rows) {
+                fill(bytes, static_cast<std::size_t>((z * dims.y + y) * dims.x + low.x));
+                convert_samples(layout_.type, bytes.data(), 0, 1, run, to);
+                to += run;
+            }
+    }
+
+  private:
+    void fill(std::vector<char>& bytes, std::size_t first_sample) const {
+        const std::size_t item = size_of(layout_.type), begin = layout_.offset + first_sample * item;
+        for (std::size_t done = 0; done < bytes.size();) {
+            const ssize_t count =
+                pread(file_, bytes.data() + done, bytes.size() - done, static_cast<off_t>(begin + done));
+            if (count < 0 && errno == EINTR) continue;
+            if (count < 0) fail("{}: cannot be read: {}", layout_.file, std::strerror(errno));
+            if (count == 0) fail("{}: truncated: it ends at byte {}", layout_.file, begin + done);
+            done += static_cast<std::size_t>(count);
+        }
+        for (std::size_t i = 0; layout_.swapped && i < bytes.size(); i += item)
+            std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
+                         bytes.begin() + static_cast<std::ptrdiff_t>(i + item));
+    }
+
+    FileLayout layout_;
+    int file_ = -1;
+};
+
+}  // namespace
+
+std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description) {
+    const std::size_t needed = description.geometry.voxel_count() * size_of(layout.type);
+    std::error_code error;
+    const std::size_t size = std::filesystem::file_size(layout.file, error);
+    if (error) fail("{}: cannot be read: {}", layout.file, error.message());
+    if (size < layout.offset || size - layout.offset < needed)
+        fail("{}: truncated: {} bytes of voxels, expected {}", layout.file,
+             size < layout.offset ? 0 : size - layout.offset, needed);
+    return std::make_unique<FileSource>(layout, description);
+}
+
+std::unique_ptr<PackSource> memory_source(const Volume& volume) {
+    return std::make_unique<MemorySource>(volume);
+}
+
+std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptions& options) {
+    if (is_builtin(path)) return std::make_unique<AnalyticSource>(path);
+    return std::make_unique<MemorySource>(load_volume(path, options));
+}
+
+}  // namespace edgesplat::detail

@@ -1,0 +1,43 @@
+// Samples of a volume read box by box, for packing volumes larger than memory. Internal to engine/volume.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "engine/volume/load_internal.h"
+
+namespace edgesplat::detail {
+
+class PackSource {
+  public:
+    virtual ~PackSource() = default;
+    PackSource() = default;
+    PackSource(const PackSource&) = delete;
+    PackSource& operator=(const PackSource&) = delete;
+
+    /// Everything but samples and what follows from them.
+    Volume description;
+    /// Whether samples come from elsewhere than from memory.
+    virtual bool streamed() const { return true; }
+    /// A box inside the volume, x fastest, as the volume has them: those that are not finite too.
+    virtual void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const = 0;
+};
+
+/// Where the samples of a file lie, one after the other, x fastest.
+struct FileLayout {
+    std::string file;        ///< which may not be the one that was named
+    std::size_t offset = 0;  ///< bytes before the first
+    SampleType type = SampleType::UInt8;
+    bool swapped = false;  ///< not in the byte order of this machine
+};
+
+/// Fails where the file ends before the last sample.
+std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description);
+/// `volume` must outlive it.
+std::unique_ptr<PackSource> memory_source(const Volume& volume);
+/// Builtin scenes and files that hold their samples as they are, uncompressed, are read where they lie; all others
+/// through load_volume.
+std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptions& options);
+
+}  // namespace edgesplat::detail
