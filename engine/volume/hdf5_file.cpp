@@ -217,7 +217,8 @@ std::string Hdf5File::text(const std::string& name) const {
     H5Tset_size(memory.get(), result.size());
     if (H5Aread(id.get(), memory.get(), result.data()) < 0)
         fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
-    return result.c_str();
+    result.resize(std::min(result.find('\0'), result.size()));
+    return result;
 }
 
 std::vector<double> Hdf5File::numbers(const std::string& name, std::size_t count) const {

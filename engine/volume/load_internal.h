@@ -87,6 +87,8 @@ struct ItkRequest {
     double slope = 1, intercept = 0;  ///< applied to those floats
 };
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options);
+/// What the header says, without voxels: the type of a sample, or nothing where it is not one scalar volume.
+std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description);
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options);
 Volume load_nifti(const std::string& path, const LoadOptions& options);

@@ -171,14 +171,34 @@ static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
            space.find("right") != std::string::npos;
 }
 
-Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
-    const std::string& path = request.path;
-    const auto io = image_io(request.format);
-    report(options, 0.0, "reading header");
+/// The reader with the file's header in it.
+static itk::ImageIOBase::Pointer header_of(const ItkRequest& request) {
+    auto io = image_io(request.format);
     guarded(request, false, [&] {
-        io->SetFileName(request.read_path.empty() ? path : request.read_path);
+        io->SetFileName(request.read_path.empty() ? request.path : request.read_path);
         io->ReadImageInformation();
     });
+    return io;
+}
+
+std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description) {
+    const auto io = header_of(request);
+    auto dims = dims_of(*io);
+    while (dims.size() > 3 && dims.back() == 1)
+        dims.pop_back();
+    if (dims.size() != 3 || io->GetNumberOfComponents() != 1) return std::nullopt;
+    const SampleType type = sample_type_of(*io, request.path);
+    description.name = request.path;
+    description.stored_type = name_of(type);
+    description.geometry = geometry_of(*io);
+    description.in_patient = in_patient(*io, request.format);
+    return type;
+}
+
+Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
+    const std::string& path = request.path;
+    report(options, 0.0, "reading header");
+    const auto io = header_of(request);
     auto dims = dims_of(*io);
     while (dims.size() > 3 && dims.back() == 1)
         dims.pop_back();

@@ -4,10 +4,11 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <fstream>
 #include <sstream>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/pack_source_internal.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -50,6 +51,8 @@ struct MetaHeader {
     std::string data_file;
     std::size_t listed = 0;       // data files after "LIST"
     std::size_t data_offset = 0;  // of data in the header's own file
+    bool big_endian = false;
+    bool plain = true;  // nothing said that makes voxels more than bytes one after the other from there
 };
 
 MetaHeader parse(const std::string& path) {
@@ -77,8 +80,12 @@ MetaHeader parse(const std::string& path) {
             for (std::string word; words >> word;)
                 ++header.spacings;
         if (key == "AnatomicalOrientation") header.in_patient = value.find_first_of("LRlr") != std::string::npos;
-        if (key == "CompressedData")
-            header.compressed = !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
+        const bool yes = !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
+        if (key == "BinaryDataByteOrderMSB" || key == "ElementByteOrderMSB") header.big_endian = yes;
+        if ((key == "BinaryData" && !yes) || (key == "HeaderSize" && value != "0") ||
+            key.starts_with("ElementToIntensity"))
+            header.plain = false;
+        if (key == "CompressedData") header.compressed = yes;
         if (key != "CompressedData" && key != "CompressedDataSize") header.lines.push_back(line);
     }
     fail("{}: not a MetaImage header: it has no line 'ElementDataFile = ...'", path);
@@ -121,12 +128,32 @@ void inflate_file(const std::string& path, const fs::path& source, std::size_t o
     if (!out.flush()) fail("{}: cannot write a temporary file of {} bytes", path, total);
 }
 
+bool is_local(const MetaHeader& header) {
+    return header.data_file == "LOCAL" || header.data_file == "Local" || header.data_file == "local";
+}
+
+bool has_several_files(const MetaHeader& header) {
+    return header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
+}
+
 }  // namespace
+
+std::optional<FileLayout> meta_layout(const std::string& path, Volume& description) {
+    const auto header = parse(path);
+    const bool plain = header.plain && !header.compressed && !has_several_files(header) && header.dims.size() == 3 &&
+                       (header.spacings == 0 || header.spacings == header.axes);
+    if (!plain) return std::nullopt;
+    const auto type = describe_through_itk({.format = ItkFormat::Meta, .path = path}, description);
+    if (!type) return std::nullopt;
+    description.in_patient = header.in_patient;
+    const auto data = is_local(header) ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
+    return FileLayout{data.string(), is_local(header) ? header.data_offset : 0, *type,
+                      header.big_endian != (std::endian::native == std::endian::big)};
+}
 
 Volume load_meta(const std::string& path, const LoadOptions& options) {
     const auto header = parse(path);
-    const bool local = header.data_file == "LOCAL" || header.data_file == "Local" || header.data_file == "local";
-    const bool several = header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
+    const bool local = is_local(header), several = has_several_files(header);
     const auto data = local ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
     ItkRequest request{.format = ItkFormat::Meta, .path = path};
     if (several && header.dims.size() == 3) {

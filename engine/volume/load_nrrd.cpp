@@ -6,11 +6,12 @@
 #include <bzlib.h>
 
 #include <algorithm>
+#include <bit>
 #include <fstream>
 #include <map>
 #include <sstream>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/pack_source_internal.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -186,6 +187,27 @@ std::string kinds_with_list(const NrrdHeader& header, std::size_t axes, std::siz
 }
 
 }  // namespace
+
+std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& description) {
+    const auto header = parse(path);
+    const auto sizes = words_of(header.value("sizes"));
+    const bool of_one_file = header.listed_files.empty() && header.value("datafile").find('%') == std::string::npos;
+    const bool plain = header.value("encoding") == "raw" && sizes.size() == 3 && of_one_file &&
+                       header.value("spacedirections").find("none") == std::string::npos &&
+                       (!header.has("lineskip") || header.value("lineskip") == "0");
+    // Whether a first axis of 2 to 4 is colour or space is for load_nrrd to ask.
+    if (!plain || (sizes[0].size() == 1 && sizes[0][0] <= '4')) return std::nullopt;
+    const auto type = describe_through_itk({.format = ItkFormat::Nrrd, .path = path}, description);
+    if (!type) return std::nullopt;
+    FileLayout layout{data_files(path, header)[0].string(), header.detached() ? 0 : header.data_offset, *type, false};
+    const long long byte_skip = header.has("byteskip") ? number(path, "byte skip", header.value("byteskip")) : 0;
+    const std::size_t needed = description.geometry.voxel_count() * size_of(*type), stored = fs::file_size(layout.file);
+    if (byte_skip < -1 || needed > stored) return std::nullopt;
+    layout.offset = byte_skip < 0 ? stored - needed : layout.offset + static_cast<std::size_t>(byte_skip);
+    layout.swapped =
+        header.has("endian") && (header.value("endian") == "little") != (std::endian::native == std::endian::little);
+    return layout;
+}
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options) {
     const auto header = parse(path);

@@ -1,10 +1,8 @@
 // Header-less files, described on the command line.
 #include <bit>
 #include <charconv>
-#include <cstring>
-#include <fstream>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/pack_source_internal.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -30,72 +28,92 @@ T parsed(std::string_view text, const std::string& raw) {
     return value;
 }
 
-void swap_bytes(std::vector<char>& data, std::size_t size) {
-    for (std::size_t i = 0; i + size <= data.size(); i += size)
-        std::reverse(data.begin() + static_cast<std::ptrdiff_t>(i),
-                     data.begin() + static_cast<std::ptrdiff_t>(i + size));
-}
+struct RawForm {
+    std::vector<std::size_t> dims;
+    SampleType type = SampleType::UInt8;
+    bool swapped = false;
+    glm::dvec3 spacing{1};
+    std::size_t skip = 0;
+};
 
-}  // namespace
-
-Volume load_raw(const std::string& path, const LoadOptions& options) {
+RawForm form_of(const std::string& path, const LoadOptions& options) {
+    RawForm form;
     const auto parts = split(options.raw, ':');
     if (parts.size() < 3 || parts.size() > 5) fail("--raw {}: {}", options.raw, kForm);
     const auto sides = split(parts[0], 'x');
     if (sides.size() != 3) fail("--raw {}: '{}' is not three dims; {}", options.raw, parts[0], kForm);
-    std::vector<std::size_t> dims;
     for (const auto side : sides)
-        dims.push_back(parsed<std::size_t>(side, options.raw));
-    SampleType type{};
-    if (!sample_type_named(parts[1], type))
+        form.dims.push_back(parsed<std::size_t>(side, options.raw));
+    if (!sample_type_named(parts[1], form.type))
         fail(
             "--raw {}: type '{}' is none of int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64",
             options.raw, parts[1]);
     if (parts[2] != "little" && parts[2] != "big")
         fail("--raw {}: byte order '{}' is neither little nor big", options.raw, parts[2]);
-    glm::dvec3 spacing(1);
+    form.swapped = (parts[2] == "little") != (std::endian::native == std::endian::little);
     if (parts.size() > 3) {
         const auto lengths = split(parts[3], ',');
         if (lengths.size() != 3) fail("--raw {}: '{}' is not three spacings; {}", options.raw, parts[3], kForm);
         for (int axis = 0; axis < 3; ++axis) {
-            spacing[axis] = parsed<double>(lengths[static_cast<std::size_t>(axis)], options.raw);
-            if (!(spacing[axis] > 0)) fail("--raw {}: spacing {} must be above 0", options.raw, spacing[axis]);
+            form.spacing[axis] = parsed<double>(lengths[static_cast<std::size_t>(axis)], options.raw);
+            if (!(form.spacing[axis] > 0))
+                fail("--raw {}: spacing {} must be above 0", options.raw, form.spacing[axis]);
         }
     }
-    const std::size_t skip = parts.size() > 4 ? parsed<std::size_t>(parts[4], options.raw) : 0;
+    if (parts.size() > 4) form.skip = parsed<std::size_t>(parts[4], options.raw);
     (void)chosen_component(path, options, 1);
     (void)chosen_frame(path, options, 1);
 
-    const std::size_t bytes = checked_bytes(path, dims, size_of(type));
+    return form;
+}
+
+/// `bytes` of all voxels.
+FileLayout layout_of(const RawForm& form, std::size_t bytes, const std::string& path, const LoadOptions& options,
+                     Volume& volume) {
     const std::size_t size = std::filesystem::file_size(path);
-    if (skip > size || size - skip < bytes)
-        fail("{}: {} bytes, but --raw {} needs {} after skipping {}", path, size, options.raw, bytes, skip);
-    Volume volume;
-    if (size - skip > bytes) {
-        const auto spare = size - skip - bytes;
-        if (skip == 0)
+    if (form.skip > size || size - form.skip < bytes)
+        fail("{}: {} bytes, but --raw {} needs {} after skipping {}", path, size, options.raw, bytes, form.skip);
+    if (size - form.skip > bytes) {
+        const auto spare = size - form.skip - bytes;
+        if (form.skip == 0)
             fail("{}: {} bytes more than --raw {} needs: wrong dims or type, or a header (give its size as skip)", path,
                  spare, options.raw);
         volume.notes.push_back(fmt::format("{} bytes after the last voxel were not used.", spare));
     }
     volume.name = path;
-    volume.stored_type = name_of(type);
-    volume.geometry.dims = glm::ivec3(dims[0], dims[1], dims[2]);
+    volume.stored_type = name_of(form.type);
+    volume.geometry.dims = glm::ivec3(form.dims[0], form.dims[1], form.dims[2]);
     for (int axis = 0; axis < 3; ++axis)
-        volume.geometry.index_to_world_axes[axis][axis] = spacing[axis];
-    volume.values.resize(volume.geometry.voxel_count());
+        volume.geometry.index_to_world_axes[axis][axis] = form.spacing[axis];
+    return {path, form.skip, form.type, form.swapped};
+}
 
-    std::ifstream file(path, std::ios::binary);
-    file.seekg(static_cast<std::streamoff>(skip));
-    const std::size_t slice = dims[0] * dims[1];
-    const bool swap = (parts[2] == "little") != (std::endian::native == std::endian::little);
-    std::vector<char> buffer(slice * size_of(type));
-    for (std::size_t z = 0; z < dims[2]; ++z) {
-        report(options, 0.9 * static_cast<double>(z) / static_cast<double>(dims[2]), "reading voxels");
-        if (!file.read(buffer.data(), static_cast<std::streamsize>(buffer.size())))
-            fail("{}: truncated or unreadable at slice {}", path, z);
-        if (swap) swap_bytes(buffer, size_of(type));
-        convert_samples(type, buffer.data(), 0, 1, slice, volume.values.data() + z * slice);
+}  // namespace
+
+FileLayout raw_layout(const std::string& path, const LoadOptions& options, Volume& description) {
+    const RawForm form = form_of(path, options);
+    std::size_t voxels = 1;
+    for (const auto side : form.dims) {
+        if (side < 1 || side > kMaxPackedVoxelsPerAxis || voxels > kMaxPackedVoxels / side)
+            fail("--raw {}: dims {} x {} x {}: expected 1 to {} along each axis, and at most 2^40 in all", options.raw,
+                 form.dims[0], form.dims[1], form.dims[2], kMaxPackedVoxelsPerAxis);
+        voxels *= side;
+    }
+    return layout_of(form, voxels * size_of(form.type), path, options, description);
+}
+
+Volume load_raw(const std::string& path, const LoadOptions& options) {
+    const RawForm form = form_of(path, options);
+    Volume volume;
+    const auto layout = layout_of(form, checked_bytes(path, form.dims, size_of(form.type)), path, options, volume);
+    volume.values.resize(volume.geometry.voxel_count());
+    const auto source = file_source(layout, volume);
+    const glm::ivec3& dims = volume.geometry.dims;
+    const std::size_t slice = form.dims[0] * form.dims[1];
+    for (int z = 0; z < dims.z; ++z) {
+        report(options, 0.9 * z / dims.z, "reading voxels");
+        source->read({0, 0, z}, {dims.x, dims.y, 1},
+                     std::span(volume.values).subspan(static_cast<std::size_t>(z) * slice, slice));
     }
     return volume;
 }

@@ -4,8 +4,10 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <thread>
 
 #include "engine/volume/analytic_volumes.h"
@@ -118,6 +120,13 @@ class FileSource final : public PackSource {
     int file_ = -1;
 };
 
+bool is_nrrd(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    std::array<char, 5> magic{};
+    file.read(magic.data(), magic.size());
+    return std::string_view(magic.data(), magic.size()) == "NRRD0";
+}
+
 }  // namespace
 
 std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description) {
@@ -137,7 +146,24 @@ std::unique_ptr<PackSource> memory_source(const Volume& volume) {
 
 std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptions& options) {
     if (is_builtin(path)) return std::make_unique<AnalyticSource>(path);
-    return std::make_unique<MemorySource>(load_volume(path, options));
+    std::error_code error;
+    if (std::filesystem::is_regular_file(path, error) && !options.component && !options.frame) {
+        Volume description;
+        std::optional<FileLayout> layout;
+        if (!options.raw.empty())
+            layout = raw_layout(path, options, description);
+        else if (is_nrrd(path))
+            layout = nrrd_layout(path, description);
+        else if (path.ends_with(".mha") || path.ends_with(".mhd"))
+            layout = meta_layout(path, description);
+        if (layout) {
+            apply_spacing(description, options);
+            return file_source(*layout, description);
+        }
+    }
+    Volume volume = load_volume(path, options);
+    if (volume.packed) fail("{}: is a packed volume already", path);
+    return std::make_unique<MemorySource>(std::move(volume));
 }
 
 }  // namespace edgesplat::detail

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "engine/volume/load_internal.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {
 
@@ -31,6 +32,13 @@ struct FileLayout {
     SampleType type = SampleType::UInt8;
     bool swapped = false;  ///< not in the byte order of this machine
 };
+
+/// Where the voxels are that --raw describes; `description` gets what it says of them.
+FileLayout raw_layout(const std::string& path, const LoadOptions& options, Volume& description);
+/// Likewise for files with a header, where they hold one volume as it is, uncompressed and in one piece; nothing for
+/// all others, whatever is wrong with them.
+std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& description);
+std::optional<FileLayout> meta_layout(const std::string& path, Volume& description);
 
 /// Fails where the file ends before the last sample.
 std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description);

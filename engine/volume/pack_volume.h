@@ -33,7 +33,7 @@ struct PackSummary {
 /// of `output` is as it was.
 PackSummary pack_volume(const Volume& volume, const std::string& output, const PackOptions& options = {});
 
-/// Packs what `load_volume` reads. builtin:NAME is evaluated piece by
+/// Packs what `load_volume` reads. builtin:NAME, raw files and uncompressed NRRD and MetaImage files are read piece by
 /// piece: however large the volume, no more than about 100 MB of it are in memory at any time.
 PackSummary pack_file(const std::string& path, const LoadOptions& load, const std::string& output,
                       const PackOptions& options = {});

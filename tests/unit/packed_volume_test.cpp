@@ -2,6 +2,8 @@
 #include "engine/volume/packed_volume.h"
 
 #include <hdf5.h>
+#include <itkMetaImageIO.h>
+#include <itkNrrdImageIO.h>
 
 #include <algorithm>
 #include <cmath>
@@ -307,6 +309,83 @@ TEST_F(PackedVolumeTest, BuiltinScenesAreTheSameAsInMemory) {
         EXPECT_EQ(load_level(opened, 0).values, volume.values);
         EXPECT_EQ(opened.geometry.index_to_world_axes, volume.geometry.index_to_world_axes);
     }
+}
+
+/// Packs it and compares with what load_volume makes of it.
+void expect_streamed(const std::string& path, const std::string& packed, const edgesplat::LoadOptions& options = {}) {
+    EXPECT_TRUE(edgesplat::pack_file(path, options, packed).streamed) << path;
+    const Volume volume = edgesplat::load_volume(path, options), opened = edgesplat::open_packed(packed);
+    EXPECT_EQ(opened.checksum, volume.checksum) << path;
+    EXPECT_EQ(opened.packed->source(), volume.name);
+    EXPECT_EQ(opened.geometry.index_to_world_axes, volume.geometry.index_to_world_axes) << path;
+    EXPECT_EQ(opened.geometry.origin, volume.geometry.origin) << path;
+    EXPECT_EQ(opened.in_patient, volume.in_patient) << path;
+    EXPECT_EQ(opened.stored_type, volume.stored_type) << path;
+    EXPECT_EQ(opened.notes, volume.notes) << path;
+    EXPECT_EQ(load_level(opened, 0).values, volume.values) << path;
+}
+
+TEST_F(PackedVolumeTest, RawFilesAreReadWhereTheyLie) {
+    std::string bytes = "head";
+    for (int i = 0; i < 70 * 34 * 3; ++i) {
+        bytes += static_cast<char>(i * 7);
+        bytes += static_cast<char>(i / 37);
+    }
+    const std::string path = write("voxels.raw", bytes + "tail");
+    for (const char* form :
+         {"70x34x3:int16:little:1,2,3:4", "70x34x3:uint16:big:1,1,0.5:4", "35x34x3:float32:big:1,1,1:4"})
+        expect_streamed(path, file("vol.esv"), {.raw = form});
+    expect_streamed(path, file("vol.esv"), {.raw = "70x34x3:int16:little:1,2,3:4", .spacing = glm::dvec3(2, 2, 5)});
+    const auto refusal = [&](const char* form) -> std::string {
+        try {
+            edgesplat::pack_file(path, {.raw = form}, file("no.esv"));
+        } catch (const edgesplat::Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(refusal("70x34x4:int16:little:1,2,3:4"), HasSubstr("needs 19040 after skipping 4"));
+    EXPECT_THAT(refusal("70x34x1048577:int16:little"), HasSubstr("expected 1 to 1048576"));
+    EXPECT_THAT(refusal("1048576x1048576x2:int16:little"), HasSubstr("2^40"));
+    EXPECT_THAT(refusal("70x0x4:int16:little"), HasSubstr("expected 1 to 1048576"));
+    EXPECT_FALSE(std::filesystem::exists(file("no.esv")));
+}
+
+TEST_F(PackedVolumeTest, UncompressedNrrdAndMetaImageAreReadWhereTheyLie) {
+    const auto nrrd = itk::NrrdImageIO::New();
+    const auto meta = itk::MetaImageIO::New();
+    for (const char* name : {"a.nrrd", "a.nhdr"}) {
+        volume_test::write_itk(nrrd, file(name));
+        expect_streamed(file(name), file("vol.esv"));
+    }
+    for (const char* name : {"a.mha", "a.mhd"}) {
+        volume_test::write_itk(meta, file(name));
+        expect_streamed(file(name), file("vol.esv"));
+    }
+    // Big endian, bytes skipped from the front and from the end, a space that is the patient's.
+    std::string voxels;
+    for (int i = 0; i < 60; ++i)
+        voxels += {static_cast<char>(i / 9), static_cast<char>(i * 11)};
+    write("voxels.bin", "12345" + voxels);
+    for (const char* skip : {"5", "-1"})
+        expect_streamed(write("b.nhdr", fmt::format("NRRD0005\ntype: short\ndimension: 3\nsizes: 5 4 3\n"
+                                                    "space: right-anterior-superior\n"
+                                                    "space directions: (2,0,0) (0,1,0.5) (0,0,3)\n"
+                                                    "space origin: (1,2,3)\nencoding: raw\nendian: big\n"
+                                                    "byte skip: {}\ndata file: voxels.bin\n",
+                                                    skip)),
+                        file("vol.esv"));
+    write("plain.bin", voxels);
+    expect_streamed(write("b.mhd",
+                          "ObjectType = Image\nNDims = 3\nDimSize = 5 4 3\nElementSpacing = 1 2 3\n"
+                          "BinaryData = True\nBinaryDataByteOrderMSB = True\nElementType = MET_SHORT\n"
+                          "ElementDataFile = plain.bin\n"),
+                    file("vol.esv"));
+    // Compressed ones are read as a whole, with the same outcome.
+    volume_test::write_itk(nrrd, file("c.nrrd"), {}, true);
+    EXPECT_FALSE(edgesplat::pack_file(file("c.nrrd"), {}, file("vol.esv")).streamed);
+    EXPECT_EQ(edgesplat::open_packed(file("vol.esv")).checksum, edgesplat::load_volume(file("c.nrrd")).checksum);
+    EXPECT_THROW(edgesplat::pack_file(file("vol.esv"), {}, file("twice.esv")), edgesplat::Error);
 }
 
 TEST_F(PackedVolumeTest, StoppedItLeavesNothing) {
