@@ -19,6 +19,7 @@
 #include "engine/accuracy/report_files.h"
 #include "engine/accuracy/report_text.h"
 #include "engine/error.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -59,6 +60,7 @@ ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const
     ReportInput input;
     input.volume =
         std::make_shared<const edgesplat::Volume>(load_with_progress(source, edgesplat::volume_folders({}), quiet));
+    need_samples(*input.volume, "accuracy");
     input.scene = resolve_scene(document, *input.volume);
     if (!source.threshold && !source.box_filter && !source.crop_low)
         input.analytic = edgesplat::accuracy::analytic_scene_of(source.path);

@@ -19,6 +19,7 @@
 #include "engine/scene/views.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -207,6 +208,7 @@ void run(const EffectsOptions& options) {
     apply(options.volume, source);
     const auto volume = std::make_shared<const edgesplat::Volume>(
         load_with_progress(source, edgesplat::volume_folders({}), options.quiet));
+    need_samples(*volume, "effects");
     edgesplat::Renderer renderer(edgesplat::DeviceChoice{.device = options.device});
     const FrameRequest plain = base_request(volume, options.size);
     const Measuring measuring(options, renderer);

@@ -9,6 +9,7 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -24,6 +25,28 @@ std::vector<double> listed(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
+double mean_of(const Volume& volume) {
+    if (volume.packed) return volume.packed->mean();
+    double sum = 0;
+    for (const float value : volume.values)
+        sum += static_cast<double>(value);
+    return sum / static_cast<double>(volume.values.size());
+}
+
+/// What is only true of packed volumes, and where figures come from that need samples.
+nlohmann::json packed_description(const edgesplat::PackedVolume& packed) {
+    const int looked_at = finest_level_within(packed, edgesplat::kMaxVoxelsLookedAt);
+    nlohmann::json json{{"stored_as", packed.sample_type()},
+                        {"source", packed.source()},
+                        {"quantisation_error", packed.quantisation_error()},
+                        {"suggestions_from_level", looked_at}};
+    for (int level = 0; level < packed.levels(); ++level) {
+        const glm::ivec3& dims = packed.geometry(level).dims;
+        json["levels"].push_back({dims.x, dims.y, dims.z});
+    }
+    return json;
+}
+
 nlohmann::json description(const Volume& volume, int bins) {
     const auto& geometry = volume.geometry;
     const auto spacing = geometry.spacing();
@@ -37,15 +60,13 @@ nlohmann::json description(const Volume& volume, int bins) {
     json["origin_mm"] = listed(geometry.origin);
     json["left_handed"] = glm::determinant(geometry.index_to_world_axes) < 0;
     json["range"] = {volume.min_value, volume.max_value};
-    double sum = 0;
-    for (const float value : volume.values)
-        sum += static_cast<double>(value);
-    json["mean"] = sum / static_cast<double>(volume.values.size());
+    json["mean"] = mean_of(volume);
     json["non_finite"] = volume.non_finite_count;
     json["checksum"] = fmt::format("{:016x}", volume.checksum);
     json["notes"] = volume.notes;
     const auto histogram = edgesplat::histogram(volume, bins);
     json["histogram"] = {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+    if (volume.packed) json["packed"] = packed_description(*volume.packed);
     json["suggested_iso_values"] = nlohmann::json::array();
     for (const auto& suggestion : edgesplat::suggest_iso_values(volume))
         json["suggested_iso_values"].push_back({{"value", suggestion.value}, {"strength", suggestion.strength}});
@@ -72,6 +93,16 @@ void print_histogram(const nlohmann::json& histogram) {
     }
 }
 
+void print_packed(const nlohmann::json& json) {
+    std::cout << fmt::format("packed      from {}, as {}, off by at most {:.3g}\n", json["source"].get<std::string>(),
+                             json["stored_as"].get<std::string>(), json["quantisation_error"].get<double>());
+    for (std::size_t level = 0; level < json["levels"].size(); ++level) {
+        const auto& dims = json["levels"][level];
+        std::cout << fmt::format("level {:<5} {} x {} x {}\n", level, dims[0].get<int>(), dims[1].get<int>(),
+                                 dims[2].get<int>());
+    }
+}
+
 void print(const nlohmann::json& json) {
     const auto& d = json["dims"];
     const double voxels = d[0].get<double>() * d[1].get<double>() * d[2].get<double>();
@@ -91,9 +122,13 @@ void print(const nlohmann::json& json) {
               << fmt::format("checksum    {}\n", json["checksum"].get<std::string>());
     for (const auto& note : json["notes"])
         std::cout << "note        " << note.get<std::string>() << '\n';
-    std::cout << "histogram   (from, voxels, logarithmic bar)\n";
+    const bool packed = json.contains("packed");
+    if (packed) print_packed(json["packed"]);
+    std::cout << "histogram   (from, voxels, logarithmic bar" << (packed ? "; added up from the file's)\n" : ")\n");
     print_histogram(json["histogram"]);
-    std::cout << "suggested iso-values:";
+    std::cout << "suggested iso-values"
+              << (packed ? fmt::format(" (from level {})", json["packed"]["suggestions_from_level"].get<int>()) : "")
+              << ":";
     for (const auto& suggestion : json["suggested_iso_values"])
         std::cout << fmt::format(" {:.5g} ({:.2f})", suggestion["value"].get<double>(),
                                  suggestion["strength"].get<double>());

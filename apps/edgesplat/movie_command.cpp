@@ -21,6 +21,7 @@
 #include "engine/error.h"
 #include "engine/scene/camera_path.h"
 #include "engine/scene/scene_file.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -115,6 +116,10 @@ Film film_of(const MovieCommand& command, const std::vector<fs::path>& folders, 
     film.document = std::move(document);
     film.volume =
         std::make_shared<const edgesplat::Volume>(load_with_progress(film.document.volume, folders, command.quiet));
+    const edgesplat::RendererKind renderer = film.document.output.renderer;
+    if (renderer != edgesplat::RendererKind::Splat)
+        need_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));
+    if (film.document.quality.max_error) need_samples(*film.volume, "--max-error");
     const edgesplat::Scene scene = resolve_scene(film.document, *film.volume);
     const edgesplat::Camera start = resolve_camera(film.document, *film.volume, scene);
     film.path = resolve_camera_path(film.document, *film.volume, start);

@@ -8,6 +8,7 @@
 #include "engine/error.h"
 #include "engine/reference/direct_evaluation.h"
 #include "engine/reference/field.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::accuracy {
 namespace {
@@ -35,6 +36,7 @@ double smallest_spacing(const VolumeGeometry& geometry) {
 }  // namespace
 
 Volume box_downsampled(const Volume& volume, int factor) {
+    need_samples(volume, "down-sampling");
     const glm::ivec3 dims = volume.geometry.dims / std::max(factor, 1);
     if (factor < 2 || glm::any(glm::lessThan(dims, glm::ivec3(2))))
         fail("down-sampling by {}: expected 2 or more, and 2 voxels left along each axis", factor);

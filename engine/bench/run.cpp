@@ -9,6 +9,7 @@
 #include "engine/accuracy/report_cameras.h"
 #include "engine/bench/host_memory.h"
 #include "engine/error.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::bench {
 namespace {
@@ -94,6 +95,7 @@ class SuiteRun {
             auto found = std::ranges::find(loaded, source, &std::pair<VolumeSource, VolumePointer>::first);
             if (found == loaded.end()) {
                 loaded.emplace_back(source, std::make_shared<const Volume>(load_source(source, folders)));
+                need_samples(*loaded.back().second, "bench");
                 found = loaded.end() - 1;
             }
             shots_.push_back(shot_of(entry, found->second));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
 namespace {
@@ -53,7 +54,7 @@ std::optional<double> first_surface(const Camera& camera, const ViewRequest& req
         if (glm::any(glm::lessThan(index, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(index, geometry.dims)))
             continue;
         const auto& isos = request.scene->iso_values;
-        const double value = volume.at(index.x, index.y, index.z);
+        const double value = value_at(volume, index);
         const auto material =
             static_cast<std::size_t>(std::upper_bound(isos.begin(), isos.end(), value) - isos.begin());
         if (material < request.scene->materials.size() && request.scene->materials[material].extinction > 0) return t;
