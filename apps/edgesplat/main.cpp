@@ -18,6 +18,7 @@
 #include "apps/edgesplat/help_formatter.h"
 #include "apps/edgesplat/info_command.h"
 #include "apps/edgesplat/movie_command.h"
+#include "apps/edgesplat/pack_command.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/rerun_command.h"
 #include "apps/edgesplat/scene_command.h"
@@ -102,6 +103,7 @@ int main(int argc, char** argv) {
         add_scene_command(app, exit_status);
         add_movie_command(app, exit_status);
         add_info_command(app);
+        add_pack_command(app, exit_status);
         add_compare_command(app, exit_status);
         add_footprints_command(app);
         add_effects_command(app);
