@@ -284,13 +284,16 @@ bool Hdf5File::has(const std::string& path) const {
     }
 }
 
-Hdf5Dataset Hdf5File::dataset(const std::string& path) const {
+Hdf5Dataset Hdf5File::dataset(const std::string& path, std::size_t cache) const {
     const Quiet quiet;
     if (!has(path)) fail("{}: {}: missing", path_, path);
     Hdf5Dataset result;
     result.file_ = path_;
     result.name_ = path;
-    result.id_ = Hdf5Id(H5Dopen2(id_.get(), path.c_str(), H5P_DEFAULT), H5Dclose);
+    const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
+    constexpr std::size_t kSlots = 12421;  // of its hash table: a prime, many times the chunks
+    if (cache > 0) H5Pset_chunk_cache(access.get(), kSlots, cache, 1.0);
+    result.id_ = Hdf5Id(H5Dopen2(id_.get(), path.c_str(), access.get()), H5Dclose);
     if (!result.id_) fail("{}: {}: not a dataset, or damaged: {}", path_, path, reason());
     const Hdf5Id type(H5Dget_type(result.id_.get()), H5Tclose), extent(H5Dget_space(result.id_.get()), H5Sclose);
     if (!sample_type_of(type.get(), result.type_)) fail("{}: {}: does not hold numbers", path_, path);

@@ -89,7 +89,8 @@ class Hdf5File {
 
     /// "/levels/0/samples": whether there is such a group or dataset.
     bool has(const std::string& path) const;
-    Hdf5Dataset dataset(const std::string& path) const;
+    /// `cache`: bytes of chunks that are kept, unpacked, for the next read; 0: as HDF5 would.
+    Hdf5Dataset dataset(const std::string& path, std::size_t cache = 0) const;
     /// Groups on the way are made.
     Hdf5Dataset create_dataset(const std::string& path, const Hdf5Layout& layout);
 

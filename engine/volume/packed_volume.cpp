@@ -30,6 +30,9 @@ struct PackedVolume::State {
 
 namespace {
 
+/// Of each level. A box that is a little larger than a brick touches 27 of them, and the next one most of these again.
+constexpr std::size_t kCache = std::size_t{1} << 26;
+
 std::string shown(const Hdf5Extent& extent) {
     return fmt::format("{}", fmt::join(extent, " x "));
 }
@@ -156,7 +159,7 @@ std::shared_ptr<const PackedVolume> PackedVolume::open(const std::string& path) 
     for (const VolumeGeometry& geometry : level_geometries(state->description.geometry)) {
         const int level = static_cast<int>(state->levels.size());
         const std::string name = level_path(level, "samples");
-        State::Level next{geometry, file.dataset(name), bricks_of(geometry.dims), {}};
+        State::Level next{geometry, file.dataset(name, kCache), bricks_of(geometry.dims), {}};
         check_extent(path, name, next.samples.extent(), extent_of(geometry.dims));
         const std::string type(name_of(next.samples.type()));
         if (level == 0) state->sample_type = type;

@@ -424,7 +424,7 @@ TEST_F(PackedVolumeTest, DamagedFilesAreRefusedByName) {
     const auto refusal_after = [&](const std::function<void(hid_t file)>& change) {
         std::filesystem::copy_file(good, path, std::filesystem::copy_options::overwrite_existing);
         damage(path, change);
-        const std::string text = volume_test::refusal(path);
+        std::string text = volume_test::refusal(path);
         EXPECT_THAT(text, HasSubstr(path));
         return text;
     };
