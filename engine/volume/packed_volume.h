@@ -22,8 +22,8 @@ inline constexpr std::size_t kMaxPackedVoxels = std::size_t{1} << 40;
 inline constexpr std::size_t kMaxVoxelsLookedAt = std::size_t{1} << 24;
 
 /// A volume in a file, in bricks and at several resolutions; samples are read when asked for. Level 0 is the volume
-/// itself; a voxel of level n + 1 is the mean of 2 x 2 x 2 of level n. Held in memory: the range of each brick, and up to
-/// 64 MB of the bricks last read of each level.
+/// itself; a voxel of level n + 1 is the mean of 2 x 2 x 2 of level n. Held in memory: the range of each brick, and up
+/// to 64 MB of the bricks last read of each level.
 class PackedVolume {
   public:
     static constexpr int kBrick = 32;  ///< voxels along a side
