@@ -320,8 +320,8 @@ void check_space(const std::string& output, const std::vector<VolumeGeometry>& l
     const auto space = fs::space(folder.empty() ? "." : folder, error);
     if (error) fail("{}: cannot be written: {}", output, error.message());
     if (static_cast<double>(space.available) < bytes)
-        fail("{}: needs {:.1f} MB on disk, {:.1f} MB are free; --compress or --quantise make it smaller", output,
-             bytes / 1e6, static_cast<double>(space.available) / 1e6);
+        fail("{}: needs {:.0f} MB on disk or more, {:.0f} MB are free; --compress or --quantise make it smaller",
+             output, bytes / 1e6, static_cast<double>(space.available) / 1e6);
 }
 
 PackSummary pack(const PackSource& source, const std::string& output, const PackOptions& options) {
@@ -333,6 +333,8 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
     Progress progress(options, output);
     const std::size_t voxels = volume.geometry.voxel_count();
     progress.expect(2 * voxels + (levels.size() > 1 ? voxels / 7 : 0));
+    // What is hopeless is refused before hours of looking at samples: less than a byte each they never take.
+    if (!options.compress) check_space(output, levels, {.type = SampleType::UInt8});
     Scan found = scan(source, nullptr, progress);
     const Coding coding = coding_for(found, options.quantise);
     if (!options.compress) check_space(output, levels, coding);

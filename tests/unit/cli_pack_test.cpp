@@ -99,6 +99,15 @@ TEST_F(CliPackTest, WhatCannotBeDoneIsSaidAndLeavesNothing) {
     }
 }
 
+TEST_F(CliPackTest, ADiskThatIsTooSmallIsNoticedBeforehand) {
+    if (std::filesystem::space(folder_).available > 1'100'000'000'000U) GTEST_SKIP() << "the disk is large enough";
+    const ProgramRun result = run("pack builtin:sphere:10000 -o vol.esv");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("vol.esv: needs 11"));
+    EXPECT_THAT(result.err, HasSubstr("MB are free"));
+    EXPECT_THAT(files(), IsEmpty());
+}
+
 TEST_F(CliPackTest, InterruptedItLeavesNothing) {
     bool began = false;
     const auto writing = [&] { return began = !files().empty(); };
