@@ -55,7 +55,7 @@ struct RendererState {
     void add_counts(RenderStats& stats) const;
 
     gpu::Device device;
-    gpu::Pipelines pipelines{device};
+    gpu::Pipelines pipelines{device, footprint_cache_folder()};
     Bindings bindings{device, pipelines};
     gpu::Commands commands{device, pipelines, bindings.set()};
 

@@ -50,7 +50,8 @@ vk::PipelineColorBlendAttachmentState blend_state(DrawState::Blend blend) {
 
 }  // namespace
 
-Pipelines::Pipelines(const Device& device) : device_(&device) {
+Pipelines::Pipelines(const Device& device, const std::filesystem::path& cache_folder)
+    : device_(&device), cache_(device, cache_folder) {
     using Type = vk::DescriptorType;
     const auto stages =
         vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
@@ -90,6 +91,7 @@ void Pipelines::forget_used() {
 
 void Pipelines::count_creation(std::chrono::steady_clock::time_point start) {
     ++creation_.count;
+    cache_.note_new();
     creation_.milliseconds +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
@@ -101,7 +103,7 @@ vk::Pipeline Pipelines::compute(const char* shader, const Specialization& consta
     const auto module = load(shader);
     const SpecializationData data(constants);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
-    vk::raii::Pipeline made(device_->handle(), nullptr, vk::ComputePipelineCreateInfo({}, stage, *layout_));
+    vk::raii::Pipeline made(device_->handle(), cache_.handle(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
     count_creation(start);
     return use(made_.emplace(key, Made{std::move(made), {{shader}, constants}}).first->second);
 }
@@ -142,7 +144,8 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
     vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples,
                                         &depth, &blend, &dynamic, *layout_);
     info.pNext = &rendering;
-    Made made{vk::raii::Pipeline(device_->handle(), nullptr, info), {{state.vertex, state.fragment}, state.constants}};
+    Made made{vk::raii::Pipeline(device_->handle(), cache_.handle(), info),
+              {{state.vertex, state.fragment}, state.constants}};
     count_creation(start);
     return use(made_.emplace(key, std::move(made)).first->second);
 }

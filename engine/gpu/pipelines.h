@@ -9,7 +9,7 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "engine/gpu/device.h"
+#include "engine/gpu/pipeline_cache.h"
 
 namespace edgesplat::gpu {
 
@@ -41,7 +41,8 @@ struct PipelineCreation {
 
 class Pipelines {
   public:
-    explicit Pipelines(const Device& device);
+    /// `cache_folder`: where compiled pipelines are kept for the next start; empty: nowhere.
+    Pipelines(const Device& device, const std::filesystem::path& cache_folder);
 
     vk::Pipeline compute(const char* shader, const Specialization& constants);
     vk::Pipeline draw(const DrawState& state);
@@ -49,6 +50,7 @@ class Pipelines {
     std::vector<PipelineVariant> used() const;
     void forget_used();
     const PipelineCreation& creation() const { return creation_; }
+    PipelineCache& cache() { return cache_; }
 
     vk::PipelineLayout layout() const { return *layout_; }
     vk::DescriptorSetLayout set_layout() const { return *set_layout_; }
@@ -56,6 +58,7 @@ class Pipelines {
   private:
     vk::raii::ShaderModule load(const char* shader) const;
     const Device* device_;
+    PipelineCache cache_;
     vk::raii::DescriptorSetLayout set_layout_ = nullptr;
     vk::raii::PipelineLayout layout_ = nullptr;
     struct Made {
