@@ -1,6 +1,7 @@
 // The images and buffers of a frame, as renderer.cpp and frame.cpp allocate them; a test compares the bytes.
 #include <algorithm>
 
+#include "engine/frame_blocks.h"
 #include "engine/frame_forecast.h"
 #include "engine/frame_reach.h"
 #include "engine/frame_resources.h"
@@ -92,9 +93,10 @@ void add_placeholders(std::vector<PlannedResource>& out) {
 
 void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const CollectionPlan& plan = f.collection;
+    const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
     const auto volume_image = [&](const char* name, vk::Format format, vk::ImageUsageFlags usage, const char* contents,
                                   const char* written, const char* read) {
-        out.push_back(image(name, {.format = format, .size = plan.dims, .volume = true, .usage = usage}, contents,
+        out.push_back(image(name, {.format = format, .size = largest.size, .volume = true, .usage = usage}, contents,
                             written, read));
     };
     volume_image("volume", vk::Format::eR32Sfloat, Usage::eStorage | Usage::eTransferDst, "(z, y, x) samples", "host",
@@ -112,8 +114,8 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
                      "1a", "1, 2");
     }
     out.push_back(on_host(buffer("scene parameters", sizeof(shader::SceneParams), "(1) SceneParams", "host", "1, 2")));
-    out.push_back(on_host(buffer("run offsets", passes::collect_runs(plan.dims) * sizeof(std::uint32_t), "(runs) uint",
-                                 "2, host", "2, host")));
+    out.push_back(on_host(buffer("run offsets", passes::collect_runs(largest.core_size) * sizeof(std::uint32_t),
+                                 "(runs) uint", "2, host", "2, host")));
     if (!plan.transfer.empty()) {
         out.push_back(on_host(buffer("transfer function", plan.transfer.size() * sizeof(shader::TransferRow),
                                      "(rows) TransferRow", "host", "2, 5")));

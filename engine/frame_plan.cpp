@@ -10,6 +10,7 @@
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/packed_volume.h"
 #include "footprints/edge_weight.h"
 #include "footprints/kernel.h"
 
@@ -19,7 +20,6 @@ namespace {
 
 // An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
 constexpr double kOpaquePerVoxel = 0.75;
-constexpr int kMaxBuryDistance = 10;
 // Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4
 // to 8.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
@@ -189,11 +189,12 @@ bool wants_normals(const Scene& scene) {
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& a = params;
     const auto& b = other.params;
-    return dims == other.dims && estimator == other.estimator && edge_field == other.edge_field &&
-           buried == other.buried && skip_buried == other.skip_buried && curved == other.curved &&
-           weighted == other.weighted && std::ranges::equal(transfer, other.transfer, same_row) &&
-           a.curvature_unit == b.curvature_unit && a.estimate_mask == b.estimate_mask && a.strength == b.strength &&
-           a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
+    return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
+           edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
+           curved == other.curved && weighted == other.weighted &&
+           std::ranges::equal(transfer, other.transfer, same_row) && a.curvature_unit == b.curvature_unit &&
+           a.estimate_mask == b.estimate_mask && a.strength == b.strength && a.iso_count == b.iso_count &&
+           std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
            std::ranges::equal(a.edge_weights, b.edge_weights) && std::ranges::equal(a.contrast, b.contrast) &&
            a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
            clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
@@ -225,7 +226,8 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
         params.opaque_mask |= 1U << m;
         farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry)));
     }
-    plan.buried = settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= kMaxBuryDistance;
+    plan.buried =
+        settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= shader::MAX_BURY_DISTANCE;
     plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
@@ -251,7 +253,7 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
     if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
         return false;
     const glm::ivec3 voxel(index);
-    const auto value = static_cast<double>(volume.at(voxel.x, voxel.y, voxel.z));
+    const auto value = static_cast<double>(value_at(volume, voxel));
     const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
     const auto material = static_cast<std::size_t>(above - scene.iso_values.begin());
     return is_opaque(extinctions_of(scene, material).least, volume.geometry);

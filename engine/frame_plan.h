@@ -19,6 +19,7 @@ std::uint32_t light_code(const Scene& scene);
 struct CollectionPlan {
     glm::ivec3 dims{0};
     EdgeEstimator estimator = EdgeEstimator::March;
+    bool blocks = false;     ///< the device holds a block of the volume at a time (engine/frame_blocks.h)
     bool edge_field = true;  ///< edges are preserved, or a light wants normals
     bool buried = true;      ///< some material is opaque enough to hide what lies behind it
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible

@@ -107,7 +107,13 @@ std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_byte
 
 void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
                   std::size_t texel_bytes) {
-    const auto& shape = image.shape();
+    upload_block(commands, device, image, image.shape().size, bytes, texel_bytes);
+}
+
+void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image,
+                  const glm::ivec3& size, const void* bytes, std::size_t texel_bytes) {
+    auto shape = image.shape();
+    shape.size = size;
     const auto [row, rows_at_once, slices_at_once] = upload_band(shape, texel_bytes);
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);

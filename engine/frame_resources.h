@@ -95,5 +95,8 @@ std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_byte
 /// 64 MiB. `texel_bytes` is the size of one texel.
 void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
                   std::size_t texel_bytes);
+/// The same for the first `size` texels of a volume along each axis; what the others hold is lost.
+void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image,
+                  const glm::ivec3& size, const void* bytes, std::size_t texel_bytes);
 
 }  // namespace edgesplat

@@ -52,7 +52,7 @@ bool uses_table(const Settings& settings) {
     return settings.warp == WarpFamily::Edge && draws_warped(settings) && asks_for_table(settings);
 }
 
-RendererState::RendererState(const DeviceChoice& choice) : device(choice) {
+RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
     targets.drawn = gpu::Buffer(device, 4 * sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
@@ -202,23 +202,27 @@ std::uint64_t Renderer::validation_messages() const {
 
 void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
     auto& self = *state_;
-    self.collected.reset();
-    self.raycast.reset();
-    self.volume_resources = {};
     self.drop_targets();
-    self.checked_fit.clear();
-    self.volume = std::move(volume);
+    self.levels.clear();
+    self.other = {};
+    self.original = std::move(volume);
+    self.volume.reset();
+    if (self.original) self.use_level(0);
+}
+
+void Renderer::set_patience(double milliseconds) {
+    state_->patience = milliseconds;
 }
 
 void Renderer::set_memory_budget(std::uint64_t bytes) {
     state_->memory_budget = bytes;
-    state_->checked_fit.clear();
+    state_->checked.clear();
 }
 
 RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
                               const AovRequest& aovs) {
     auto& self = *state_;
-    if (!self.volume) fail("render: no volume has been set");
+    if (!self.original) fail("render: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384) {
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     }
@@ -231,12 +235,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         self.release_unused(settings);
         self.device.forget_peaks();
         const gpu::PipelineCreation made = self.pipelines.creation();
-        const FrameRequest request{self.volume, scene, camera, wanted, size, aovs};
-        const bool keep_buried = keeps_buried(request);
-        self.check_memory(request);
-        self.provide_volume();
-        self.provide_footprints(settings);
-        result.stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
+        self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
         if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
 
         const auto pixels = [&] {

@@ -76,6 +76,12 @@ struct RenderStats {
     double frame_milliseconds = 0;  ///< wall clock from submit to finish
     std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
     std::uint32_t sheets = 0, sheet_groups = 0;
+    int level = 0;         ///< resolution of the volume that was drawn: voxels of 2^level along each axis
+    int wanted_level = 0;  ///< that would have been, had its splats fitted into the memory
+    bool complete = true;  ///< false: a coarser level stands in until the wanted one is there (Renderer::set_patience)
+    bool in_blocks = false;          ///< the volume was not on the device as a whole
+    std::uint64_t blocks = 0;        ///< that can hold splats
+    std::uint64_t blocks_held = 0;   ///< whose splats are on the device
     std::uint64_t device_bytes = 0;  ///< allocated on the device
     std::vector<MemoryUse> memory;   ///< by name, what was let go during the frame included
     std::uint64_t pipelines_made = 0;
@@ -117,6 +123,10 @@ class Renderer {
     /// The most that may be held on the device, bytes; 0: as much as it has. A picture that needs more is refused
     /// before anything is allocated for it, with what is needed for what, and with what would fit.
     void set_memory_budget(std::uint64_t bytes);
+
+    /// How long render() may wait for splats of a volume of many blocks, milliseconds: one that takes longer shows a
+    /// coarser level and says so (RenderStats::complete); those that come after it go on. By default: for ever.
+    void set_patience(double milliseconds);
 
     /// Whether RenderStats of pictures to come have draw_counts (where the device can count) and dirty_share. Counted
     /// frames take longer.

@@ -1,6 +1,7 @@
 // RendererState: what is held, and whether what comes next can be.
 #include "engine/error.h"
 #include "engine/renderer_state.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
 
@@ -19,7 +20,7 @@ std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& 
                       volume_resources.box_high};
 }
 
-void RendererState::check_memory(const FrameRequest& request) {
+std::optional<MemoryNeed> RendererState::beyond_memory(const FrameRequest& request) {
     const double reach = reach_of(drawn_settings(request));
     const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
@@ -28,18 +29,20 @@ void RendererState::check_memory(const FrameRequest& request) {
     std::vector<std::pair<std::string, std::uint64_t>> asked;
     for (const PlannedResource& resource : forecast.resources)
         asked.emplace_back(resource.name, resource.bytes);
-    if (asked == checked_fit) return;
+    if (asked == checked) return checked_need;
     MemoryNeed need = memory_need(device, forecast, memory_budget);
     // The bound by the number of voxels is too high for most volumes; counting takes longer.
     if (!need.fits() && !known) {
         forecast = forecast_frame(request, wanted, count_splats(*volume, wanted), reach);
         need = memory_need(device, forecast, memory_budget);
     }
-    if (!need.fits()) refuse_memory(device, request, need, memory_budget);
-    checked_fit = std::move(asked);
+    checked = std::move(asked);
+    checked_need = need.fits() ? std::nullopt : std::optional(std::move(need));
+    return checked_need;
 }
 
 FrameForecast Renderer::forecast(const FrameRequest& request) {
+    need_samples(*request.volume, "a forecast of the frame");
     const CollectionPlan wanted = planned_collection(request);
     const auto known = request.volume == state_->volume ? state_->collected_splats(wanted) : std::nullopt;
     return forecast_frame(request, wanted, known ? *known : count_splats(*request.volume, wanted),

@@ -20,7 +20,7 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
         return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
     };
     auto& self = *state_;
-    if (!self.volume) fail("raycast: no volume has been set");
+    if (!self.original) fail("raycast: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     validate(scene);
@@ -32,6 +32,7 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
     RenderResult result;
     auto& stats = result.stats;
     try {
+        self.show_whole();
         self.provide_volume();
         const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
         const auto add_times = [&](const std::vector<PassTime>& times) {

@@ -1,9 +1,12 @@
 // What a Renderer owns. Tests of single passes look in here; embedders do not.
 #pragma once
 
+#include <future>
+#include <limits>
 #include <optional>
 
 #include "engine/frame.h"
+#include "engine/frame_blocks.h"
 #include "engine/frame_memory.h"
 #include "engine/frame_raycast.h"
 #include "engine/frame_reach.h"
@@ -13,12 +16,78 @@
 
 namespace edgesplat {
 
-struct RendererState {
+/// Blocks of a volume whose splats are in the list.
+struct Residence {
+    std::shared_ptr<const SampleSource> source;
+    std::vector<CollectionBlock> blocks;              ///< those that can hold splats
+    std::vector<std::optional<CollectedBlock>> held;  ///< likewise; nothing: not in the list
+    std::size_t being_read = 0;
+    std::future<std::vector<float>> samples;  ///< of that block, scaled; invalid: none is being read
+};
+
+/// One resolution of a volume and the splats collected from it.
+struct SplatSet {
+    std::shared_ptr<const Volume> volume;  ///< in blocks perhaps without samples
+    int level = 0;
+    bool in_blocks = false;              ///< the device holds the volume block by block
+    std::optional<Residence> residence;  ///< while it does
+    VolumeResources volume_resources;
+    std::optional<CollectionPlan> collected;  ///< what the splat list was made with
+    std::optional<OcclusionPlan> occluded;    ///< what the splats' ambient light was found with
+    std::optional<ShadowPlan> shadowed;       ///< what their shadows were found with
+};
+
+/// What became of the splats that a picture takes.
+enum class Gathered { All, Unfinished, TooMany };
+
+/// What outlives everything else on the device.
+struct DeviceState {
+    explicit DeviceState(const DeviceChoice& choice) : device(choice) {}
+
+    gpu::Device device;
+    gpu::Pipelines pipelines{device, footprint_cache_folder()};
+    Bindings bindings{device, pipelines};
+    gpu::Commands commands{device, pipelines, bindings.set()};
+};
+
+struct RendererState : DeviceState, SplatSet {
     explicit RendererState(const DeviceChoice& choice);
 
+    /// Draws the volume at one of its resolutions from now on.
+    void use_level(int wanted);
+    /// Level, and whether the device holds the volume whole, for a picture; `request.volume` is that level's then.
+    /// Throws Error if nothing fits into the device's memory.
+    void settle(FrameRequest& request, int finest, bool blocks_wanted);
+    /// The most splats that fit if the volume is held block by block; nothing if not even none do.
+    std::optional<std::uint64_t> most_splats_in_blocks(const FrameRequest& request);
+    /// Passes 1 and 2 for the blocks that a picture shows, a block at least, and no more once `patience` milliseconds
+    /// are over; blocks that it does not show are dropped where there is no room.
+    Gathered collect_blocks(const FrameRequest& request, const CollectionPlan& wanted, std::uint64_t most_splats,
+                            double patience);
+    /// Makes the list anew for a plan: empty, with what may come into it.
+    void begin_blocks(const CollectionPlan& wanted);
+    /// The blocks of a picture by number.
+    std::vector<std::size_t> blocks_shown(const FrameRequest& request) const;
+    std::vector<float> read_block(const std::vector<std::size_t>& missing, std::size_t number);
+    /// Goes to the other set, which holds a coarser level while a finer one is on its way.
+    void exchange_sets() { std::swap(static_cast<SplatSet&>(*this), other); }
+    /// Level 0 as a whole from now on.
+    void show_whole();
+    void hold_in_blocks(bool blocks);
+    void load_block(const CollectionBlock& block, std::span<const float> samples);
+    /// Drops the splats of blocks that are not among those `needed`: whether there were any. With `shrink` the list is
+    /// no longer than its splats afterwards, in any case.
+    bool drop_blocks(const std::vector<std::size_t>& needed, bool shrink);
+
+    /// The splats that a picture takes, at the finest level whose splats fit, or of a coarser one while those are on
+    /// their way.
+    void provide_splats(const FrameRequest& request, RenderStats& stats);
+    Gathered provide_level(FrameRequest request, int finest, double patience, RenderStats& stats);
     /// Passes 1 and 2, if the plan differs from what the splat list was made with, and what the scene calls for of
     /// passes 2b to 2d. Needs provide_footprints. Milliseconds spent.
     double collect(const Scene& scene, const Settings& settings, bool keep_buried);
+    /// The same block by block.
+    Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
     void collect_anew(const CollectionPlan& wanted);
     /// Pass 2b, if the scene calls for it and what was found differs. Whether it ran.
     bool occlude(const Scene& scene);
@@ -26,8 +95,8 @@ struct RendererState {
     bool cast_shadows(const Scene& scene, const Settings& settings);
     /// Frees everything of a picture but what any picture needs.
     void drop_targets();
-    /// Throws Error, before anything is allocated, if the request does not fit into the device's memory.
-    void check_memory(const FrameRequest& request);
+    /// What a request takes of the device's memory, if it does not fit with the volume as a whole.
+    std::optional<MemoryNeed> beyond_memory(const FrameRequest& request);
     /// The furthest that a kernel of these settings reaches, voxels.
     double reach_of(const Settings& drawn);
     /// The splats that are collected, if they are those of the plan.
@@ -54,30 +123,25 @@ struct RendererState {
     /// Adds what the last draw came to, if that is counted.
     void add_counts(RenderStats& stats) const;
 
-    gpu::Device device;
-    gpu::Pipelines pipelines{device, footprint_cache_folder()};
-    Bindings bindings{device, pipelines};
-    gpu::Commands commands{device, pipelines, bindings.set()};
-
-    std::shared_ptr<const Volume> volume;
-    VolumeResources volume_resources;
+    std::shared_ptr<const Volume> original;                     ///< as it was set: level 0
+    std::vector<std::shared_ptr<const Volume>> levels;          ///< resolutions of it that were drawn
+    SplatSet other;                                             ///< a coarser level, shown until a finer one is there
+    double patience = std::numeric_limits<double>::infinity();  ///< see Renderer::set_patience
     FootprintResources footprint_resources;
     TargetResources targets;
     std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way
 
-    std::optional<CollectionPlan> collected;  ///< what the splat list was made with
-    std::optional<OcclusionPlan> occluded;    ///< what the splats' ambient light was found with
-    std::optional<ShadowPlan> shadowed;       ///< what their shadows were found with
-    std::optional<EdgeBand> table_band;       ///< what the footprint table was made for
+    std::optional<EdgeBand> table_band;  ///< what the footprint table was made for
     FootprintTableSize table_texels;
     bool curved_in_use = false;
     std::optional<EdgeBand> band_in_use;  ///< what the support spheres were made for
     FramePlan plan;                       ///< of the last draw
     std::vector<PassTime> collection_times;
-    std::vector<PassTime> draw_times;                                ///< of the last draw
-    bool counting = false;                                           ///< see Renderer::count_fragments
-    std::uint64_t memory_budget = 0;                                 ///< bytes; 0: what the device has
-    std::vector<std::pair<std::string, std::uint64_t>> checked_fit;  ///< resources that were last found to fit
+    std::vector<PassTime> draw_times;                            ///< of the last draw
+    bool counting = false;                                       ///< see Renderer::count_fragments
+    std::uint64_t memory_budget = 0;                             ///< bytes; 0: what the device has
+    std::vector<std::pair<std::string, std::uint64_t>> checked;  ///< resources that were last asked for
+    std::optional<MemoryNeed> checked_need;                      ///< what beyond_memory found of them
 };
 
 /// Whether footprints are looked up, and how large the table is.

@@ -149,9 +149,9 @@ Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
 }
 
 void main() {
-    ivec3 p = ivec3(gl_GlobalInvocationID);
     dims = params.scene.dims;
-    if (any(greaterThanEqual(p, dims))) return;
+    ivec3 p = max(params.scene.core_low - ESTIMATE_MARGIN, ivec3(0)) + ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(p, min(params.scene.core_low + params.scene.core_size + ESTIMATE_MARGIN, dims)))) return;
 
     float value = voxel(p);
     uint material = material_of(value);

@@ -18,8 +18,9 @@ layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params
 uint material_at(ivec3 p) { return material_of(imageLoad(volume, p).r); }
 
 void main() {
-    ivec3 p = ivec3(gl_GlobalInvocationID), dims = params.scene.dims;
-    if (any(greaterThanEqual(p, dims))) return;
+    ivec3 dims = params.scene.dims;
+    ivec3 p = max(params.scene.core_low - ADOPT_MARGIN, ivec3(0)) + ivec3(gl_GlobalInvocationID);
+    if (any(greaterThanEqual(p, min(params.scene.core_low + params.scene.core_size + ADOPT_MARGIN, dims)))) return;
     uint material = material_at(p);
     uint state = imageLoad(edges, p).y >> 26 & 3u;
     bool wanting = state < EDGE_LOWER && in_mask(params.scene.visible_mask, material);

@@ -48,7 +48,8 @@ float contrast_of(ivec3 p, float value, uint material, Edge e) {
 
 void main() {
     dims = params.scene.dims;
-    uint voxels = uint(dims.x) * uint(dims.y) * uint(dims.z);
+    ivec3 size = params.scene.core_size, end = params.scene.core_low + size;
+    uint voxels = uint(size.x) * uint(size.y) * uint(size.z);
     uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     uint first = run * COLLECT_RUN;
     if (run >= (voxels + COLLECT_RUN - 1u) / COLLECT_RUN) return;
@@ -56,7 +57,8 @@ void main() {
     UintsRef offsets = UintsRef(params.scene.run_offsets);
     SplatsRef splats = SplatsRef(params.scene.splats);
 
-    ivec3 p = ivec3(first % uint(dims.x), first / uint(dims.x) % uint(dims.y), first / uint(dims.x) / uint(dims.y));
+    ivec3 p = params.scene.core_low +
+              ivec3(first % uint(size.x), first / uint(size.x) % uint(size.y), first / uint(size.x) / uint(size.y));
     uint out_at = write == 1u ? offsets.at[run] : 0u;
     uint with_edge = 0u;
     for (uint v = first; v < last; ++v) {
@@ -97,14 +99,15 @@ void main() {
                     UintsRef(params.scene.traits).at[out_at] = pack_traits(
                         curvature, WEIGHTED == WEIGHTED_EDGE ? edge_weight(e, contrast) : 1.0, params.scene.curvature_unit);
                 with_edge += e.state >= EDGE_LOWER ? 1u : 0u;
-                splats.at[out_at] = Splat(v, code.x, pack_edge(e) | (material << 28));
+                uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
+                splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), code.x, pack_edge(e) | (material << 28));
             }
             ++out_at;
         }
-        if (++p.x == dims.x) {
-            p.x = 0;
-            if (++p.y == dims.y) {
-                p.y = 0;
+        if (++p.x == end.x) {
+            p.x = params.scene.core_low.x;
+            if (++p.y == end.y) {
+                p.y = params.scene.core_low.y;
                 ++p.z;
             }
         }

@@ -165,6 +165,12 @@ void make_picture(const PictureRequest& request) {
     else if (!request.quiet)
         fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}\n", output.file, stats.splats_drawn, stats.sheets,
                    stats.frame_milliseconds, stats.device.name);
+    if (stats.level > stats.wanted_level) {
+        fmt::print(stderr,
+                   "edgesplat: warning: {}: drawn at level {}, voxels of {} along each axis: the splats of level {} do "
+                   "not fit\n",
+                   volume->name, stats.level, 1 << stats.level, stats.level - 1);
+    }
     if (validation_messages > 0)
         edgesplat::fail("the picture is written, but Vulkan validation had {} messages", validation_messages);
 }

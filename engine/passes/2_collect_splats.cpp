@@ -5,7 +5,7 @@ namespace {
 
 void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool write) {
     commands.dispatch("2_collect_splats.comp", collect_constants(in), write ? 1U : 0U,
-                      gpu::groups_for(collect_runs(in.dims), 64));
+                      gpu::groups_for(collect_runs(in.core_size), 64));
     commands.barrier();
 }
 
@@ -18,8 +18,8 @@ gpu::Specialization collect_constants(const CollectSplats& in) {
             {shader::SPEC_CLIP_REMOVE, in.clip.remove}, {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
 }
 
-std::uint64_t collect_runs(const glm::ivec3& dims) {
-    const glm::u64vec3 n(dims);
+std::uint64_t collect_runs(const glm::ivec3& core_size) {
+    const glm::u64vec3 n(core_size);
     return (n.x * n.y * n.z + shader::COLLECT_RUN - 1) / shader::COLLECT_RUN;
 }
 

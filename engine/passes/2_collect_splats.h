@@ -7,7 +7,7 @@
 namespace edgesplat::passes {
 
 struct CollectSplats {
-    glm::ivec3 dims;
+    glm::ivec3 core_size;        ///< voxels that become splats, along each axis
     bool edges = true;           ///< the edge field exists
     bool buried = true;          ///< the buried mask exists: `mark_buried` has run
     bool smooth = true;          ///< edge distances are smoothed along the surface (`march`, `cubic`)
@@ -21,7 +21,7 @@ struct CollectSplats {
 gpu::Specialization collect_constants(const CollectSplats& in);
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
-std::uint64_t collect_runs(const glm::ivec3& dims);
+std::uint64_t collect_runs(const glm::ivec3& core_size);
 
 /// Writes how many splats each run holds to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);

@@ -168,6 +168,17 @@ std::vector<Knob> make_ladder() {
                      .others = {},
                      .get = get_name<&Settings::accumulation>,
                      .assign = [](Settings& s, const Knob&, View v) { s.accumulation = sheet_format_named(v); }});
+    knobs.push_back(
+        {.name = "detail",
+         .help = "Pixels that the voxels of a coarser level may be wide where it is drawn; 0: never coarser",
+         .kind = KnobKind::Method,
+         .steps = {"2", "1", "0"},
+         .others = {},
+         .number = true,
+         .low = 0,
+         .high = 8,
+         .get = get_number<&Settings::detail>,
+         .assign = set_number<&Settings::detail>});
     knobs.push_back({.name = "saturation",
                      .help = "Opacity at which a pixel is finished; 1: never",
                      .kind = KnobKind::Method,

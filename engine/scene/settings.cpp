@@ -183,6 +183,7 @@ void validate(const Settings& settings) {
     check("edge_half_width", a, a > 0 && a <= 3, "(0, 3] voxels");
     check("edge_strength", settings.edge_strength, in(settings.edge_strength, 1, 64), "[1, 64]");
     check("sheet_spacing", settings.sheet_spacing, in(settings.sheet_spacing, 0.05, 16), "[0.05, 16] voxels");
+    check("detail", settings.detail, in(settings.detail, 0, 8), "[0, 8] pixels");
     check("saturation", full, full > 0 && full <= 1, "(0, 1]");
     if (settings.accumulation == SheetFormat::Tiles) fail("accumulation: tiles, expected half or float");
 }

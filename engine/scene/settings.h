@@ -34,6 +34,7 @@ struct Settings {
     SheetFormat sheet_format = SheetFormat::Tiles;
     SheetFormat accumulation = SheetFormat::Float;  ///< of the picture that layers are composited into; not Tiles
     double saturation = 0.999;  ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
+    double detail = 0;          ///< pixels that voxels of a coarser level may be wide, [0, 8]; 0: never coarser
     bool cull_buried = true;    ///< drop voxels that opaque ones hide from every side
     bool operator==(const Settings&) const = default;
 };

@@ -12,6 +12,12 @@ EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4:
 EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge in reach
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
 EDGESPLAT_CONSTANT uint MAX_CLIP_PLANES = 8u;        // of either kind
+// A block's border holds all that its splats depend on. From a splat outwards, voxels: kernels of its weight, edges that those
+// adopted, the march to an edge and the gradient there, or what buries a voxel.
+EDGESPLAT_CONSTANT int ADOPT_MARGIN = 5;
+EDGESPLAT_CONSTANT int ESTIMATE_MARGIN = 7;
+EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
+EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
 EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports

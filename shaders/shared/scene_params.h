@@ -5,7 +5,7 @@
 EDGESPLAT_SHARED_BEGIN
 
 struct SceneParams {
-    ivec3 dims;           // voxels, x fastest
+    ivec3 dims;           // voxels that the images hold, x fastest: the volume, or a block of it with a border
     uint iso_count;       // 1..15
     float iso[16];        // J_j, scaled, ascending; beyond iso_count: +3e38
     uint visible_mask;    // bit m: material m has extinction > 0
@@ -26,6 +26,11 @@ struct SceneParams {
     float edge_weights[13];  // of a kernel, by its distance to the edge; EDGE_WEIGHT_STEPS to EDGE_WEIGHT_REACH
     float weight_pad;
     vec2 contrast[16];       // of a material with the one below and above: 1 - its extinction / the material's, 0..1
+    ivec3 core_low;          // first voxel that becomes a splat
+    ivec3 core_size;         // how many do, along each axis
+    ivec3 block_origin;      // of the images' first voxel in the volume
+    ivec3 volume_dims;       // voxels of the volume: Splat::voxel counts them
+    uint block_pad;
 };
 
 /// One splat as collected: 12 bytes.
@@ -45,7 +50,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 592);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 644);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -199,7 +199,7 @@ TEST(PlainFrame, ChecksCanFail) {
     const Code code = code_of(draw(request_for_rows()));
     EXPECT_TRUE(code.members.contains("FrameParams.background"));
     EXPECT_TRUE(code.members.contains("FrameParams.splats"));
-    EXPECT_TRUE(code.members.contains("SceneParams.dims"));
+    EXPECT_TRUE(code.members.contains("SceneParams.core_size"));
 }
 
 }  // namespace

@@ -1,0 +1,35 @@
+// Volumes block by block: which blocks can hold splats, and which of them a picture needs.
+#pragma once
+
+#include "engine/frame_collection.h"
+#include "engine/volume/sample_source.h"
+
+namespace edgesplat {
+
+/// Voxels along a side of a block, without its border.
+inline constexpr int kBlockCore = 128;
+
+/// The most that a block of such a volume takes.
+CollectionBlock largest_block(const glm::ivec3& dims);
+
+/// The blocks of a plan that can hold splats, x fastest: not those that are transparent or buried whole, as far as the
+/// bounds of their samples tell. `volume`: for the range that samples are scaled to.
+std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, const Volume& volume,
+                                                const CollectionPlan& plan);
+
+/// What a picture shows, as planes of index space.
+class ViewVolume {
+  public:
+    ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size);
+    /// Whether a box, widened by `reach` voxels, may show. Never false for one that does.
+    bool shows(const glm::ivec3& low, const glm::ivec3& size, double reach) const;
+
+  private:
+    glm::dvec4 planes_[5];  ///< inside where dot(plane, (p, 1)) >= 0; not of unit length
+};
+
+/// The coarsest of `levels` levels whose voxels are nowhere in the picture wider than `pixels`; 0 where level 0 is
+/// wider already, or the volume reaches the plane of the eye.
+int level_for(const VolumeGeometry& geometry, int levels, const Camera& camera, const glm::ivec2& size, double pixels);
+
+}  // namespace edgesplat

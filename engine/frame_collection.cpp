@@ -1,0 +1,193 @@
+#include "engine/frame_collection.h"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "engine/error.h"
+#include "engine/frame.h"
+#include "engine/passes/1_estimate_edges.h"
+#include "engine/row_box.h"
+
+namespace edgesplat {
+namespace {
+
+using Place = gpu::Buffer::Place;
+using Usage = vk::ImageUsageFlagBits;
+
+// A splat's number is multiplied by its size in 32 bits.
+constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
+
+/// Runs of voxels to counts to places in the list; notes the rows that hold splats.
+void scan_runs(const CollectionBlock& block, VolumeResources& resources, CollectedBlock& collected) {
+    const std::uint64_t voxels = static_cast<std::uint64_t>(block.core_size.x) *
+                                 static_cast<std::uint64_t>(block.core_size.y) *
+                                 static_cast<std::uint64_t>(block.core_size.z);
+    RowBox rows(block.core_size);
+    std::uint64_t total = resources.splat_count, run = 0;
+    for (std::uint32_t& offset : resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(block.core_size))) {
+        const std::uint32_t count = offset;
+        offset = static_cast<std::uint32_t>(total);
+        total += count;
+        const std::uint64_t first = run++ * shader::COLLECT_RUN;
+        if (count > 0) rows.add(first, std::min(first + shader::COLLECT_RUN, voxels) - 1);
+    }
+    collected.first = resources.splat_count;
+    collected.count = total - resources.splat_count;
+    collected.low = block.core_low + rows.low();
+    collected.high = block.core_low + rows.high();
+}
+
+/// The planes of the scene, counted from a block's first voxel.
+void place_planes(glm::vec4 (&planes)[shader::MAX_CLIP_PLANES], const glm::ivec3& low) {
+    for (glm::vec4& plane : planes)
+        plane.w += glm::dot(glm::vec3(plane), glm::vec3(low));
+}
+
+/// Makes a list of the splats `bytes` long; what is in it stays.
+void lengthen(const gpu::Device& device, gpu::Commands& commands, gpu::Buffer& list, std::size_t bytes,
+              std::size_t used, const char* name) {
+    gpu::Buffer longer(device, bytes, Place::Device, name);
+    if (used > 0) {
+        commands.run([&] {
+            commands.raw().copyBuffer(list.handle(), longer.handle(), vk::BufferCopy(0, 0, used));
+            commands.barrier();
+        });
+    }
+    list = std::move(longer);
+}
+
+/// Room for `count` splats in all.
+void reserve(const gpu::Device& device, gpu::Commands& commands, const CollectionPlan& plan, std::uint64_t count,
+             VolumeResources& resources) {
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
+    const std::uint64_t used = resources.splat_count;
+    lengthen(device, commands, resources.splats, count * sizeof(shader::Splat), used * sizeof(shader::Splat),
+             "splat list");
+    params.splats = resources.splats.address();
+    if (plan.curved || plan.weighted != 0) {
+        lengthen(device, commands, resources.traits, count * sizeof(std::uint32_t), used * sizeof(std::uint32_t),
+                 "splat traits");
+        params.traits = resources.traits.address();
+    }
+    if (!plan.transfer.empty()) {
+        lengthen(device, commands, resources.values, count * sizeof(float), used * sizeof(float), "classified values");
+        params.values = resources.values.address();
+    }
+}
+
+}  // namespace
+
+CollectionBlock whole_block(const glm::ivec3& dims) {
+    return {glm::ivec3(0), dims, glm::ivec3(0), dims};
+}
+
+passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
+    const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
+    return {.core_size = plan.dims,
+            .edges = plan.edge_field,
+            .buried = plan.buried,
+            .smooth = plan.edge_field && marched,
+            .curved = plan.curved,
+            .weighted = plan.weighted,
+            .clip = plan.clip,
+            .transfer = !plan.transfer.empty()};
+}
+
+void prepare_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                        const CollectionPlan& plan, const CollectionBlock& largest, VolumeResources& resources) {
+    const auto volume_image = [&](vk::Format format, const char* name) {
+        return gpu::GpuImage(
+            device,
+            {.format = format, .size = largest.size, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc},
+            name);
+    };
+    // What a change of the scene replaces is not held next to its successor.
+    resources.edges = {};
+    resources.buried = {};
+    resources.run_offsets = {};
+    resources.splats = {};
+    resources.traits = {};
+    resources.scene = {};
+    resources.transfer = {};
+    resources.values = {};
+    resources.splat_count = resources.edge_splat_count = 0;
+    resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
+    resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
+    resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), Place::Host, "scene parameters");
+    resources.run_offsets = gpu::Buffer(device, passes::collect_runs(largest.core_size) * sizeof(std::uint32_t),
+                                        Place::Host, "run offsets");
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
+    params = plan.params;
+    if (!plan.transfer.empty()) {
+        resources.transfer =
+            gpu::Buffer(device, plan.transfer.size() * sizeof(shader::TransferRow), Place::Host, "transfer function");
+        std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
+    }
+    bindings.write(resources, {}, {});
+    commands.run([&] {
+        if (plan.buried) commands.prepare({&resources.buried});
+        if (plan.edge_field) commands.prepare({&resources.edges});
+    });
+}
+
+std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Commands& commands,
+                                            const CollectionPlan& plan, const CollectionBlock& block, bool exact,
+                                            std::uint64_t most_splats, VolumeResources& resources) {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
+    const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
+    const shader::SceneParams lists = params;
+    params = plan.params;
+    params.dims = block.size;
+    params.core_low = region.core_low;
+    params.core_size = block.core_size;
+    params.block_origin = block.low;
+    params.volume_dims = plan.dims;
+    place_planes(params.clip_keep, block.low);
+    place_planes(params.clip_remove, block.low);
+    params.run_offsets = resources.run_offsets.address();
+    params.splats = lists.splats;
+    params.traits = lists.traits;
+    params.values = lists.values;
+    if (resources.transfer) params.transfer = resources.transfer.address();
+
+    commands.run([&] {
+        if (plan.buried) commands.span("1a_mark_buried", [&] { passes::mark_buried(commands, block.size, plan.clip); });
+        if (plan.edge_field) {
+            commands.span("1_estimate_edges",
+                          [&] { passes::estimate_edges(commands, region, plan.estimator, plan.skip_buried); });
+        }
+        commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
+    });
+    CollectedBlock out;
+    out.times = commands.span_times();
+    scan_runs(block, resources, out);
+    const std::uint64_t total = out.first + out.count;
+    if (total > most_splats) return std::nullopt;
+    if (total > kMostSplats) fail("{} voxels can be seen at once; the splat list holds {}", total, kMostSplats);
+    const std::uint64_t room = resources.splats ? resources.splats.bytes() / sizeof(shader::Splat) : 0;
+    if (exact || total > room)
+        reserve(device, commands, plan, exact ? total : std::min(std::max(total, 2 * room), most_splats), resources);
+    commands.run([&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect); }); });
+    const auto edges = resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(block.core_size));
+    out.with_edge = std::accumulate(edges.begin(), edges.end(), std::uint64_t{0});
+    for (const auto& writing : commands.span_times())
+        out.times.back().milliseconds += writing.milliseconds;
+    resources.splat_count = total;
+    resources.edge_splat_count += out.with_edge;
+    return out;
+}
+
+std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                                     const CollectionPlan& plan, VolumeResources& resources) {
+    const CollectionBlock whole = whole_block(plan.dims);
+    prepare_collection(device, commands, bindings, plan, whole, resources);
+    const auto collected = collect_block(device, commands, plan, whole, true, kMostSplats, resources);
+    resources.box_low = collected->low;
+    resources.box_high = collected->high;
+    return collected->times;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,305 @@
+// A volume that the device holds block by block gives the picture of the whole one.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <limits>
+
+#include "engine/effect_table.h"
+#include "engine/error.h"
+#include "engine/frame_blocks.h"
+#include "engine/frame_forecast.h"
+#include "engine/volume/load_volume.h"
+#include "engine/volume/pack_volume.h"
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+/// Surfaces everywhere, across every border between blocks: those of a gyroid, bent.
+VolumePointer gyroid(const glm::ivec3& dims) {
+    return sampled(
+        dims,
+        [](const glm::dvec3& p) {
+            const glm::dvec3 q =
+                (p + glm::dvec3(0.2, 0.7, 0.4) + 2.0 * glm::sin(glm::dvec3(p.y, p.z, p.x) / 9.0)) / 4.3;
+            return std::sin(q.x) * std::cos(q.y) + std::sin(q.y) * std::cos(q.z) + std::sin(q.z) * std::cos(q.x);
+        },
+        glm::dmat3(glm::dvec3(1, 0.1, 0), glm::dvec3(0, 0.9, 0.05), glm::dvec3(0, 0, 1.3)));
+}
+
+Shot gyroid_shot(const glm::ivec3& dims = {300, 28, 16}) {
+    Shot shot;
+    shot.volume = gyroid(dims);
+    shot.scene.iso_values = {0.2, 0.9};
+    shot.scene.materials = {{}, {{0.2, 0.5, 1}, 0.15}, {{1, 0.85, 0.7}, 2}};
+    shot.camera = look(*shot.volume, {150, 40, 130}, {150, 12, 8}, 95);
+    shot.width = shot.height = 128;
+    return shot;
+}
+
+/// Frees the device of a budget again, whatever the test does.
+struct Budget {
+    explicit Budget(std::uint64_t bytes) { test_renderer().set_memory_budget(bytes); }
+    Budget(const Budget&) = delete;
+    Budget& operator=(const Budget&) = delete;
+    ~Budget() { test_renderer().set_memory_budget(0); }
+};
+
+/// Of all there is in a picture's forecast, what the volume's own images take.
+std::uint64_t bytes_of_images(const Shot& shot) {
+    const FrameRequest request{shot.volume, shot.scene, shot.camera, shot.settings, {shot.width, shot.height}, {}};
+    std::uint64_t bytes = 0;
+    for (const PlannedResource& resource : test_renderer().forecast(request).resources)
+        if (resource.image && resource.image->volume) bytes += test_renderer().required_bytes(resource);
+    return bytes;
+}
+
+struct Pair {
+    RenderResult whole, blocks;
+};
+
+/// Whoever would rather see something at once has the volume in blocks.
+Pair both(const Shot& shot, const AovRequest& aovs = {}) {
+    Pair pair;
+    pair.whole = render(shot, aovs);
+    EXPECT_FALSE(pair.whole.stats.in_blocks);
+    test_renderer().set_patience(1e9);
+    pair.blocks = render(shot, aovs);
+    test_renderer().set_patience(std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(pair.blocks.stats.in_blocks && pair.blocks.stats.complete);
+    return pair;
+}
+
+/// Within a billionth of the square of a picture's range.
+void expect_equal(const Pair& pair, const char* what) {
+    EXPECT_GE(compare_images(pair.blocks.color, pair.whole.color).psnr, 90) << what;
+    EXPECT_GT(pair.blocks.stats.splats_collected, 10000U) << what;
+}
+
+TEST(Blocks, ArePicturesOfTheWholeInLessMemory) {
+    const Shot shot = gyroid_shot({300, 182, 14});
+    const RenderResult whole = render(shot);
+    EXPECT_FALSE(whole.stats.in_blocks);
+    const std::uint64_t bytes = whole.stats.device_bytes - bytes_of_images(shot) / 8;
+    const Budget budget(bytes);
+    const RenderResult blocks = render(shot);
+    EXPECT_TRUE(blocks.stats.in_blocks);
+    EXPECT_EQ(blocks.stats.blocks, 6U);
+    EXPECT_EQ(blocks.stats.blocks_held, 6U);
+    EXPECT_LE(blocks.stats.device_bytes, bytes);
+    expect_equal({whole, blocks}, "");
+    EXPECT_EQ(blocks.stats.splats_collected, whole.stats.splats_collected);
+    EXPECT_EQ(blocks.stats.edge_splats, whole.stats.edge_splats);
+}
+
+TEST(Blocks, ArePicturesOfTheWholeWithEveryKindOfSplat) {
+    for (const char* what : {"cubic", "voxel weights", "edge weights", "curved", "taylor", "plain", "sliced"}) {
+        Shot shot = gyroid_shot();
+        const std::string name = what;
+        if (name == "cubic") shot.settings.edges = EdgeEstimator::Cubic;
+        if (name == "taylor") shot.settings.edges = EdgeEstimator::Taylor;
+        if (name == "plain") shot.settings.edges = EdgeEstimator::Off;
+        if (name == "voxel weights") shot.settings.normalisation = Normalisation::Voxel;
+        if (name == "edge weights") shot.settings.normalisation = Normalisation::Edge;
+        if (name == "curved") shot.settings.edge_shape = EdgeShape::Curved;
+        if (name == "sliced") shot.settings.sheets = SheetCut::Sliced;
+        expect_equal(both(shot), what);
+    }
+}
+
+TEST(Blocks, ArePicturesOfTheWholeWithEffects) {
+    Shot cut = gyroid_shot();
+    cut.scene.effects.clip.keep.push_back({cut.volume->geometry.to_world({129, 0, 0}), {1, 0.2, 0.1}});
+    expect_equal(both(cut), "clip");
+    Shot shaded = gyroid_shot();
+    shaded.scene.lights = {{.kind = Light::Kind::Directional, .direction = {0.3, -0.4, 1}, .shadows = true}};
+    expect_equal(both(shaded), "shadows");
+    const Pair tau = both(gyroid_shot(), {.tau = true});
+    EXPECT_GE(compare_images(*tau.blocks.tau, *tau.whole.tau).psnr, 90);
+}
+
+/// Deleted when done with.
+struct PackedFile {
+    explicit PackedFile(const Volume& volume) { pack_volume(volume, path); }
+    PackedFile(const PackedFile&) = delete;
+    PackedFile& operator=(const PackedFile&) = delete;
+    ~PackedFile() { std::filesystem::remove(path); }
+    std::string path = testing::TempDir() + "blocks_test_" + std::to_string(::getpid()) + ".esv";
+};
+
+TEST(Blocks, FromAFileArePicturesOfTheVolumeInMemory) {
+    Shot shot = gyroid_shot();
+    const RenderResult whole = render(shot);
+    const PackedFile file(*shot.volume);
+    shot.volume = std::make_shared<const Volume>(load_volume(file.path));
+    ASSERT_TRUE(shot.volume->values.empty());
+    const RenderResult packed = render(shot);
+    EXPECT_TRUE(packed.stats.in_blocks && packed.stats.complete);
+    expect_equal({whole, packed}, "packed");
+    EXPECT_EQ(packed.stats.splats_collected, whole.stats.splats_collected);
+    // In far less memory a coarser level is drawn, and said to be.
+    std::uint64_t bytes = packed.stats.device_bytes;
+    RenderResult coarser = packed;
+    for (; coarser.stats.level == 0 && bytes > packed.stats.device_bytes / 4; bytes -= bytes / 10) {
+        const Budget budget(bytes);
+        coarser = render(shot);
+        EXPECT_LE(coarser.stats.device_bytes, bytes);
+    }
+    EXPECT_EQ(coarser.stats.level, 1);
+    EXPECT_EQ(coarser.stats.wanted_level, 0);
+    EXPECT_GE(compare_images(coarser.color, whole.color).psnr, 15);
+    const Budget budget(100'000);
+    EXPECT_THROW(render(shot), Error);
+}
+
+TEST(Blocks, AreHeldAsFarAsThePictureShowsThem) {
+    Shot shot = gyroid_shot();
+    shot.camera = look(*shot.volume, {30, 12, 60}, {30, 12, 0}, 30);
+    const Pair corner = both(shot);
+    expect_equal(corner, "corner");
+    EXPECT_EQ(corner.blocks.stats.blocks_held, 1U);
+    EXPECT_LT(corner.blocks.stats.splats_collected, corner.whole.stats.splats_collected / 2);
+}
+
+TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
+    Shot shot = gyroid_shot();
+    const auto at = [&](double x) {
+        shot.camera = look(*shot.volume, {x, 12, 60}, {x, 12, 0}, 30);
+        return render(shot);
+    };
+    test_renderer().set_patience(1e9);
+    const RenderResult left = at(30), both = at(298);
+    EXPECT_EQ(both.stats.blocks_held, 2U) << "there is room for more than is shown";
+    RenderResult again;
+    for (double share = 0.95; share > 0.5 && again.stats.blocks_held != 1; share -= 0.05) {
+        const auto bytes = static_cast<std::uint64_t>(share * static_cast<double>(both.stats.device_bytes));
+        const Budget budget(bytes);
+        again = at(30);
+        EXPECT_LE(again.stats.device_bytes, bytes);
+        EXPECT_GE(compare_images(again.color, left.color).psnr, 90);
+        EXPECT_GE(compare_images(at(298).color, both.color).psnr, 90);
+    }
+    EXPECT_EQ(again.stats.blocks_held, 1U);
+    test_renderer().set_patience(std::numeric_limits<double>::infinity());
+}
+
+TEST(Blocks, StandInCoarselyUntilTheyAreThere) {
+    const Shot shot = gyroid_shot();
+    const RenderResult whole = render(shot);
+    test_renderer().set_patience(0);
+    std::vector<RenderResult> shown;
+    do
+        shown.push_back(render(shot));
+    while (!shown.back().stats.complete && shown.size() < 10);
+    test_renderer().set_patience(std::numeric_limits<double>::infinity());
+    ASSERT_EQ(shown.size(), 3U) << "a block a picture";
+    EXPECT_EQ(shown[0].stats.level, 1);
+    EXPECT_EQ(shown[0].stats.wanted_level, 0);
+    EXPECT_EQ(shown[2].stats.level, 0);
+    EXPECT_EQ(shown[2].stats.validation_messages, 0U);
+    EXPECT_GE(compare_images(shown[0].color, whole.color).psnr, 15) << "something like it";
+    EXPECT_GE(compare_images(shown.back().color, whole.color).psnr, 90);
+    EXPECT_EQ(compare_images(shown[0].color, shown[1].color).rmse, 0) << "what stands in stands still";
+}
+
+/// Radius minus distance from the middle of 384^3 voxels, as its file would tell: bounds only.
+class Ball : public SampleSource {
+  public:
+    Ball() { geometry_.dims = glm::ivec3(384); }
+    const VolumeGeometry& geometry() const override { return geometry_; }
+    ValueRange range(const glm::ivec3& low, const glm::ivec3& size) const override {
+        const glm::dvec3 a(low), b(low + size - 1), middle(192);
+        const double nearest = glm::distance(glm::clamp(middle, a, b), middle);
+        const double farthest = glm::length(glm::max(glm::abs(a - middle), glm::abs(b - middle)));
+        return {static_cast<float>(200 - farthest), static_cast<float>(200 - nearest)};
+    }
+    void read(const glm::ivec3&, const glm::ivec3&, std::span<float>) const override { FAIL(); }
+
+  private:
+    VolumeGeometry geometry_;
+};
+
+Scene ball_scene(double iso) {
+    Scene scene = two_tone(0, 2);
+    scene.iso_values = {iso};
+    return scene;
+}
+
+TEST(Blocks, ThatAreTransparentOrBuriedHoldNothing) {
+    const Ball ball;
+    Volume outline;
+    outline.geometry = ball.geometry();
+    outline.min_value = -200;
+    outline.max_value = 200;
+    const auto blocks = [&](double radius, bool keep_buried) {
+        const CollectionPlan plan = plan_collection(outline, ball_scene(200 - radius), {}, keep_buried);
+        EXPECT_EQ(plan.buried, !keep_buried);
+        return blocks_with_splats(ball, outline, plan).size();
+    };
+    EXPECT_EQ(blocks(130, true), 27U);
+    EXPECT_EQ(blocks(130, false), 26U) << "the middle one is buried";
+    EXPECT_EQ(blocks(60, false), 1U) << "the ball lies in the middle one";
+}
+
+TEST(Levels, AreAsCoarseAsPixelsAreWide) {
+    VolumeGeometry g;
+    g.dims = {100, 100, 100};
+    Camera camera;
+    camera.direction = {0, 0, -1};
+    camera.up = {0, 1, 0};
+    camera.fov_y = 90;
+    // At distance 256 of a picture of 512 pixels a mm is a pixel.
+    const auto level_at = [&](double distance, double pixels) {
+        camera.eye = {50, 50, 99 + distance};
+        return level_for(g, 4, camera, {640, 512}, pixels);
+    };
+    EXPECT_EQ(level_at(257, 1), 0);
+    EXPECT_EQ(level_at(511, 1), 0);
+    EXPECT_EQ(level_at(513, 1), 1);
+    EXPECT_EQ(level_at(513, 0.5), 0);
+    EXPECT_EQ(level_at(513, 0), 0);
+    EXPECT_EQ(level_at(1025, 1), 2);
+    EXPECT_EQ(level_at(1e6, 1), 3);
+    EXPECT_EQ(level_at(-50, 1), 0);
+    EXPECT_EQ(level_at(-500, 1), 0);
+}
+
+TEST(Levels, KeepPlacesAndMeans) {
+    const auto volume = sampled(
+        {37, 20, 9}, [](const glm::dvec3& p) { return 2 * p.x - 3 * p.y + 5 * p.z; },
+        glm::dmat3(glm::dvec3(1, 0.1, 0), glm::dvec3(0, 2, 0), glm::dvec3(0.2, 0, 3)));
+    const Volume half = halved(*volume);
+    EXPECT_EQ(half.geometry.dims, glm::ivec3(19, 10, 5));
+    for (const glm::ivec3 p : {glm::ivec3(0), glm::ivec3(17, 9, 3), glm::ivec3(4, 2, 1)}) {
+        // A linear field's mean is its value at the centre.
+        const glm::dvec3 at = volume->geometry.to_index(half.geometry.to_world(p));
+        EXPECT_NEAR(half.at(p.x, p.y, p.z), 2 * at.x - 3 * at.y + 5 * at.z, 1e-5);
+    }
+    // At an odd end the mean is over what there is.
+    EXPECT_NEAR(half.at(18, 0, 0), 2 * 36 - 3 * 0.5 + 5 * 0.5, 1e-5);
+    EXPECT_EQ(half.min_value, volume->min_value);
+    EXPECT_EQ(level_geometry(volume->geometry, 1).origin, half.geometry.origin);
+    EXPECT_EQ(level_count(*volume), 1);
+    EXPECT_EQ(level_count(*gyroid({200, 60, 10})), 3);
+}
+
+TEST(Levels, ShowTheSameSurfaceCoarser) {
+    Shot shot;
+    const glm::dvec3 centre(62.3, 64.1, 65);
+    shot.volume = sampled(glm::ivec3(128), [&](const glm::dvec3& p) { return 40 - glm::length(p - centre); });
+    shot.scene = ball_scene(0);
+    shot.camera = look(*shot.volume, {64, -900, 80}, {64, 64, 64}, 9);
+    const Image fine = render(shot).color;
+    shot.settings.detail = 2;
+    const RenderResult coarse = render(shot);
+    EXPECT_EQ(coarse.stats.level, 1);
+    EXPECT_LT(coarse.stats.splats_collected * 3, 40U * 40U * 13U * 12U);
+    EXPECT_GE(compare_images(coarse.color, fine).psnr, 32);
+    // Another scene, and the levels of the one before are not those of this one.
+    shot.settings.detail = 0;
+    EXPECT_EQ(compare_images(render(shot).color, fine).rmse, 0);
+}
+
+}  // namespace
+}  // namespace edgesplat::test
