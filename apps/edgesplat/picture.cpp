@@ -14,6 +14,7 @@
 #include "engine/overlays.h"
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -104,6 +105,9 @@ void make_picture(const PictureRequest& request) {
     const edgesplat::OutputChoice& output = request.document.output;
     edgesplat::Settings settings = request.document.quality.settings;
     const auto volume = std::make_shared<const edgesplat::Volume>(load(request));
+    if (output.renderer != edgesplat::RendererKind::Splat)
+        need_samples(*volume, fmt::format("--renderer {}", name_of(output.renderer)));
+    if (request.document.quality.max_error) need_samples(*volume, "--max-error");
     const edgesplat::Scene scene = resolve_scene(request.document, *volume);
     const edgesplat::Camera camera = resolve_camera(request.document, *volume, scene);
 

@@ -88,7 +88,10 @@ TEST_F(CliPackTest, WhatCannotBeDoneIsSaidAndLeavesNothing) {
              Case{"pack builtin:sphere:20 -o new.esv --quantise 12", 2, "12"},
              Case{"pack builtin:sphere:1000000 -o new.esv", 1, "2^40"},
              Case{"pack vol.esv -o new.esv", 1, "vol.esv: is a packed volume already"},
+             Case{"render vol.esv -o a.png --renderer raycast", 1, "--renderer raycast needs all samples in memory"},
+             Case{"render vol.esv -o a.png --renderer reference", 1, "--renderer reference needs all samples"},
              Case{"render vol.esv -o a.png --box-filter", 1, "the box filter needs all samples"},
+             Case{"render vol.esv -o a.png --max-error 1%", 1, "--max-error needs all samples"},
              Case{"accuracy vol.esv --report report", 1, "accuracy needs all samples"},
              Case{"effects vol.esv", 1, "effects needs all samples"},
          }) {
