@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 #include "engine/error.h"
 #include "engine/frame.h"
@@ -115,7 +114,7 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, cons
     resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
     resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
     resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), Place::Host, "scene parameters");
-    resources.run_offsets = gpu::Buffer(device, passes::collect_runs(largest.core_size) * sizeof(std::uint32_t),
+    resources.run_offsets = gpu::Buffer(device, (passes::collect_runs(largest.core_size) + 1) * sizeof(std::uint32_t),
                                         Place::Host, "run offsets");
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     params = plan.params;
@@ -170,9 +169,16 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
     const std::uint64_t room = resources.splats ? resources.splats.bytes() / sizeof(shader::Splat) : 0;
     if (exact || total > room)
         reserve(device, commands, plan, exact ? total : std::min(std::max(total, 2 * room), most_splats), resources);
-    commands.run([&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect); }); });
-    const auto edges = resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(block.core_size));
-    out.with_edge = std::accumulate(edges.begin(), edges.end(), std::uint64_t{0});
+    // Behind the runs' offsets one more word.
+    const std::uint64_t runs = passes::collect_runs(block.core_size);
+    std::uint32_t& with_edge = resources.run_offsets.mapped<std::uint32_t>(runs + 1).back();
+    with_edge = 0;
+    params.list_first = static_cast<std::uint32_t>(out.first);
+    params.list_count = static_cast<std::uint32_t>(out.count);
+    params.edge_count_at = static_cast<std::uint32_t>(runs);
+    commands.run(
+        [&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect, out.count); }); });
+    out.with_edge = with_edge;
     for (const auto& writing : commands.span_times())
         out.times.back().milliseconds += writing.milliseconds;
     resources.splat_count = total;

@@ -85,8 +85,10 @@ class Passes {
                                                                          : kRates.edge_voxel;
             add("setup", "1_estimate_edges", kRates.normal_voxel * voxels + rate * 3 * splats, shaders);
         }
-        add("setup", "2_collect_splats", kRates.collect_voxel * voxels + kRates.collect_splat * splats,
-            {variant("2_collect_splats.comp", passes::collect_constants(collect_inputs(plan)))});
+        const passes::CollectSplats collect = collect_inputs(plan);
+        std::vector<std::string> shaders{variant("2_collect_splats.comp", passes::collect_constants(collect))};
+        if (collect.edges) shaders.push_back(variant("2a_finish_splats.comp", passes::finish_constants(collect)));
+        add("setup", "2_collect_splats", kRates.collect_voxel * voxels + kRates.collect_splat * splats, shaders);
     }
 
     void add_reach(const FrameRequest& request, const FrameForecast& f) {

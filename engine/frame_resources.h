@@ -19,7 +19,7 @@ struct VolumeResources {
     gpu::GpuImage edges;         ///< (z, y, x) rg32ui; 1 -> 2; absent without edges and light
     gpu::GpuImage buried;        ///< (z, y, x) r8ui; 2a -> 2b; absent where nothing is buried
     gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
-    gpu::Buffer run_offsets;     ///< (runs) uint, mapped; 2 <-> host
+    gpu::Buffer run_offsets;     ///< (runs + 1) uint, mapped; 2 <-> host
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
     gpu::Buffer
         traits;  ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved or kernels weighted

@@ -12,10 +12,18 @@ void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool wri
 }  // namespace
 
 gpu::Specialization collect_constants(const CollectSplats& in) {
-    return {{shader::SPEC_EDGES, in.edges ? 1 : 0},     {shader::SPEC_BURIED, in.buried ? 1 : 0},
-            {shader::SPEC_SMOOTH, in.smooth ? 1 : 0},   {shader::SPEC_CURVED, in.curved ? 1 : 0},
-            {shader::SPEC_WEIGHTED, in.weighted},       {shader::SPEC_CLIP_KEEP, in.clip.keep},
-            {shader::SPEC_CLIP_REMOVE, in.clip.remove}, {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
+    return {{shader::SPEC_EDGES, in.edges ? 1 : 0},
+            {shader::SPEC_BURIED, in.buried ? 1 : 0},
+            {shader::SPEC_CLIP_KEEP, in.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, in.clip.remove},
+            {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
+}
+
+gpu::Specialization finish_constants(const CollectSplats& in) {
+    return {{shader::SPEC_SMOOTH, in.smooth ? 1 : 0},
+            {shader::SPEC_CURVED, in.curved ? 1 : 0},
+            {shader::SPEC_WEIGHTED, in.weighted},
+            {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
 }
 
 std::uint64_t collect_runs(const glm::ivec3& core_size) {
@@ -27,8 +35,11 @@ void count_splats(gpu::Commands& commands, const CollectSplats& in) {
     dispatch_collect(commands, in, false);
 }
 
-void write_splats(gpu::Commands& commands, const CollectSplats& in) {
+void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count) {
     dispatch_collect(commands, in, true);
+    if (!in.edges || count == 0) return;
+    commands.dispatch("2a_finish_splats.comp", finish_constants(in), 0, gpu::groups_for(count, 64));
+    commands.barrier();
 }
 
 }  // namespace edgesplat::passes

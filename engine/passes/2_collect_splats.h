@@ -17,8 +17,9 @@ struct CollectSplats {
     bool transfer = false;       ///< splats are classified by a transfer function
 };
 
-/// Specialization of 2_collect_splats.comp.
+/// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.
 gpu::Specialization collect_constants(const CollectSplats& in);
+gpu::Specialization finish_constants(const CollectSplats& in);
 
 /// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
 std::uint64_t collect_runs(const glm::ivec3& core_size);
@@ -26,8 +27,8 @@ std::uint64_t collect_runs(const glm::ivec3& core_size);
 /// Writes how many splats each run holds to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
-/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels,
-/// and leaves the number of splats with an edge in run_offsets.
-void write_splats(gpu::Commands& commands, const CollectSplats& in);
+/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels, and where
+/// there is an edge field finishes the `count` that SceneParams says.
+void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
 
 }  // namespace edgesplat::passes

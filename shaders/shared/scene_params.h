@@ -12,7 +12,7 @@ struct SceneParams {
     uint opaque_mask;     // bit m: material m hides what lies bury_distance voxels behind its surface
     int bury_distance;    // voxels
     float band;           // R + a: an edge further away does not matter, voxels
-    Address run_offsets;  // (runs) uint: splats of each run, then where it writes, then how many have an edge
+    Address run_offsets;  // (runs) uint: splats of each run, then where it writes
     Address splats;       // (splat_count) Splat
     Address traits;       // (splat_count) uint: curvature and weight; edges curved or kernels normalised
     float curvature_unit;  // the largest curvature that is drawn, 1/voxel
@@ -30,7 +30,9 @@ struct SceneParams {
     ivec3 core_size;         // how many do, along each axis
     ivec3 block_origin;      // of the images' first voxel in the volume
     ivec3 volume_dims;       // voxels of the volume: Splat::voxel counts them
-    uint block_pad;
+    uint list_first;         // first of the splats that 2a_finish_splats is to finish
+    uint list_count;
+    uint edge_count_at;      // where in run_offsets stands how many of them have an edge
 };
 
 /// One splat as collected: 12 bytes.
@@ -50,7 +52,7 @@ EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: pla
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 644);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 652);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);
