@@ -5,7 +5,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/lib/edge_record.glsl"
 
-layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(local_size_x = 64) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 const uint OFF = 0u, TAYLOR = 1u, QUADRATIC = 2u, MARCH = 3u, CUBIC = 4u;
@@ -148,21 +148,25 @@ Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
     return e;
 }
 
+// What is not seen has no edge.
+bool wanted(ivec3 p) {
+    bool visible = in_mask(params.scene.estimate_mask, material_of(voxel(p)));
+    if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
+    if (!visible) imageStore(edges, p, uvec4(0u));
+    return visible;
+}
+#include "shaders/lib/brick_list.glsl"
+
 void main() {
     dims = params.scene.dims;
-    ivec3 p = max(params.scene.core_low - ESTIMATE_MARGIN, ivec3(0)) + ivec3(gl_GlobalInvocationID);
-    if (any(greaterThanEqual(p, min(params.scene.core_low + params.scene.core_size + ESTIMATE_MARGIN, dims)))) return;
-
-    float value = voxel(p);
-    uint material = material_of(value);
-    float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
-    float high = params.scene.iso[material];
-
-    uvec2 code = uvec2(0u);
-    bool visible = in_mask(params.scene.estimate_mask, material);
-    if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
-    // A loop that runs once or not at all: lavapipe runs both sides of an if, but no loop that is empty in every lane.
-    for (int run = visible ? 1 : 0; run > 0; --run) {
+    ivec3 low_voxel = max(params.scene.core_low - ESTIMATE_MARGIN, ivec3(0));
+    uint count = list_brick(low_voxel, min(params.scene.core_low + params.scene.core_size + ESTIMATE_MARGIN, dims));
+    for (uint i = gl_LocalInvocationIndex; i < count; i += 64u) {
+        ivec3 p = listed_voxel(low_voxel, i);
+        float value = voxel(p);
+        uint material = material_of(value);
+        float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
+        float high = params.scene.iso[material];
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR || ESTIMATOR == QUADRATIC) e = extrapolate(p, value, low, high, params.scene.band);
         if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) e = march(p, value, low, high);
@@ -171,7 +175,7 @@ void main() {
             float slope = length(g);
             if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
         }
-        if (e.state != EDGE_NONE) code = uvec2(pack_normal(e.n), pack_edge(e));
+        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e));
+        imageStore(edges, p, uvec4(code, 0u, 0u));
     }
-    imageStore(edges, p, uvec4(code, 0u, 0u));
 }

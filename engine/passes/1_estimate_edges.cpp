@@ -3,10 +3,11 @@
 namespace edgesplat::passes {
 namespace {
 
-gpu::Groups voxel_groups(const EdgeRegion& region, int margin) {  // local size 8 x 4 x 2 in the shaders
+/// A workgroup a brick of 8^3 (shaders/lib/brick_list.glsl).
+gpu::Groups brick_groups(const EdgeRegion& region, int margin) {
     const glm::ivec3 low = glm::max(region.core_low - margin, 0);
     const glm::ivec3 high = glm::min(region.core_low + region.core_size + margin, region.dims);
-    const glm::uvec3 groups = (glm::uvec3(high - low) + glm::uvec3(7, 3, 1)) / glm::uvec3(8, 4, 2);
+    const glm::uvec3 groups = (glm::uvec3(high - low) + 7U) / 8U;
     return {groups.x, groups.y, groups.z};
 }
 
@@ -31,11 +32,11 @@ gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried
 
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, EdgeEstimator estimator, bool skip_buried) {
     commands.dispatch("1b_estimate_edges.comp", estimate_constants(estimator, skip_buried), 0,
-                      voxel_groups(region, shader::ESTIMATE_MARGIN));
+                      brick_groups(region, shader::ESTIMATE_MARGIN));
     commands.barrier();
     if (estimator != EdgeEstimator::March && estimator != EdgeEstimator::Cubic) return;
     commands.dispatch("1c_adopt_edges.comp", {{shader::SPEC_BURIED, skip_buried ? 1 : 0}}, 0,
-                      voxel_groups(region, shader::ADOPT_MARGIN));
+                      brick_groups(region, shader::ADOPT_MARGIN));
     commands.barrier();
 }
 

@@ -1,0 +1,34 @@
+// The voxels of a brick of 8^3 that there is something to do for, one behind the other: then invocations side by side all have
+// one, where on a surface every other would be idle. For workgroups of 64. After shaders that declare `bool wanted(ivec3 p)`.
+#ifndef EDGESPLAT_BRICK_LIST_GLSL
+#define EDGESPLAT_BRICK_LIST_GLSL
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_ballot : require
+
+const int BRICK = 8;
+shared uint brick_voxels[BRICK * BRICK * BRICK];
+shared uint brick_count;
+
+ivec3 brick_voxel(uint i) { return ivec3(i & 7u, i >> 3 & 7u, i >> 6); }
+
+// Of the workgroup's brick in the box from `low` up to `high`: how many there are in brick_voxels. All invocations call it.
+uint list_brick(ivec3 low, ivec3 high) {
+    if (gl_LocalInvocationIndex == 0u) brick_count = 0u;
+    barrier();
+    ivec3 first = low + BRICK * ivec3(gl_WorkGroupID);
+    for (uint i = gl_LocalInvocationIndex; i < uint(BRICK * BRICK * BRICK); i += 64u) {
+        ivec3 p = first + brick_voxel(i);
+        bool in_list = all(lessThan(p, high)) && wanted(p);
+        uvec4 others = subgroupBallot(in_list);
+        uint place = 0u;
+        if (subgroupElect()) place = atomicAdd(brick_count, subgroupBallotBitCount(others));
+        place = subgroupBroadcastFirst(place) + subgroupBallotExclusiveBitCount(others);
+        if (in_list) brick_voxels[place] = i;
+    }
+    barrier();
+    return brick_count;
+}
+
+// Voxel `i` of that list.
+ivec3 listed_voxel(ivec3 low, uint i) { return low + BRICK * ivec3(gl_WorkGroupID) + brick_voxel(brick_voxels[i]); }
+#endif
