@@ -19,11 +19,12 @@ std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit) {
     Chunks chunks;
     std::uint64_t sum = 0;
-    std::uint32_t begin = 0;
+    std::uint32_t begin = starts.front();
     const auto close = [&](std::uint32_t end) {
         if (end > begin) chunks.parts.emplace_back(begin, end);
         chunks.most_pairs = std::max(chunks.most_pairs, sum);
         begin = end;
+        chunks.pairs += sum;
         sum = 0;
     };
     for (std::size_t sheet = 0; sheet < pairs.size(); ++sheet) {
@@ -34,7 +35,8 @@ Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::ui
     return chunks;
 }
 
-Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                  const SheetPart& part) {
     const auto& p = plan.params;
     commands.run([&] {
         for (const gpu::Buffer* zeroed :
@@ -45,9 +47,14 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
         commands.span("4_sort_sheets",
                       [&] { passes::sort_sheets(commands, plan.variant.sliced, true, plan.sort_segments); });
     });
-    return plan_chunks(targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count),
-                       targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1),
-                       chunk_pairs(p.tiles));
+    const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
+    const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
+    const glm::uvec2 sheets = part.count > 1 ? sheets_of_part(pairs, part) : glm::uvec2(0, p.sheet_count);
+    const std::size_t count = sheets.y - sheets.x;
+    Chunks chunks =
+        plan_chunks(pairs.subspan(sheets.x, count), starts.subspan(sheets.x, count + 1), chunk_pairs(p.tiles));
+    chunks.sheets = sheets;
+    return chunks;
 }
 
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
@@ -61,6 +68,7 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
                       [&] { passes::draw_tiles(commands, plan.variant, plan.params.tiles, how, round); });
     };
     const auto resolve = [&] {
+        if (how.part) return;
         commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
     };
     std::ranges::fill(targets.drawn.mapped<std::uint32_t>(4).last(2), 0U);
@@ -89,6 +97,13 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
         add_times(times, commands.span_times());
     }
     return times;
+}
+
+std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan) {
+    commands.run([&] {
+        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+    });
+    return commands.span_times();
 }
 
 }  // namespace edgesplat

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/frame_parts.h"
 #include "engine/frame_plan.h"
 #include "engine/frame_resources.h"
 #include "engine/passes/5_draw_tiles.h"
@@ -18,18 +19,25 @@ std::uint64_t chunk_pairs(const glm::ivec2& tiles);
 struct Chunks {
     std::vector<glm::uvec2> parts;  ///< of the sorted order, half open; empty ones are left out
     std::uint64_t most_pairs = 0;   ///< of any chunk
+    glm::uvec2 sheets{0};           ///< the sheets that are drawn, half open
+    std::uint64_t pairs = 0;        ///< of all chunks
 };
 
-/// `pairs` per sheet; `starts`: where each sheet begins in the order, and where the last one ends. A sheet is never
-/// divided: one with more than `limit` pairs is a chunk of its own.
+/// `pairs` per sheet that is drawn; `starts`: where each sheet begins in the order, and where the last one ends. A
+/// sheet is never divided: one with more than `limit` pairs is a chunk of its own.
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit);
 
-/// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn. Milliseconds are left in `commands`.
-Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
+/// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn of the part. Milliseconds are left in
+/// `commands`.
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                  const SheetPart& part = {});
 
 /// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
-/// With rounds, each chunk is waited for.
+/// With rounds, each chunk is waited for. Of a part (`TileDraw::part`) pass 7 is left out.
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how);
+
+/// Pass 7 alone.
+std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan);
 
 }  // namespace edgesplat

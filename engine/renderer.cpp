@@ -173,11 +173,12 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
         draw_times = commands.span_times();
         return;
     }
+    const passes::TileDraw how{.rounds = device.is_software(), .count = counting, .part = exchange != nullptr};
+    if (exchange) return draw_part(how);
     const Chunks chunks = sort_frame(commands, plan, targets);
     draw_times = commands.span_times();
     provide_chunks(chunks);
-    add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
-                                     {.rounds = device.is_software(), .count = counting}));
+    add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how));
 }
 
 Renderer::Renderer(const DeviceChoice& choice) {
@@ -229,6 +230,8 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     validate(scene);
     validate(wanted);
     const Settings settings = drawn_as(wanted, scene);
+    if (self.exchange && settings.sheet_format != SheetFormat::Tiles)
+        fail("sheets that are drawn in parts need --sheet-format tiles");
     const glm::ivec2 size(width, height);
     RenderResult result;
     try {
@@ -245,6 +248,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         const auto start = Clock::now();
         std::vector<PassTime> times;
         SampleMean mean(size);
+        self.share = {};
         for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
             self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
             add_times(times, self.draw_times);
@@ -252,6 +256,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
             if (scene.effects.samples > 1) mean.add(pixels());
         }
         result.stats.frame_milliseconds = milliseconds_since(start);
+        if (self.exchange) result.stats.share = self.share;
         result.stats.passes.insert(result.stats.passes.end(), times.begin(), times.end());
         result.stats.splats_drawn = self.targets.drawn.mapped<std::uint32_t>(1)[0];
         result.stats.sheets = self.plan.params.sheet_count;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/image.h"
+#include "engine/renderer_parts.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
@@ -90,6 +91,7 @@ struct RenderStats {
     std::optional<DrawCounts> draw_counts;
     /// Likewise: the part of the picture that a sheet group covers with its rectangle, on average.
     std::optional<double> dirty_share;
+    std::optional<SheetShare> share;  ///< after Renderer::divide_sheets
     std::uint64_t validation_messages = 0;
 };
 
@@ -131,6 +133,10 @@ class Renderer {
     /// Whether RenderStats of pictures to come have draw_counts (where the device can count) and dirty_share. Counted
     /// frames take longer.
     void count_fragments(bool on);
+
+    /// Pictures to come are drawn together with the exchange's other renderers, each some of the sheets; where its part
+    /// is not the first, what comes out is of no use. Null: alone.
+    void divide_sheets(PartExchange* exchange);
 
     /// Renders one frame of `width` x `height` pixels (1..16384 each). View-independent work is done again only when
     /// the volume, the scene's materials or the edge settings changed.

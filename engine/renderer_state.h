@@ -120,6 +120,9 @@ struct RendererState : DeviceState, SplatSet {
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0});
 
+    /// Of a tiled picture, the part that the exchange says; with the first part, the whole is left in targets.output.
+    void draw_part(passes::TileDraw how);
+
     /// Adds what the last draw came to, if that is counted.
     void add_counts(RenderStats& stats) const;
 
@@ -138,6 +141,8 @@ struct RendererState : DeviceState, SplatSet {
     FramePlan plan;                       ///< of the last draw
     std::vector<PassTime> collection_times;
     std::vector<PassTime> draw_times;                            ///< of the last draw
+    PartExchange* exchange = nullptr;                            ///< see Renderer::divide_sheets
+    SheetShare share;                                            ///< of the picture being drawn
     bool counting = false;                                       ///< see Renderer::count_fragments
     std::uint64_t memory_budget = 0;                             ///< bytes; 0: what the device has
     std::vector<std::pair<std::string, std::uint64_t>> checked;  ///< resources that were last asked for

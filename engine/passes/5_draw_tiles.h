@@ -9,6 +9,7 @@ namespace edgesplat::passes {
 struct TileDraw {
     bool rounds = true;  ///< only entries [round * TILE_ROUND, (round + 1) * TILE_ROUND) of each list
     bool count = false;  ///< FrameParams::drawn counts footprints
+    bool part = false;   ///< some of the sheets: the picture is not finished with them
 };
 
 /// FrameParams: reads `tile_ranges`, `tile_entries` and the splats, puts the chunk's sheets behind what `output_pixels`

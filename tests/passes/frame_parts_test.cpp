@@ -1,0 +1,242 @@
+// Pictures whose sheets are divided: the arithmetic on the host, and several renderers against one.
+#include "engine/frame_parts.h"
+
+#include <algorithm>
+#include <barrier>
+#include <random>
+#include <thread>
+
+#include "engine/image_compare.h"
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+/// A premultiplied pixel.
+glm::vec4 random_pixel(std::mt19937& random, float opaque = 0.6F) {
+    std::uniform_real_distribution<float> unit(0, 1);
+    const float alpha = opaque * unit(random);
+    return {alpha * unit(random), alpha * unit(random), alpha * unit(random), alpha};
+}
+
+float distance_of(const glm::vec4& a, const glm::vec4& b) {
+    const glm::vec4 d = glm::abs(a - b);
+    return std::max({d.r, d.g, d.b, d.a});
+}
+
+TEST(Over, IsAssociativeButForRoundingAndNotCommutative) {
+    std::mt19937 random(7);
+    float worst = 0, least_turned = 1;
+    for (int i = 0; i < 10000; ++i) {
+        const glm::vec4 a = random_pixel(random), b = random_pixel(random, 1), c = random_pixel(random);
+        worst = std::max(worst, distance_of(over(over(a, b), c), over(a, over(b, c))));
+    }
+    EXPECT_LE(worst, 3e-7F);
+    const glm::vec4 red(0.5F, 0, 0, 0.5F), blue(0, 0, 0.5F, 0.5F);
+    least_turned = std::min(least_turned, distance_of(over(red, blue), over(blue, red)));
+    EXPECT_EQ(least_turned, 0.25F);
+    EXPECT_EQ(over(glm::vec4(0), red), red);
+    EXPECT_EQ(over(red, glm::vec4(0)), red);
+}
+
+TEST(SheetParts, AreAllSheetsOnceWithLikeShares) {
+    std::mt19937 random(3);
+    for (const std::size_t sheets : {0U, 1U, 3U, 50U, 400U}) {
+        std::vector<std::uint32_t> pairs(sheets);
+        for (auto& p : pairs)
+            p = random() % 100;
+        for (const int count : {1, 2, 3, 7}) {
+            std::uint32_t end = 0;
+            std::uint64_t all = 0, most = 0;
+            for (int i = 0; i < count; ++i) {
+                const glm::uvec2 part = sheets_of_part(pairs, {i, count});
+                EXPECT_EQ(part.x, end);
+                EXPECT_LE(part.x, part.y);
+                end = part.y;
+                std::uint64_t sum = 0;
+                for (std::uint32_t s = part.x; s < part.y; ++s)
+                    sum += pairs[s];
+                all += sum;
+                most = std::max(most, sum);
+            }
+            EXPECT_EQ(end, sheets);
+            EXPECT_LE(most, all / static_cast<std::uint64_t>(count) + 101);
+        }
+    }
+}
+
+/// Sheets folded until a pixel is closed.
+glm::vec4 folded(const glm::vec4& before, std::span<const glm::vec4> sheets, float saturation) {
+    glm::vec4 sum = before;
+    for (const glm::vec4& sheet : sheets)
+        if (sum.a < saturation) sum = over(sum, sheet);
+    return sum;
+}
+
+TEST(PixelsBehind, CloseWhereTheWholePictureCloses) {
+    constexpr float kSaturation = 0.9F;
+    constexpr std::size_t kSheets = 12, kParts = 3, kEach = kSheets / kParts;
+    const glm::ivec2 size(37, 20), tiles(3, 2);
+    const auto count = static_cast<std::size_t>(size.x * size.y);
+    std::mt19937 random(5);
+    std::vector<std::vector<glm::vec4>> sheets(count);
+    for (auto& pixel : sheets)
+        for (std::size_t s = 0; s < kSheets; ++s)
+            pixel.push_back(random_pixel(random, random() % 2 == 0 ? 0.1F : 0.7F));
+    std::vector<float> in_front(count, 1.0F);
+    std::vector<glm::vec4> whole(count, glm::vec4(0)), unclosed = whole;
+    std::size_t drawn_again = 0;
+    for (std::size_t p = 0; p < kParts; ++p) {
+        const auto own = [&](std::size_t i) { return std::span(sheets[i]).subspan(p * kEach, kEach); };
+        std::vector<glm::vec4> part(count), pixels(count);
+        for (std::size_t i = 0; i < count; ++i)
+            part[i] = folded(glm::vec4(0), own(i), kSaturation);
+        const std::vector<glm::vec4> alone = part;
+        const PixelsBehind behind(in_front, kSaturation, part, pixels);
+        EXPECT_EQ(behind.any(), p > 0);
+        std::size_t open = 0, closed = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            open += pixels[i].a < kSaturation ? 1U : 0U;
+            pixels[i] = folded(pixels[i], own(i), kSaturation);
+        }
+        for (const std::uint32_t tile : behind.closed_pixels(size, tiles))
+            closed += tile;
+        EXPECT_EQ(open + closed, count);
+        drawn_again += open;
+        behind.take(in_front, pixels, part);
+        for (std::size_t i = 0; i < count; ++i) {
+            whole[i] = over(whole[i], part[i]);
+            unclosed[i] = over(unclosed[i], alone[i]);
+            in_front[i] *= 1 - alone[i].a;
+        }
+    }
+    EXPECT_GT(drawn_again, count / 10);
+    float worst = 0, without = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+        const glm::vec4 want = folded(glm::vec4(0), sheets[i], kSaturation);
+        worst = std::max(worst, distance_of(want, whole[i]));
+        without = std::max(without, distance_of(want, unclosed[i]));
+    }
+    EXPECT_LE(worst, 2e-6F);
+    EXPECT_GT(without, 0.05F) << "closing changes nothing here";
+}
+
+/// Renderers in threads of one process. With `turned` the last part is taken to be in front.
+class ThreadExchange : public PartExchange {
+  public:
+    struct Table {
+        explicit Table(int parts) : all(parts), floats(static_cast<std::size_t>(parts)), pixels(floats.size()) {}
+        std::barrier<> all;
+        std::vector<std::span<float>> floats;
+        std::vector<std::span<glm::vec4>> pixels;
+    };
+    ThreadExchange(Table& table, const SheetPart& part, bool turned) : table_(&table), part_(part), turned_(turned) {}
+
+    SheetPart part() const override { return part_; }
+    void wait() override { table_->all.arrive_and_wait(); }
+    void pass_back(std::span<float> transmittance) override {
+        table_->floats[own()] = transmittance;
+        wait();
+        std::vector<float> product(transmittance.size(), 1.0F);
+        for (std::size_t p = 0; p < own(); ++p)
+            std::ranges::transform(product, table_->floats[p], product.begin(), std::multiplies<>());
+        wait();
+        std::ranges::copy(product, transmittance.begin());
+    }
+    void fold(std::span<glm::vec4> pixels) override {
+        collect(pixels, [this](const glm::vec4& a, const glm::vec4& b) { return turned_ ? over(b, a) : over(a, b); });
+    }
+    void add(std::span<glm::vec4> pixels) override { collect(pixels, std::plus<>()); }
+
+  private:
+    std::size_t own() const { return static_cast<std::size_t>(part_.index); }
+    template <typename Fold>
+    void collect(std::span<glm::vec4> pixels, const Fold& fold) {
+        table_->pixels[own()] = pixels;
+        wait();
+        if (part_.index == 0)
+            for (std::size_t p = 1; p < table_->pixels.size(); ++p)
+                std::ranges::transform(pixels, table_->pixels[p], pixels.begin(), fold);
+        wait();
+    }
+    Table* table_;
+    SheetPart part_;
+    bool turned_;
+};
+
+constexpr AovRequest kAllOutputs{.tau = true, .depth = true, .normal = true, .distance = true};
+
+std::vector<RenderResult> in_parts(std::vector<Renderer>& renderers, const PassScene& s, const Settings& settings,
+                                   bool turned = false) {
+    const int count = static_cast<int>(renderers.size());
+    ThreadExchange::Table table(count);
+    std::vector<RenderResult> results(renderers.size());
+    std::vector<std::thread> threads;
+    for (int i = 0; i < count; ++i) {
+        threads.emplace_back([&, i] {
+            const auto own = static_cast<std::size_t>(i);
+            ThreadExchange exchange(table, {i, count}, turned);
+            renderers[own].divide_sheets(&exchange);
+            results[own] = renderers[own].render(s.scene, s.camera, settings, 48, 32, kAllOutputs);
+            renderers[own].divide_sheets(nullptr);
+        });
+    }
+    for (std::thread& thread : threads)
+        thread.join();
+    return results;
+}
+
+/// Of a mean, as far as the pixel is opaque, since at the rim of a footprint there may be nothing.
+double worst_of_mean(const Image& a, const Image& b, const Image& color) {
+    double worst = 0, peak = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i) {
+        const double alpha = static_cast<double>(color.pixels[4 * (i / static_cast<std::size_t>(a.channels)) + 3]);
+        worst = std::max(worst, alpha * std::abs(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i])));
+        peak = std::max(peak, std::abs(static_cast<double>(a.pixels[i])));
+    }
+    return worst / peak;
+}
+
+TEST(DividedSheets, PicturesAreThoseOfOneRenderer) {
+    const DeviceChoice choice{.validation = true};
+    std::vector<Renderer> renderers;
+    for (int i = 0; i < 3; ++i)
+        renderers.emplace_back(choice);
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        for (Renderer& renderer : renderers)
+            renderer.set_volume(std::make_shared<const Volume>(s.volume));
+        s.scene.background = {0.2, 0.3, 0.4};
+        s.scene.effects.background_top = glm::dvec3(0.6, 0.1, 0.2);
+        s.scene.effects.samples = s.name == "torus" ? 2 : 1;
+        for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
+            Settings settings = s.settings;
+            settings.sheets = sheets;
+            const RenderResult one = renderers[0].render(s.scene, s.camera, settings, 48, 32, kAllOutputs);
+            const std::vector<RenderResult> parts = in_parts(renderers, s, settings);
+            const double psnr = compare_images(one.color, parts[0].color).psnr;
+            double redrawn = 0;
+            for (const RenderResult& part : parts) {
+                EXPECT_GT(part.stats.share->pairs, 0U);
+                redrawn += part.stats.share->redraw_milliseconds;
+                EXPECT_EQ(part.stats.validation_messages, 0U);
+            }
+            std::printf("%-18s %s: %.1f dB, %.2f ms drawn again\n", s.name.c_str(),
+                        std::string(name_of(sheets)).c_str(), psnr, redrawn);
+            EXPECT_GE(psnr, 90);
+            double peak = 0;
+            for (const float tau : one.tau->pixels)
+                peak = std::max(peak, static_cast<double>(tau));
+            EXPECT_LE(compare_images(*one.tau, *parts[0].tau).max, 1e-6 * peak);
+            EXPECT_LE(worst_of_mean(*one.depth, *parts[0].depth, one.color), 1e-5);
+            EXPECT_LE(worst_of_mean(*one.distance, *parts[0].distance, one.color), 1e-4);
+            EXPECT_LE(worst_of_mean(*one.normal, *parts[0].normal, one.color), 1e-4);
+            EXPECT_LT(compare_images(one.color, in_parts(renderers, s, settings, true)[0].color).psnr, 60);
+            // Alone again, nothing is left of the parts.
+            EXPECT_EQ(renderers[0].render(s.scene, s.camera, settings, 48, 32).color.pixels, one.color.pixels);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat::test
