@@ -36,6 +36,13 @@ if(EDGESPLAT_VTK)
     target_compile_definitions(edgesplat_itk INTERFACE EDGESPLAT_HAS_VTK)
 endif()
 
+# One picture by many processes; only the program edgesplat knows of it.
+find_package(MPI QUIET COMPONENTS C)
+option(EDGESPLAT_MPI "Divide pictures among the processes of mpirun" ${MPI_C_FOUND})
+if(EDGESPLAT_MPI)
+    find_package(MPI REQUIRED COMPONENTS C)
+endif()
+
 if(EDGESPLAT_TESTS)
     find_package(GTest REQUIRED)
     include(GoogleTest)

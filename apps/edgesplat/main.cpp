@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <chrono>
 #include <cstdio>
 #include <exception>
 #include <sstream>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "apps/edgesplat/accuracy_command.h"
@@ -18,10 +20,12 @@
 #include "apps/edgesplat/help_formatter.h"
 #include "apps/edgesplat/info_command.h"
 #include "apps/edgesplat/movie_command.h"
+#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/pack_command.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/rerun_command.h"
 #include "apps/edgesplat/scene_command.h"
+#include "engine/error.h"
 #include "engine/scene/nearest_name.h"
 
 namespace {
@@ -57,16 +61,16 @@ std::string nearest_name(const CLI::App& app, std::string argument) {
     return edgesplat::nearest_name(argument, names);
 }
 
-/// Reports what is wrong with the command line. Help and version come this way too, with status 0.
+/// Reports what is wrong with the command line.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);
     const std::vector<CLI::App*> parsed = app.get_subcommands();
     const CLI::App& command = parsed.empty() ? app : *parsed.front();
     const std::vector<std::string> unexpected = app.remaining(true);
     if (parsed.empty() && !unexpected.empty())
-        fmt::print(stderr, "edgesplat: error: no command or option is called '{}'\n", unexpected.front());
+        fmt::print(stderr, "edgesplat: {}error: no command or option is called '{}'\n", ranks::label(),
+                   unexpected.front());
     else
-        fmt::print(stderr, "edgesplat: error: {}\n", error.what());
+        fmt::print(stderr, "edgesplat: {}error: {}\n", ranks::label(), error.what());
     for (const std::string& argument : unexpected) {
         const std::string name = nearest_name(command, argument);
         if (!name.empty()) fmt::print(stderr, "Did you mean {}?\n", name);
@@ -79,12 +83,22 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
 void print_error(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
-        fmt::print(stderr, "edgesplat: error: {}\n", line);
+        fmt::print(stderr, "edgesplat: {}error: {}\n", ranks::label(), line);
 }
 
-}  // namespace
+/// A failure that all ranks share is told by the first, which then ends the others.
+void let_first_rank_speak() {
+    if (!ranks::first()) std::this_thread::sleep_for(std::chrono::milliseconds(300));
+}
 
-int main(int argc, char** argv) {
+/// Only what divides its work may be run by several ranks.
+void refuse_ranks(const CLI::App& command) {
+    const std::string& name = command.get_name();
+    if (ranks::count() > 1 && name != "render" && name != "movie")
+        edgesplat::fail("{} is not divided among ranks, each would do the same; run it without mpirun", name);
+}
+
+int run(int argc, char** argv) {
     int exit_status = 0;
     CLI::App app("Volume splatting with edge preservation", "edgesplat");
     try {
@@ -116,12 +130,29 @@ int main(int argc, char** argv) {
             "  edgesplat render head.nrrd --iso -400 -o head.png\n"
             "  edgesplat compare new.png old.png --max-diff 0.01\n"
             "Each command has a --help of its own.");
+        ranks::join();
+        for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+            command->preparse_callback([command](std::size_t) { refuse_ranks(*command); });
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
-        return report_usage(app, error);
+        if (error.get_exit_code() == 0) return app.exit(error);
+        let_first_rank_speak();
+        ranks::end_all(report_usage(app, error));
+        return 2;
     } catch (const std::exception& error) {
+        const int status = app.got_subcommand("compare") ? 2 : 1;
+        let_first_rank_speak();
         print_error(error.what());
-        return app.got_subcommand("compare") ? 2 : 1;
+        ranks::end_all(status);
+        return status;
     }
     return exit_status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const int status = run(argc, argv);
+    ranks::leave();
+    return status;
 }

@@ -13,6 +13,7 @@
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/movie_encoder.h"
 #include "apps/edgesplat/movie_folder.h"
+#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/render_output.h"
@@ -168,15 +169,36 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
     edgesplat::write_files(picture_files(file, frames, metadata));
 }
 
-/// Renders the frames that are missing; false where it was stopped.
-bool make_missing(const Film& film, edgesplat::Renderer& renderer, const MovieFolder& folder, bool quiet) {
+/// Frames that are there, and those that are missing and this rank's to make: every N-th of N ranks.
+struct Missing {
+    std::size_t there = 0;
+    std::vector<int> frames;
+};
+
+Missing missing_frames(const Film& film, const fs::path& folder, const FramePattern& pattern, bool quiet) {
+    const int all = film.range.last - film.range.first + 1;
+    // Whether a frame is missing is asked once: others begin to make them.
+    std::vector<unsigned char> there(static_cast<std::size_t>(all));
+    if (ranks::first())
+        for (int i = 0; i < all; ++i)
+            there[static_cast<std::size_t>(i)] = fs::exists(folder / pattern.name(film.range.first + i)) ? 1 : 0;
+    ranks::share(std::span(there));
+    Missing mine{static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)), {}};
+    if (mine.there > 0 && !quiet)
+        fmt::print("{}: {} of {} frames are there already\n", folder.string(), mine.there, all);
+    int missing = 0;
+    for (int i = 0; i < all; ++i)
+        if (there[static_cast<std::size_t>(i)] == 0 && missing++ % ranks::count() == ranks::index())
+            mine.frames.push_back(film.range.first + i);
+    return mine;
+}
+
+/// Renders frames; false where it was stopped.
+bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path& folder, const FramePattern& pattern,
+                 const Missing& to_make, bool quiet) {
+    const auto& [there, missing] = to_make;
+    const std::size_t all = there + missing.size();
     using Clock = std::chrono::steady_clock;
-    std::vector<int> missing;
-    for (int frame = film.range.first; frame <= film.range.last; ++frame)
-        if (!folder.has(frame)) missing.push_back(frame);
-    const std::size_t all = static_cast<std::size_t>(film.range.last - film.range.first) + 1;
-    const std::size_t there = all - missing.size();
-    if (there > 0 && !quiet) fmt::print("{}: {} of {} frames are there already\n", folder.path().string(), there, all);
     ProgressBar bar(quiet);
     const StopRequest stop;
     const auto start = Clock::now();
@@ -187,9 +209,24 @@ bool make_missing(const Film& film, edgesplat::Renderer& renderer, const MovieFo
             done == 0 ? 0 : seconds / static_cast<double>(done) * static_cast<double>(missing.size() - done);
         bar.update(static_cast<double>(there + done) / static_cast<double>(all), left,
                    fmt::format("frame {} of {}", there + done + 1, all));
-        make_frame(film, renderer, missing[done], folder.frame_path(missing[done]));
+        make_frame(film, renderer, missing[done], folder / pattern.name(missing[done]));
     }
     return true;
+}
+
+/// Once all frames are there.
+void finish(const MovieCommand& command, const Film& film, const Places& places, MovieFolder& folder) {
+    const int count = film.range.last - film.range.first + 1;
+    for (int frame = film.range.first; frame <= film.range.last; ++frame)
+        if (!folder.has(frame))
+            fail("{}: is not there; all ranks must see one folder", folder.frame_path(frame).string());
+    if (places.film) {
+        encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output});
+        if (!command.keep_frames) folder.remove();
+    }
+    if (!command.quiet)
+        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / film.fps,
+                   film.fps);
 }
 
 void run(const MovieCommand& command, int& exit_status) {
@@ -198,28 +235,29 @@ void run(const MovieCommand& command, int& exit_status) {
     Film film = film_of(command, folders, document_of(command, folders));
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(film.volume);
-    MovieFolder folder(places.folder, FramePattern(places.pattern), decisions(film, renderer.device()),
-                       command.restart);
+    const FramePattern pattern(places.pattern);
+    const fs::path path = places.folder.empty() ? "." : places.folder;
+    std::optional<MovieFolder> folder;
+    if (ranks::first()) folder.emplace(path, pattern, decisions(film, renderer.device()), command.restart);
     const edgesplat::Scene first = scene_at(film, film.path.keys.front().time);
-    apply_max_error(film.document.quality.max_error, renderer, *film.volume, first,
-                    camera_at(film.path, film.path.keys.front().time), film.document.output.size, film.settings,
-                    command.quiet);
-    const int count = film.range.last - film.range.first + 1;
-    if (!make_missing(film, renderer, folder, command.quiet)) {
-        fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
-                   folder.path().string());
+    if (ranks::first())
+        apply_max_error(film.document.quality.max_error, renderer, *film.volume, first,
+                        camera_at(film.path, film.path.keys.front().time), film.document.output.size, film.settings,
+                        command.quiet);
+    ranks::share(std::span(&film.settings, 1));
+    const Missing missing = missing_frames(film, path, pattern, command.quiet);
+    if (ranks::any(!make_frames(film, renderer, path, pattern, missing, command.quiet))) {
+        if (ranks::first())
+            fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
+                       path.string());
         exit_status = kStoppedStatus;
         return;
     }
     if (renderer.validation_messages() > 0)
         fail("the frames are written, but Vulkan validation had {} messages", renderer.validation_messages());
-    if (places.film) {
-        encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output});
-        if (!command.keep_frames) folder.remove();
-    }
-    if (!command.quiet)
-        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / film.fps,
-                   film.fps);
+    ranks::wait();
+    if (!ranks::first()) return;
+    finish(command, film, places, *folder);
 }
 
 FrameRange parse_range(const std::string& text) {

@@ -8,6 +8,7 @@
 
 #include "apps/edgesplat/cpu_renderers.h"
 #include "apps/edgesplat/max_error_option.h"
+#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
@@ -33,6 +34,9 @@ void check(const PictureRequest& request) {
         edgesplat::fail("--explain explains splatting; it needs --renderer splat");
     if (casts_rays(output.renderer) && !output.aovs.empty())
         edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
+    if (ranks::count() > 1 && output.renderer != edgesplat::RendererKind::Splat)
+        edgesplat::fail("--renderer {} draws no sheets that ranks could divide; run it without mpirun",
+                        name_of(output.renderer));
     check_cpu_request(request.document);
     if (request.document.quality.max_error && output.renderer != edgesplat::RendererKind::Splat)
         edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
@@ -53,10 +57,10 @@ edgesplat::Volume load(const PictureRequest& request) {
     return volume;
 }
 
-/// The frames asked for: with `compare_plain` the plain one first.
+/// The frames asked for: with `compare_plain` the plain one first. Of several ranks the first has them.
 std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
-                                         edgesplat::Renderer& renderer, const edgesplat::Scene& scene,
-                                         const edgesplat::Camera& camera) {
+                                         edgesplat::Renderer& renderer, const edgesplat::Volume& volume,
+                                         const edgesplat::Scene& scene, const edgesplat::Camera& camera) {
     std::vector<RenderedFrame> frames;
     if (output.compare_plain) {
         edgesplat::Settings plain = settings;
@@ -67,10 +71,15 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     frames.push_back({edges ? "edges" : "plain", settings, {}});
     const edgesplat::AovRequest aovs = aov_request(output.aovs);
     const glm::ivec2& size = output.size;
-    for (RenderedFrame& frame : frames)
+    const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
+    renderer.divide_sheets(exchange.get());
+    for (RenderedFrame& frame : frames) {
         frame.result = casts_rays(output.renderer)
                            ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
                            : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
+        frame.ranks = gather_reports(frame.result.stats, volume);
+    }
+    renderer.divide_sheets(nullptr);
     return frames;
 }
 
@@ -135,8 +144,10 @@ void make_picture(const PictureRequest& request) {
         renderer.set_memory_budget(request.explain.budget_bytes());
         renderer.set_volume(volume);
         const auto& max_error = request.document.quality.max_error;
-        choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
-        frames = render_frames(output, settings, renderer, scene, camera);
+        if (ranks::first())
+            choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
+        ranks::share(std::span(&settings, 1));
+        frames = render_frames(output, settings, renderer, *volume, scene, camera);
         if (request.explain.explain) {
             const auto plan = edgesplat::describe_frame(planned, renderer, &frames.back().result.stats);
             fmt::print("{}\n", edgesplat::to_text(plan));
@@ -144,7 +155,11 @@ void make_picture(const PictureRequest& request) {
         }
         const edgesplat::DeviceInfo& device = renderer.device();
         description.device = fmt::format("{}, {} {}", device.name, device.driver, device.driver_version);
+        if (ranks::count() > 1) description.device += fmt::format(", {} ranks", ranks::count());
         validation_messages = renderer.validation_messages();
+        for (const RankReport& report : frames.back().ranks)
+            if (&report != &frames.back().ranks.front()) validation_messages += report.validation_messages;
+        if (!ranks::first()) return;
     }
     description.scene_text = scene_of_picture(request, *volume, scene, camera, settings);
 
@@ -167,8 +182,8 @@ void make_picture(const PictureRequest& request) {
         fmt::print("{}: {}, {:.1f} ms on {}\n", output.file, name_of(output.renderer), stats.frame_milliseconds,
                    stats.device.name);
     else if (!request.quiet)
-        fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}\n", output.file, stats.splats_drawn, stats.sheets,
-                   stats.frame_milliseconds, stats.device.name);
+        fmt::print("{}: {} splats in {} sheets, {:.1f} ms on {}{}\n", output.file, stats.splats_drawn, stats.sheets,
+                   stats.frame_milliseconds, stats.device.name, to_text(frames.back().ranks));
     if (stats.level > stats.wanted_level) {
         fmt::print(stderr,
                    "edgesplat: warning: {}: drawn at level {}, voxels of {} along each axis: the splats of level {} do "

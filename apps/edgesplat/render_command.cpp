@@ -9,6 +9,7 @@
 #include "apps/edgesplat/effects_options.h"
 #include "apps/edgesplat/explain_option.h"
 #include "apps/edgesplat/max_error_option.h"
+#include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/picture.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/scene_options.h"
@@ -38,7 +39,7 @@ void run(const RenderCommand& command, const std::string& command_line) {
                            .explain = command.explain,
                            .json = command.json,
                            .command_line = command_line,
-                           .quiet = command.quiet};
+                           .quiet = command.quiet || !ranks::first()};
     read_source(command.source, request.document, request.folders);
     apply(command.volume, request.document.volume);
     command.edits.apply(request.document);

@@ -44,26 +44,28 @@ ordered_json to_json(const RenderedFrame& frame) {
     ordered_json passes = ordered_json::object();
     for (const edgesplat::PassTime& pass : stats.passes)
         passes[pass.name] = pass.milliseconds;
-    return {{"name", frame.name},
-            {"settings", to_json(frame.settings)},
-            {"width", frame.result.color.width},
-            {"height", frame.result.color.height},
-            {"setup_ms", stats.setup_milliseconds},
-            {"frame_ms", stats.frame_milliseconds},
-            {"passes_ms", passes},
-            {"voxels", stats.voxels},
-            {"level", stats.level},
-            {"wanted_level", stats.wanted_level},
-            {"in_blocks", stats.in_blocks},
-            {"blocks", stats.blocks},
-            {"blocks_held", stats.blocks_held},
-            {"splats_collected", stats.splats_collected},
-            {"splats_drawn", stats.splats_drawn},
-            {"edge_splats", stats.edge_splats},
-            {"sheets", stats.sheets},
-            {"sheet_groups", stats.sheet_groups},
-            {"device_bytes", stats.device_bytes},
-            {"validation_messages", stats.validation_messages}};
+    ordered_json json = {{"name", frame.name},
+                         {"settings", to_json(frame.settings)},
+                         {"width", frame.result.color.width},
+                         {"height", frame.result.color.height},
+                         {"setup_ms", stats.setup_milliseconds},
+                         {"frame_ms", stats.frame_milliseconds},
+                         {"passes_ms", passes},
+                         {"voxels", stats.voxels},
+                         {"level", stats.level},
+                         {"wanted_level", stats.wanted_level},
+                         {"in_blocks", stats.in_blocks},
+                         {"blocks", stats.blocks},
+                         {"blocks_held", stats.blocks_held},
+                         {"splats_collected", stats.splats_collected},
+                         {"splats_drawn", stats.splats_drawn},
+                         {"edge_splats", stats.edge_splats},
+                         {"sheets", stats.sheets},
+                         {"sheet_groups", stats.sheet_groups},
+                         {"device_bytes", stats.device_bytes},
+                         {"validation_messages", stats.validation_messages}};
+    if (!frame.ranks.empty()) json["ranks"] = to_json(frame.ranks);
+    return json;
 }
 
 /// The largest resident size this process has had, bytes.

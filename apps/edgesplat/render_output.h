@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/edgesplat/mpi_report.h"
 #include "engine/image_file.h"
 #include "engine/renderer.h"
 
@@ -15,6 +16,7 @@ struct RenderedFrame {
     std::string name;  ///< "plain" or "edges"
     edgesplat::Settings settings;
     edgesplat::RenderResult result;
+    std::vector<RankReport> ranks{};  ///< where its sheets were divided
 };
 
 /// What the statistics and the metadata say about the run.

@@ -37,10 +37,13 @@ class CliTest : public ::testing::Test {
     }
 
     /// Runs `edgesplat ARGUMENTS` (as a shell reads them) inside the folder.
-    ProgramRun run(const std::string& arguments) const {
+    ProgramRun run(const std::string& arguments) const { return run_shell("'" EDGESPLAT_PROGRAM "' " + arguments); }
+
+    /// Runs any command inside the folder.
+    ProgramRun run_shell(const std::string& line) const {
         std::filesystem::create_directories(log_folder());
-        const std::string command = "cd '" + folder_.string() + "' && '" EDGESPLAT_PROGRAM "' " + arguments + " >'" +
-                                    log_folder().string() + "/out' 2>'" + log_folder().string() + "/err' </dev/null";
+        const std::string command = "cd '" + folder_.string() + "' && " + line + " >'" + log_folder().string() +
+                                    "/out' 2>'" + log_folder().string() + "/err' </dev/null";
         const int status = std::system(command.c_str());  // NOLINT: a shell is wanted here
         return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(log_folder() / "out"),
                 text_of(log_folder() / "err")};

@@ -1,0 +1,33 @@
+// Partial pictures folded by MPI: a reduction with the non-commutative operator over.
+#pragma once
+
+#include <mpi.h>
+
+#include "engine/renderer_parts.h"
+
+namespace ranks {
+
+/// A number of elements as MPI counts them. Throws edgesplat::Error beyond 2^31 - 1.
+int mpi_count(std::size_t count);
+
+/// Between all processes of MPI_COMM_WORLD, by rank. Between MPI_Init and MPI_Finalize.
+class MpiExchange : public edgesplat::PartExchange {
+  public:
+    explicit MpiExchange(const edgesplat::SheetPart& part);
+    ~MpiExchange() override;
+    MpiExchange(const MpiExchange&) = delete;
+    MpiExchange& operator=(const MpiExchange&) = delete;
+
+    edgesplat::SheetPart part() const override { return part_; }
+    void wait() override;
+    void pass_back(std::span<float> transmittance) override;
+    void fold(std::span<glm::vec4> pixels) override;
+    void add(std::span<glm::vec4> pixels) override;
+
+  private:
+    edgesplat::SheetPart part_;
+    MPI_Datatype pixel_ = MPI_DATATYPE_NULL;  ///< four floats, so that no reduction divides a pixel
+    MPI_Op over_ = MPI_OP_NULL;
+};
+
+}  // namespace ranks

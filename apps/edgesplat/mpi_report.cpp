@@ -1,0 +1,68 @@
+#include "apps/edgesplat/mpi_report.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "apps/edgesplat/mpi_ranks.h"
+#include "engine/error.h"
+
+namespace {
+
+/// Sheets that are drawn twice or not at all are told, whatever divided them: another driver may round another way.
+void check(const std::vector<RankReport>& reports) {
+    std::uint32_t end = 0;
+    for (std::size_t i = 0; i < reports.size(); ++i) {
+        const RankReport& report = reports[i];
+        if (report.checksum != reports.front().checksum)
+            edgesplat::fail("rank {} has read another volume than rank 0", i);
+        if (report.level != reports.front().level)
+            edgesplat::fail("rank {} draws level {} of the volume, rank 0 level {}: give all the same --memory-budget",
+                            i, report.level, reports.front().level);
+        if (report.sheets != reports.front().sheets || report.share.first_sheet != end)
+            edgesplat::fail(
+                "rank {} divides the sheets otherwise than the ranks before it: all need the same device, "
+                "driver and options",
+                i);
+        end = report.share.end_sheet;
+    }
+    if (end != reports.front().sheets) edgesplat::fail("{} of {} sheets were drawn", end, reports.front().sheets);
+}
+
+}  // namespace
+
+std::vector<RankReport> gather_reports(const edgesplat::RenderStats& stats, const edgesplat::Volume& volume) {
+    if (!stats.share) return {};
+    std::vector<RankReport> reports = ranks::gather(RankReport{
+        volume.checksum, stats.sheets, stats.level, stats.validation_messages, stats.setup_milliseconds, *stats.share});
+    if (!reports.empty()) check(reports);
+    return reports;
+}
+
+nlohmann::ordered_json to_json(const std::vector<RankReport>& reports) {
+    auto json = nlohmann::ordered_json::array();
+    for (const RankReport& report : reports) {
+        const edgesplat::SheetShare& share = report.share;
+        json.push_back({{"first_sheet", share.first_sheet},
+                        {"end_sheet", share.end_sheet},
+                        {"pairs", share.pairs},
+                        {"setup_ms", report.setup_milliseconds},
+                        {"draw_ms", share.draw_milliseconds},
+                        {"redraw_ms", share.redraw_milliseconds},
+                        {"processor_ms", share.processor_milliseconds},
+                        {"wait_ms", share.wait_milliseconds},
+                        {"composite_ms", share.composite_milliseconds}});
+    }
+    return json;
+}
+
+std::string to_text(const std::vector<RankReport>& reports) {
+    if (reports.empty()) return "";
+    std::vector<std::string> sheets, times;
+    for (const RankReport& report : reports) {
+        const edgesplat::SheetShare& share = report.share;
+        sheets.push_back(fmt::format("{}", share.end_sheet - share.first_sheet));
+        times.push_back(fmt::format("{:.1f}", share.draw_milliseconds + share.redraw_milliseconds));
+    }
+    return fmt::format(", by {} ranks: {} sheets, drawn in {} ms, composited in {:.1f} ms", reports.size(),
+                       fmt::join(sheets, " + "), fmt::join(times, " + "), reports.front().share.composite_milliseconds);
+}
