@@ -204,8 +204,8 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(on_host(growing(buffer("pairs of sheets", sheets * word, "(sheets) uint", "3", "host"))));
     out.push_back(on_host(growing(buffer("sheet starts", (sheets + 1) * word, "(sheets + 1) uint", "4", "4, host"))));
     out.push_back(on_host(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
-    out.push_back(
-        growing(buffer("tile counters", tiles * plan.params.tile_blocks * word, "(tiles, blocks) uint", "4", "4")));
+    out.push_back(growing(buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
+                                 "(tiles, blocks) uint", "4", "4")));
     out.push_back(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5")));
     out.push_back(growing(
         buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word, "(pairs at once) splat, sheet", "4", "5")));

@@ -173,6 +173,11 @@ passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, c
     return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
 }
 
+std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks) {
+    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    return (count + shader::COLUMN_STATE) * blocks * sizeof(std::uint32_t);
+}
+
 std::uint32_t tile_blocks(const glm::ivec2& tiles) {
     const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
     return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, 64));

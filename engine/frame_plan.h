@@ -65,6 +65,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 /// Counters of the tiles' histogram that can be scanned: 256 invocations go through all of them, twice.
 inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::MOST_ITERATIONS;
 
+/// The histogram, and how far each of its columns is gone through.
+std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks);
+
 /// Columns of that histogram, 1 to 64, as far as can be scanned.
 std::uint32_t tile_blocks(const glm::ivec2& tiles);
 

@@ -35,6 +35,23 @@ Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::ui
     return chunks;
 }
 
+std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, std::span<const std::uint32_t> pairs,
+                                std::span<const std::uint32_t> starts) {
+    const std::uint32_t length = std::max((part.y - part.x + columns - 1) / columns, 1U);
+    const auto sheet_of = [&](std::uint32_t entry) {
+        return static_cast<std::size_t>(std::ranges::upper_bound(starts, entry) - starts.begin()) - 1;
+    };
+    std::uint64_t most = 0;
+    for (std::uint32_t first = part.x; first < part.y; first += length) {
+        std::uint64_t sum = 0;
+        const std::size_t last = sheet_of(std::min(first + length, part.y) - 1);
+        for (std::size_t sheet = sheet_of(first); sheet <= last; ++sheet)
+            sum += pairs[sheet];
+        most = std::max(most, sum);
+    }
+    return most;
+}
+
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                   const SheetPart& part) {
     const auto& p = plan.params;
@@ -59,9 +76,15 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
 
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how) {
+    const auto& p = plan.params;
+    const auto parts = targets.chunks.mapped<glm::uvec2>(chunks);
+    const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
+    const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
     const auto sort = [&](std::uint32_t chunk) {
+        const std::uint64_t most = most_column_pairs(parts[chunk], p.tile_blocks, pairs, starts);
+        const auto steps = static_cast<std::uint32_t>((most + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
         commands.span("4_sort_tiles",
-                      [&] { passes::sort_tiles(commands, targets.tile_counters, plan.params.tile_blocks, chunk); });
+                      [&] { passes::sort_tiles(commands, targets.tile_counters, p.tile_blocks, chunk, steps); });
     };
     const auto draw = [&](std::uint32_t round) {
         commands.span("5_draw_tiles",

@@ -27,6 +27,11 @@ struct Chunks {
 /// sheet is never divided: one with more than `limit` pairs is a chunk of its own.
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit);
 
+/// At least as many pairs as any column of a chunk has: those of all sheets that reach into it. `part` of the order,
+/// divided into so many columns of equal length; `pairs` and `starts` of all sheets.
+std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, std::span<const std::uint32_t> pairs,
+                                std::span<const std::uint32_t> starts);
+
 /// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn of the part. Milliseconds are left in
 /// `commands`.
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,

@@ -112,7 +112,7 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
     grow(device, targets.sheet_pairs, p.sheet_count * kWord, Place::Host, "pairs of sheets");
     grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Host, "sheet starts");
     grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
-    grow(device, targets.tile_counters, tiles * p.tile_blocks * kWord, Place::Device, "tile counters");
+    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Device, "tile ranges");
     grow(device, targets.tile_entries, chunk_pairs(p.tiles) * 2 * kWord, Place::Device, "tile entries");
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
@@ -143,7 +143,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
         }
         plan.params.tile_blocks = p.tile_blocks = blocks;
     }
-    grow(device, targets.tile_counters, tiles * p.tile_blocks * kWord, Place::Device, "tile counters");
+    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     p.tile_counters = targets.tile_counters.address();
     p.tile_entries = targets.tile_entries.address();
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());

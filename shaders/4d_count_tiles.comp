@@ -5,14 +5,13 @@
 
 void main() {
     Block block = block_of_invocation();
-    UintsRef order = UintsRef(params.frame.order), counters = UintsRef(params.frame.tile_counters);
-    for (uint i = block.first; i < block.last; ++i) {
-        uvec4 tiles = tiles_of(order.at[i]);
-        uint across = tiles.z - tiles.x, count = across * (tiles.w - tiles.y);
-        for (uint k = 0u; k < count; ++k) {
-            uint x = tiles.x + k % across, y = tiles.y + k / across;
-            uint tile = y * uint(params.frame.tiles.x) + x;
-            counters.at[tile * params.frame.tile_blocks + block.column] += is_closed(x, y) ? 0u : 1u;
-        }
+    UintsRef counters = UintsRef(params.frame.tile_counters);
+    Pairs pairs = begin_pairs(block, 0u);
+    for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
+        uvec2 at = tile_of(pairs);
+        uint tile = at.y * uint(params.frame.tiles.x) + at.x;
+        counters.at[tile * params.frame.tile_blocks + block.column] += is_closed(at.x, at.y) ? 0u : 1u;
+        next_pair(pairs, block);
     }
+    end_pairs(pairs, block, 0u);
 }

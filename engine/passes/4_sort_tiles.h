@@ -8,7 +8,9 @@
 namespace edgesplat::passes {
 
 /// FrameParams: reads part `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`,
-/// which are `counters`; writes `tile_ranges` and `tile_entries`. Tiles that are closed get nothing.
-void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint32_t blocks, std::uint32_t chunk);
+/// which are `counters`; writes `tile_ranges` and `tile_entries`. Tiles that are closed get nothing. `steps`:
+/// dispatches of PAIR_STEPS pairs that the fullest of the `blocks` columns takes.
+void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint32_t blocks, std::uint32_t chunk,
+                std::uint32_t steps);
 
 }  // namespace edgesplat::passes

@@ -31,3 +31,58 @@ bool is_closed(uint x, uint y) {
     uvec2 pixels = min(uvec2(TILE), uvec2(params.frame.size) - TILE * uvec2(x, y));
     return UintsRef(params.frame.tile_closed).at[y * uint(params.frame.tiles.x) + x] == pixels.x * pixels.y;
 }
+
+// The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
+// size lie in one chunk, so that a column may have many times the pairs of another.
+struct Pairs {
+    uint entry, k;      // into `order`; which of its tiles
+    uint number;        // of the splat
+    uvec4 tiles;
+    uint across, count;
+};
+
+void load_entry(inout Pairs pairs, Block block) {
+    pairs.number = UintsRef(params.frame.order).at[min(pairs.entry, block.last - 1u)];
+    pairs.tiles = tiles_of(pairs.number);
+    pairs.across = max(pairs.tiles.z - pairs.tiles.x, 1u);
+    pairs.count = pairs.across * (pairs.tiles.w - pairs.tiles.y);
+}
+
+uint column_state(uint column, uint part) {
+    return uint(params.frame.tiles.x * params.frame.tiles.y) * params.frame.tile_blocks + column * COLUMN_STATE + 2u * part;
+}
+
+// `part`: 0 counting, 1 scattering.
+Pairs begin_pairs(Block block, uint part) {
+    UintsRef counters = UintsRef(params.frame.tile_counters);
+    uint at = column_state(block.column, part);
+    Pairs pairs;
+    pairs.entry = block.first;
+    pairs.k = 0u;
+    for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
+        pairs.entry += counters.at[at];
+        pairs.k = counters.at[at + 1u];
+        load_entry(pairs, block);
+    }
+    return pairs;
+}
+
+uvec2 tile_of(Pairs pairs) { return uvec2(pairs.tiles.x + pairs.k % pairs.across, pairs.tiles.y + pairs.k / pairs.across); }
+
+void next_pair(inout Pairs pairs, Block block) {
+    ++pairs.k;
+    if (pairs.k >= pairs.count) {
+        pairs.k = 0u;
+        ++pairs.entry;
+        load_entry(pairs, block);
+    }
+}
+
+void end_pairs(Pairs pairs, Block block, uint part) {
+    UintsRef counters = UintsRef(params.frame.tile_counters);
+    uint at = column_state(block.column, part);
+    for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
+        counters.at[at] = pairs.entry - block.first;
+        counters.at[at + 1u] = pairs.k;
+    }
+}

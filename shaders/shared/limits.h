@@ -26,7 +26,9 @@ EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on l
 // keeps them below.
 EDGESPLAT_CONSTANT uint MOST_ITERATIONS = 50000u;
 EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are drawn at once, each good for 128 at most
-EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram
+EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
+EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
+EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column
 EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it

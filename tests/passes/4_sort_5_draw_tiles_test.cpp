@@ -90,6 +90,43 @@ TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
     }
 }
 
+TEST(SortTiles, AListIsWholeHoweverUnevenTheSplatsAre) {
+    // A plate from just before the eye into the distance: splats over hundreds of tiles, and of one.
+    PassScene s;
+    s.name = "plate";
+    s.volume.geometry.dims = {160, 160, 6};
+    for (std::size_t i = 0; i < s.volume.geometry.voxel_count(); ++i)
+        s.volume.values.push_back(3.2F - static_cast<float>(i / (160 * 160)));
+    finish_volume(s.volume);
+    s.scene.iso_values = {0.5};
+    s.scene.materials = {{}, {{1, 1, 1}, 2}};
+    look_at(s, {2, 2, 4.5}, {80, 80, 2.5}, 130);
+    RendererState& state = prepared(s);
+    state.draw(s.scene, s.camera, drawn_as(s.settings), {1024, 1024}, shader::PAYLOAD_COLOR);
+    ASSERT_EQ(in_chunks(state, ~std::uint64_t{0}), 1U);
+    const auto& p = state.plan.params;
+    const auto pairs = state.targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
+    const auto all = std::accumulate(pairs.begin(), pairs.end(), std::uint64_t{0});
+    // More in a column than one invocation could go through at once.
+    const auto starts = state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
+    EXPECT_GT(most_column_pairs({0, starts.back()}, p.tile_blocks, pairs, starts), 2 * shader::PAIR_STEPS);
+    const Lists lists = lists_of(state);
+    EXPECT_EQ(lists.ranges.back().y, all);
+    std::vector<std::uint64_t> listed(p.splat_count), want(p.splat_count);
+    for (const glm::uvec2& entry : lists.entries) {
+        ASSERT_LT(entry.x, p.splat_count);
+        ASSERT_EQ(entry.y, lists.sheet_of[entry.x]);
+        ++listed[entry.x];
+    }
+    for (std::uint32_t i = 0; i < p.splat_count; ++i) {
+        if (lists.sheet_of[i] == shader::SHEET_NONE) continue;
+        const glm::uvec2 low(lists.rects[i].x & 0xffffU, lists.rects[i].x >> 16U);
+        const glm::uvec2 high(lists.rects[i].y & 0xffffU, lists.rects[i].y >> 16U);
+        want[i] = std::uint64_t{high.x - low.x} * (high.y - low.y);
+    }
+    EXPECT_EQ(listed, want);
+}
+
 TEST(DrawTiles, PicturesAreThoseOfLayers) {
     for (const std::uint32_t payload :
          {shader::PAYLOAD_COLOR, shader::PAYLOAD_TAU, shader::PAYLOAD_DEPTH_DISTANCE, shader::PAYLOAD_NORMAL}) {
