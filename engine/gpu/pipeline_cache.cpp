@@ -45,15 +45,15 @@ std::vector<std::uint8_t> read(const fs::path& file) {
 
 }  // namespace
 
-PipelineCache::PipelineCache(const Device& device, fs::path folder) {
+PipelineCache::PipelineCache(const Device& device, const fs::path& folder) {
     std::vector<std::uint8_t> data;
     if (!folder.empty()) {
         const auto properties = device.physical().getProperties();
         std::string uuid;
         for (const std::uint8_t byte : properties.pipelineCacheUUID)
             uuid += fmt::format("{:02x}", byte);
-        file_ = std::move(folder) / fmt::format("pipelines-{:08x}-{:08x}-{:08x}-{}.bin", properties.vendorID,
-                                                properties.deviceID, properties.driverVersion, uuid);
+        file_ = folder / fmt::format("pipelines-{:08x}-{:08x}-{:08x}-{}.bin", properties.vendorID, properties.deviceID,
+                                     properties.driverVersion, uuid);
         data = read(file_);
     }
     loaded_ = data.size();

@@ -12,7 +12,7 @@ namespace edgesplat::gpu {
 /// foreign file counts as none.
 class PipelineCache {
   public:
-    explicit PipelineCache(const Device& device, std::filesystem::path folder);
+    PipelineCache(const Device& device, const std::filesystem::path& folder);
     PipelineCache(const PipelineCache&) = delete;
     PipelineCache& operator=(const PipelineCache&) = delete;
     PipelineCache(PipelineCache&&) = default;
