@@ -75,7 +75,7 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
 }
 
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                 std::uint32_t chunks, passes::TileDraw how) {
+                                 std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between) {
     const auto& p = plan.params;
     const auto parts = targets.chunks.mapped<glm::uvec2>(chunks);
     const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
@@ -108,8 +108,14 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
     std::vector<PassTime> times;
     std::uint32_t longest = 0;
     for (std::uint32_t chunk = 0; chunk <= chunks; ++chunk) {
+        std::uint32_t round = 0;
+        for (; between && round * shader::TILE_ROUND < longest; ++round) {
+            commands.run([&] { draw(round); });
+            add_times(times, commands.span_times());
+            between();
+        }
         commands.run([&] {
-            for (std::uint32_t round = 0; round * shader::TILE_ROUND < longest; ++round)
+            for (; round * shader::TILE_ROUND < longest; ++round)
                 draw(round);
             if (chunk < chunks)
                 sort(chunk);

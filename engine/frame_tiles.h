@@ -1,6 +1,7 @@
 // The frame whose sheets are summed tile by tile: selection and sort, then chunks of sheets one after another.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -38,9 +39,10 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
                   const SheetPart& part = {});
 
 /// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
-/// With rounds, each chunk is waited for. Of a part (`TileDraw::part`) pass 7 is left out.
+/// With rounds, each chunk is waited for, and each round where `between` is to be called after it (it may throw). Of a
+/// part (`TileDraw::part`) pass 7 is left out.
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                 std::uint32_t chunks, passes::TileDraw how);
+                                 std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between = {});
 
 /// Pass 7 alone.
 std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan);

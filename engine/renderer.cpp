@@ -178,7 +178,10 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
     const Chunks chunks = sort_frame(commands, plan, targets);
     draw_times = commands.span_times();
     provide_chunks(chunks);
-    add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how));
+    std::function<void()> between;
+    if (interruption) between = [this] { heed_interruption(); };
+    add_times(draw_times,
+              draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how, between));
 }
 
 Renderer::Renderer(const DeviceChoice& choice) {
@@ -213,6 +216,10 @@ void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
 
 void Renderer::set_patience(double milliseconds) {
     state_->patience = milliseconds;
+}
+
+void Renderer::set_interruption(std::function<bool()> wanted) {
+    state_->interruption = std::move(wanted);
 }
 
 void Renderer::set_memory_budget(std::uint64_t bytes) {
@@ -250,6 +257,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         SampleMean mean(size);
         self.share = {};
         for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
+            self.heed_interruption();
             self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
             add_times(times, self.draw_times);
             self.add_counts(result.stats);

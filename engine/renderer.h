@@ -2,11 +2,13 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "engine/error.h"
 #include "engine/image.h"
 #include "engine/renderer_parts.h"
 #include "engine/scene/camera.h"
@@ -106,6 +108,12 @@ struct FrameForecast;    // engine/frame_forecast.h
 struct PlannedResource;  // engine/frame_forecast.h
 struct FittingChange;    // engine/frame_description.h
 
+/// render() was told to stop (Renderer::set_interruption): there is no picture.
+class Interrupted : public Error {
+  public:
+    Interrupted() : Error("render: interrupted") {}
+};
+
 /// What a Renderer owns (engine/renderer_state.h); of no use to those who embed it.
 struct RendererState;
 
@@ -129,6 +137,10 @@ class Renderer {
     /// How long render() may wait for splats of a volume of many blocks, milliseconds: one that takes longer shows a
     /// coarser level and says so (RenderStats::complete); those that come after it go on. By default: for ever.
     void set_patience(double milliseconds);
+
+    /// Asked between the parts of a picture, of which some may take tenths of a second on a processor; where it says
+    /// true render() throws Interrupted. What was collected till then stays. Empty: never.
+    void set_interruption(std::function<bool()> wanted);
 
     /// Whether RenderStats of pictures to come have draw_counts (where the device can count) and dirty_share. Counted
     /// frames take longer.

@@ -256,6 +256,7 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
     occluded.reset();
     shadowed.reset();
     for (std::size_t number = 0; number < missing.size(); ++number) {
+        heed_interruption();
         if (number > 0 && milliseconds_since(start) > wait) return Gathered::Unfinished;
         const CollectionBlock& block = residence->blocks[missing[number]];
         load_block(block, read_block(missing, number));

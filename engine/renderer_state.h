@@ -123,6 +123,11 @@ struct RendererState : DeviceState, SplatSet {
     /// Of a tiled picture, the part that the exchange says; with the first part, the whole is left in targets.output.
     void draw_part(passes::TileDraw how);
 
+    /// Throws Interrupted if that is wanted.
+    void heed_interruption() const {
+        if (interruption && interruption()) throw Interrupted();
+    }
+
     /// Adds what the last draw came to, if that is counted.
     void add_counts(RenderStats& stats) const;
 
@@ -130,6 +135,7 @@ struct RendererState : DeviceState, SplatSet {
     std::vector<std::shared_ptr<const Volume>> levels;          ///< resolutions of it that were drawn
     SplatSet other;                                             ///< a coarser level, shown until a finer one is there
     double patience = std::numeric_limits<double>::infinity();  ///< see Renderer::set_patience
+    std::function<bool()> interruption;                         ///< see Renderer::set_interruption
     FootprintResources footprint_resources;
     TargetResources targets;
     std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way
