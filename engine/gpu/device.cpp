@@ -111,9 +111,10 @@ bool matches(const DeviceInfo& info, const std::string& choice) {
 
 }  // namespace
 
-vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log) {
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log,
+                                   std::vector<const char*> extensions) {
     const vk::ApplicationInfo application("edgesplat", 1, "edgesplat", 1, VK_API_VERSION_1_3);
-    std::vector<const char*> layers, extensions;
+    std::vector<const char*> layers;
     if (validation) {
         const auto present = context.enumerateInstanceLayerProperties();
         if (std::none_of(present.begin(), present.end(), [](const vk::LayerProperties& layer) {
@@ -174,8 +175,8 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
     return info;
 }
 
-Device::Device(const DeviceChoice& choice) {
-    instance_ = create_instance(context_, choice.validation, log_.get());
+Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
+    instance_ = create_instance(context_, choice.validation, log_.get(), extensions.instance);
     if (choice.validation) messenger_ = vk::raii::DebugUtilsMessengerEXT(instance_, messenger_info(log_.get()));
 
     std::string seen;
@@ -212,13 +213,13 @@ Device::Device(const DeviceChoice& choice) {
     features.setOcclusionQueryPrecise(counts_draws_ ? VK_TRUE : VK_FALSE);
     const float priority = 1.0F;
     const vk::DeviceQueueCreateInfo queue_info({}, queue_family_, 1, &priority);
-    vk::DeviceCreateInfo device_info({}, queue_info);
+    vk::DeviceCreateInfo device_info({}, queue_info, {}, extensions.device);
     device_info.pNext = &enabled.get<vk::PhysicalDeviceFeatures2>();
     device_ = vk::raii::Device(physical_, device_info);
     queue_ = device_.getQueue(queue_family_, 0);
     memory_ = physical_.getMemoryProperties();
-    const auto extensions = physical_.enumerateDeviceExtensionProperties();
-    has_memory_budget_ = std::ranges::any_of(extensions, [](const vk::ExtensionProperties& e) {
+    const auto known = physical_.enumerateDeviceExtensionProperties();
+    has_memory_budget_ = std::ranges::any_of(known, [](const vk::ExtensionProperties& e) {
         return std::string_view(e.extensionName.data()) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
     });
 }

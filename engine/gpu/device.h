@@ -27,7 +27,13 @@ struct Allocation {
 
 /// An instance of Vulkan 1.3, with the Khronos validation layer and synchronization validation on request.
 /// Throws Error that says what to install where there is no loader, no driver, or no such layer.
-vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log);
+vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log,
+                                   std::vector<const char*> extensions = {});
+
+/// Extensions that a window needs; pictures need none.
+struct DeviceExtensions {
+    std::vector<const char*> instance, device;
+};
 
 /// Description of a physical device and every reason it cannot be used (empty: it can).
 DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index);
@@ -35,9 +41,10 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index);
 /// An opened device with one queue that does graphics, compute and transfer.
 class Device {
   public:
-    explicit Device(const DeviceChoice& choice);
+    explicit Device(const DeviceChoice& choice, const DeviceExtensions& extensions = {});
 
     const DeviceInfo& info() const { return info_; }
+    const vk::raii::Instance& instance() const { return instance_; }
     const vk::raii::Device& handle() const { return device_; }
     const vk::raii::PhysicalDevice& physical() const { return physical_; }
     const vk::raii::Queue& queue() const { return queue_; }

@@ -1,0 +1,305 @@
+#include "engine/viewer/drawer.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/scene/ladder.h"
+#include "engine/viewer/display.h"
+#include "engine/volume/packed_volume.h"
+#include "engine/volume/sample_source.h"
+
+namespace edgesplat::viewer {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Voxels that are estimated and collected within a picture's time.
+constexpr std::size_t kQuickVoxelsSoftware = std::size_t{3} << 16U, kQuickVoxels = std::size_t{1} << 25U;
+
+/// A picture that comes this soon needs no coarser one before it, milliseconds.
+constexpr double kSoon = 350;
+
+constexpr double kHalfScale = 0.5;
+
+glm::ivec2 scaled(const glm::ivec2& size, double scale) {
+    return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * scale)), 1);
+}
+
+/// What may be left out of a picture that is there for a moment. At level 0 the splats are those of the best picture,
+/// so that nothing is estimated twice.
+Settings hasty(Settings settings, int level) {
+    settings.sheets = SheetCut::Whole;
+    settings.sheet_spacing = Settings{}.sheet_spacing;
+    settings.sheet_format = SheetFormat::Tiles;
+    settings.detail = 0;
+    if (level == 0 || settings.edges == EdgeEstimator::Off) return settings;
+    settings.edges = EdgeEstimator::Taylor;
+    settings.edge_shape = EdgeShape::Plane;
+    settings.normalisation = Normalisation::Off;
+    if (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp)
+        settings.footprints = FootprintMode::Procedural;
+    return settings;
+}
+
+Settings without_edges(Settings settings) {
+    settings.edges = EdgeEstimator::Off;
+    return settings;
+}
+
+}  // namespace
+
+/// A request and what of it is still to come.
+struct Drawer::Job {
+    struct Stage {
+        Rung rung;
+        bool best = false;
+    };
+    DrawRequest request;
+    std::uint64_t number = 0;
+    bool planned = false;
+    std::vector<Stage> stages;  ///< next one last
+};
+
+int Drawer::coarsest_level(const Volume& volume, bool software) {
+    const std::size_t most = software ? kQuickVoxelsSoftware : kQuickVoxels;
+    int level = 0;
+    while (level + 1 < level_count(volume) && level_geometry(volume.geometry, level).voxel_count() > most)
+        ++level;
+    return level;
+}
+
+Drawer::Drawer(Options options) : options_(std::move(options)), target_(options_.target) {
+    if (options_.threaded) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+}
+
+Drawer::~Drawer() {
+    ++asked_;  // whatever is being drawn is wanted no more
+    if (thread_.joinable()) thread_.request_stop();
+}
+
+std::uint64_t Drawer::ask(DrawRequest request) {
+    const std::lock_guard lock(mutex_);
+    wanted_ = std::make_unique<Job>();
+    wanted_->request = std::move(request);
+    wanted_->number = ++asked_;
+    changed_.notify_all();
+    return wanted_->number;
+}
+
+std::optional<DrawnPicture> Drawer::take() {
+    if (!options_.threaded) return draw_next();
+    const std::lock_guard lock(mutex_);
+    return std::exchange(ready_, std::nullopt);
+}
+
+bool Drawer::busy() const {
+    const std::lock_guard lock(mutex_);
+    return wanted_ || drawing_ || ready_;
+}
+
+std::string Drawer::take_error() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(error_, {});
+}
+
+void Drawer::set_target(double milliseconds) {
+    const std::lock_guard lock(mutex_);
+    target_ = milliseconds;
+}
+
+std::size_t Drawer::renderers() const {
+    const std::lock_guard lock(renderers_mutex_);
+    return renderers_.size();
+}
+
+void Drawer::run(const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+        {
+            std::unique_lock lock(mutex_);
+            if (!changed_.wait(lock, stop, [this] { return wanted_ != nullptr; })) return;
+        }
+        if (auto picture = draw_next()) {
+            const std::lock_guard lock(mutex_);
+            ready_ = std::move(picture);
+        }
+    }
+}
+
+std::optional<DrawnPicture> Drawer::draw_next() {
+    std::unique_ptr<Job> job;
+    {
+        const std::lock_guard lock(mutex_);
+        if (!wanted_) return std::nullopt;
+        job = std::move(wanted_);
+        drawing_ = true;
+        if (pace_) pace_->set_target(target_);
+    }
+    std::optional<DrawnPicture> picture;
+    try {
+        plan(*job);
+        picture = draw(*job);
+        if (picture->stats.complete) job->stages.pop_back();  // else more of its blocks come with the next one
+        picture->finished = job->stages.empty();
+        lost_ = 0;
+    } catch (const Interrupted&) {
+        job->stages.clear();
+    } catch (const std::exception& error) {
+        failed(error.what());
+        // A device that was lost is opened anew, once.
+        if (lost_ != 1) job->stages.clear();
+    }
+    const std::lock_guard lock(mutex_);
+    drawing_ = false;
+    if (!job->stages.empty() && !wanted_) wanted_ = std::move(job);
+    return picture;
+}
+
+void Drawer::failed(const std::string& what) {
+    lost_ = what.find("DeviceLost") != std::string::npos ? lost_ + 1 : 0;
+    {
+        const std::lock_guard lock(renderers_mutex_);
+        renderers_.clear();
+    }
+    coarse_.reset();
+    if (lost_ == 1) return;
+    const std::lock_guard lock(mutex_);
+    error_ = what;
+}
+
+bool Drawer::is_software() {
+    if (!software_) {
+        spare_ = std::make_unique<Renderer>(options_.device);
+        software_ = spare_->device().type == "Cpu";
+    }
+    return *software_;
+}
+
+void Drawer::plan(Job& job) {
+    if (job.planned) return;
+    job.planned = true;
+    if (volume_ != job.request.volume) {
+        const std::lock_guard lock(renderers_mutex_);
+        renderers_.clear();
+        levels_.clear();
+        still_times_.clear();
+        coarse_.reset();
+        pace_.reset();
+        volume_ = job.request.volume;
+    }
+    if (!pace_) pace_.emplace(target_, coarsest_level(*volume_, is_software()));
+    forget_unused(job);
+    using Stage = Job::Stage;
+    const Stage quick{pace_->rung()};
+    if (job.request.moving) {
+        job.stages = {quick};
+        return;
+    }
+    if (job.request.best) job.stages.push_back({{0, 1.0}, true});
+    job.stages.push_back({{0, 1.0}});
+    const auto time = [&](double scale) {
+        const auto known = still_times_.find(scale);
+        return known != still_times_.end() ? known->second : 1e9;
+    };
+    if (time(1) <= kSoon) return;
+    job.stages.push_back({{0, kHalfScale}});
+    if (time(kHalfScale) > kSoon) job.stages.push_back(quick);
+}
+
+void Drawer::forget_unused(const Job& job) {
+    const std::lock_guard lock(renderers_mutex_);
+    std::erase_if(renderers_, [&](const auto& entry) {
+        const bool unused = (entry.first.kind == Kind::Plain && !job.request.plain) ||
+                            (entry.first.kind == Kind::Best && !job.request.best && !job.request.moving);
+        if (unused) messages_before_ += entry.second.renderer->validation_messages();
+        return unused;
+    });
+}
+
+std::shared_ptr<const Volume> Drawer::level_of(const std::shared_ptr<const Volume>& volume, int level) {
+    if (level == 0) return volume;
+    auto& found = levels_[level];
+    if (!found) {
+        found = volume->values.empty() ? std::make_shared<const Volume>(load_level(*volume, level))
+                                       : std::make_shared<const Volume>(halved(*level_of(volume, level - 1)));
+    }
+    return found;
+}
+
+Renderer& Drawer::renderer_for(const Key& key, const Job& job) {
+    const std::lock_guard lock(renderers_mutex_);
+    Held& held = renderers_[key];
+    if (!held.renderer) {
+        held.renderer = spare_ ? std::move(spare_) : std::make_unique<Renderer>(options_.device);
+        held.renderer->set_memory_budget(options_.memory_budget);
+        held.renderer->set_volume(level_of(job.request.volume, key.level));
+        if (key.level == 0 && job.request.volume->values.empty()) held.renderer->set_patience(kSoon);
+    }
+    return *held.renderer;
+}
+
+Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPicture& out) {
+    const DrawRequest& request = job.request;
+    const Key key{rung.level, kind};
+    Renderer& renderer = renderer_for(key, job);
+    // A picture in motion is short, and what comes after it is no better for its being left off.
+    const bool may_stop = options_.threaded && !request.moving;
+    renderer.set_interruption(may_stop ? std::function<bool()>([this, number = job.number] { return asked_ != number; })
+                                       : std::function<bool()>());
+    Scene scene = request.scene;
+    scene.effects.overlays = {};
+    Settings settings = kind == Kind::Best ? *request.best : request.settings;
+    const bool hurry = rung.scale < 1 || rung.level > 0 || request.moving;
+    if (hurry) {
+        scene.effects.samples = 1;
+        settings = hasty(settings, rung.level);
+    }
+    if (kind == Kind::Plain) settings = without_edges(settings);
+    const glm::ivec2 size = scaled(request.size, rung.scale);
+    RenderResult result = renderer.render(scene, request.camera, settings, size.x, size.y);
+    out.setup += result.stats.setup_milliseconds + result.stats.pipeline_milliseconds;
+    if (kind != Kind::Plain) out.stats = std::move(result.stats);
+    const std::lock_guard lock(renderers_mutex_);
+    renderers_.at(key).scene_number = request.scene_number;
+    std::uint64_t bytes = 0, messages = messages_before_;
+    for (const auto& [other, held] : renderers_) {
+        bytes += held.renderer->held_bytes();
+        messages += held.renderer->validation_messages();
+    }
+    device_bytes_ = bytes;
+    validation_messages_ = messages;
+    return std::move(result.color);
+}
+
+DrawnPicture Drawer::draw(const Job& job) {
+    const Job::Stage& stage = job.stages.back();
+    DrawnPicture out;
+    out.number = job.number;
+    out.rung = stage.rung;
+    out.size = job.request.size;
+    out.moving = job.request.moving;
+    out.best = stage.best;
+    const auto start = Clock::now();
+    out.color = draw_kind(stage.best ? Kind::Best : Kind::Warped, job, stage.rung, out);
+    if (job.request.plain) out.plain = draw_kind(Kind::Plain, job, stage.rung, out);
+    out.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    const bool hurried = stage.rung.scale < 1 || stage.rung.level > 0;
+    if (!frozen_ && stage.rung == pace_->rung() && (job.request.moving || hurried)) {
+        const auto finer = renderers_.find({stage.rung.level - 1, Kind::Warped});
+        pace_->drawn(out.milliseconds, std::min(out.setup, out.milliseconds),
+                     finer != renderers_.end() && finer->second.scene_number == job.request.scene_number);
+    }
+    if (stage.rung.level == 0 && !stage.best) still_times_[stage.rung.scale] = out.milliseconds - out.setup;
+    if (job.request.moving || (hurried && (!coarse_ || coarse_->number != job.number || coarse_->rung.level == 0))) {
+        if (!coarse_ || coarse_->number != job.number) coarse_ = out;
+    }
+    if (!hurried && coarse_ && coarse_->number == job.number) {
+        out.coarse_error = rms_when_spread(coarse_->color, out.color);
+        out.coarse_rung = coarse_->rung;
+    }
+    return out;
+}
+
+}  // namespace edgesplat::viewer

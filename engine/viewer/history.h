@@ -1,0 +1,52 @@
+// What was edited, forwards and backwards.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+namespace edgesplat::viewer {
+
+/// States of a value. While a hand drags, states that pass are not kept: only the one before and the last.
+template <typename State>
+class History {
+  public:
+    explicit History(State first) : states_{std::move(first)} {}
+
+    const State& now() const { return dragged_ ? *dragged_ : states_[at_]; }
+
+    /// A new state. `finished`: it is to be kept, else it is one on the way. What was undone before it is gone.
+    void change(State state, bool finished) {
+        if (!finished) {
+            dragged_.emplace(std::move(state));
+            return;
+        }
+        dragged_.reset();
+        if (state == states_[at_]) return;
+        states_.resize(at_ + 1);
+        states_.push_back(std::move(state));
+        if (states_.size() > kMost) states_.erase(states_.begin());
+        at_ = states_.size() - 1;
+    }
+
+    bool can_undo() const { return at_ > 0 || dragged_; }
+    bool can_redo() const { return at_ + 1 < states_.size() && !dragged_; }
+    void undo() {
+        if (dragged_)
+            dragged_.reset();
+        else if (at_ > 0)
+            --at_;
+    }
+    void redo() {
+        if (can_redo()) ++at_;
+    }
+
+  private:
+    static constexpr std::size_t kMost = 200;
+    std::vector<State> states_;
+    std::optional<State> dragged_;
+    std::size_t at_ = 0;
+};
+
+}  // namespace edgesplat::viewer

@@ -1,0 +1,43 @@
+#include "engine/viewer/loading.h"
+
+#include <chrono>
+#include <utility>
+
+#include "engine/scene/scene_file.h"
+
+namespace edgesplat::viewer {
+
+Opened open_path(const std::string& path, const std::function<void(double fraction, std::string_view what)>& progress) {
+    Opened out;
+    out.path = path;
+    if (is_scene_path(path)) {
+        out.document = read_scene_file(path);
+        out.folders = volume_folders(std::filesystem::path(path).parent_path());
+    } else {
+        out.document.volume.path = path;
+        out.folders = volume_folders({});
+    }
+    out.volume = std::make_shared<const Volume>(load_source(out.document.volume, out.folders, progress));
+    return out;
+}
+
+Loading::Loading(std::string path) : path_(std::move(path)) {
+    result_ = std::async(std::launch::async, [this] {
+        return open_path(path_, [this](double fraction, std::string_view what) {
+            fraction_ = fraction;
+            const std::lock_guard lock(mutex_);
+            what_ = what;
+        });
+    });
+}
+
+std::string Loading::what() const {
+    const std::lock_guard lock(mutex_);
+    return what_;
+}
+
+bool Loading::ready() const {
+    return result_.valid() && result_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
+}
+
+}  // namespace edgesplat::viewer

@@ -1,0 +1,110 @@
+#include "engine/viewer/pace.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace edgesplat::viewer {
+namespace {
+
+constexpr std::array<double, 8> kScales{0.125, 0.1875, 0.25, 0.375, 0.5, 0.625, 0.75, 1.0};
+
+// Shares of the target: what a picture should take, what sends the next one down, and what the next step up may be
+// expected to take.
+constexpr double kAim = 0.6, kTooLong = 0.8, kRoom = 0.65;
+constexpr int kCalm = 4;              // pictures with room before a step up
+constexpr double kLeastScale = 0.25;  // below this a coarser level shows more
+constexpr double kFinerScale = 0.5;   // from this on a finer level shows more
+constexpr int kTrial = 10;            // pictures after which a finer level is there to stay
+constexpr int kPenalty = 40;          // pictures before a failed one is tried again, doubled each time
+
+/// The largest scale that is at most `scale`.
+double step_at_most(double scale) {
+    double found = kScales.front();
+    for (const double s : kScales)
+        if (s <= scale + 1e-9) found = s;
+    return found;
+}
+
+double step_above(double scale) {
+    const auto above = std::ranges::upper_bound(kScales, scale + 1e-9);
+    return above == kScales.end() ? kScales.back() : *above;
+}
+
+}  // namespace
+
+std::span<const double> pace_scales() {
+    return kScales;
+}
+
+Pace::Pace(double target, int coarsest) : target_(target), coarsest_(coarsest) {
+    restart();
+}
+
+void Pace::set_target(double milliseconds) {
+    target_ = milliseconds;
+    calm_ = 0;
+}
+
+void Pace::restart() {
+    rung_ = {coarsest_, kLeastScale};
+    calm_ = 0;
+    since_finer_ = -1;
+    finer_blocked_ = finer_penalty_ = 0;
+}
+
+void Pace::drawn(double milliseconds, double setup, bool finer_ready) {
+    if (finer_blocked_ > 0) --finer_blocked_;
+    if (since_finer_ >= 0 && ++since_finer_ > kTrial) {
+        since_finer_ = -1;
+        finer_penalty_ = 0;
+    }
+    const double drawing = milliseconds - setup;
+    if (drawing > kTooLong * target_) return go_down(drawing);
+    // A setup that comes once is forgiven; under a hand that changes the scene it comes with every picture.
+    if (milliseconds > target_ && rung_.level < coarsest_) return go_down(milliseconds);
+    go_up(drawing, finer_ready);
+}
+
+void Pace::go_down(double milliseconds) {
+    calm_ = 0;
+    const double wanted = rung_.scale * std::sqrt(kAim * target_ / milliseconds);
+    const double lower = std::min(step_at_most(wanted), step_at_most(rung_.scale * 0.999));
+    const bool on_trial = since_finer_ >= 0;
+    if (rung_.level < coarsest_ && (on_trial || lower < kLeastScale)) {
+        since_finer_ = -1;
+        finer_blocked_ = kPenalty << std::min(finer_penalty_++, 6);
+        rung_ = {rung_.level + 1, std::max(step_at_most(wanted), kLeastScale)};
+        return;
+    }
+    rung_.scale = std::max(lower, rung_.level < coarsest_ ? kLeastScale : kScales.front());
+}
+
+void Pace::go_up(double milliseconds, bool finer_ready) {
+    const double next = step_above(rung_.scale);
+    const double grown = next / rung_.scale;
+    const bool finer = rung_.level > 0 && finer_ready && finer_blocked_ == 0 && rung_.scale >= kFinerScale;
+    // A finer level has four times the splats on the same surfaces, drawn at half the width.
+    const double finer_cost = milliseconds * 4 * 0.5;
+    const bool room =
+        finer ? finer_cost < kAim * target_ : next > rung_.scale && milliseconds * grown * grown < kRoom * target_;
+    if (!room) {
+        // Larger pictures of this level are better than none of the finer one.
+        const bool larger = next > rung_.scale && milliseconds * grown * grown < kRoom * target_;
+        calm_ = larger ? calm_ + 1 : 0;
+        if (calm_ < kCalm) return;
+        calm_ = 0;
+        rung_.scale = next;
+        return;
+    }
+    if (++calm_ < kCalm) return;
+    calm_ = 0;
+    if (finer) {
+        rung_ = {rung_.level - 1, kLeastScale};
+        since_finer_ = 0;
+    } else {
+        rung_.scale = next;
+    }
+}
+
+}  // namespace edgesplat::viewer

@@ -1,0 +1,218 @@
+#include "engine/viewer/session.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/scene/ladder.h"
+#include "engine/scene/views.h"
+
+namespace edgesplat::viewer {
+namespace {
+
+// What stands for so long is drawn as well as it can be, seconds.
+constexpr double kQuiet = 0.15;
+
+/// How near a double click brings the eye: a voxel is so many pixels high then.
+constexpr double kPixelsPerVoxel = 12;
+
+constexpr double kFlightSeconds = 0.8;
+
+glm::dvec3 center_of(const VolumeGeometry& geometry) {
+    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+}
+
+bool same(const Camera& a, const Camera& b) {
+    return a.eye == b.eye && a.direction == b.direction && a.up == b.up && a.fov_y == b.fov_y;
+}
+
+}  // namespace
+
+void Session::open(Opened opened, const glm::ivec2& size) {
+    SceneDocument document = opened.document;
+    document.output.size = size;
+    const Scene scene = resolve_scene(document, *opened.volume);
+    const Camera camera = resolve_camera(document, *opened.volume, scene);
+    const SceneDocument open = document;
+    document = resolved(document, *opened.volume, scene, camera, document.quality.settings);
+    // Boxes stay boxes, so that they can be dragged.
+    document.effects.clip = open.effects.clip;
+    document.keep_box = open.keep_box;
+    document.remove_box = open.remove_box;
+    document.movie = open.movie;
+    opened_ = std::move(opened);
+    history_.emplace(std::move(document));
+    motion_ = Motion();
+    motion_.set_home(camera, center_of(opened_.volume->geometry));
+    motion_.jump(camera);
+    motion_.set_center(center_of(opened_.volume->geometry));
+    tour_.clear();
+    recorder_ = {};
+    picks_.clear();
+    walls_.reset();
+    message_.clear();
+    apply();
+    const glm::dvec3 index = opened_.volume->geometry.to_index(camera.eye);
+    const bool inside = glm::all(glm::greaterThan(index, glm::dvec3(0))) &&
+                        glm::all(glm::lessThan(index, glm::dvec3(opened_.volume->geometry.dims - 1)));
+    motion_.set_mode(inside ? MotionMode::Fly : MotionMode::Orbit);
+}
+
+void Session::apply() {
+    scene_ = resolve_scene(document(), *opened_.volume);
+    ++scene_number_;
+    quiet_ = 0;
+    changed_ = true;
+    walls_outdated_ = true;
+}
+
+void Session::edit(const std::function<void(SceneDocument&)>& change, bool finished) {
+    SceneDocument document = history_->now();
+    change(document);
+    try {
+        validate(document.quality.settings);
+        resolve_scene(document, *opened_.volume);
+    } catch (const Error& error) {
+        message_ = error.what();
+        return;
+    }
+    const bool same_scene = document == history_->now();
+    history_->change(std::move(document), finished);
+    if (!same_scene) apply();
+}
+
+void Session::undo() {
+    if (!can_undo()) return;
+    history_->undo();
+    apply();
+}
+
+void Session::redo() {
+    if (!can_redo()) return;
+    history_->redo();
+    apply();
+}
+
+void Session::set_show(Show show) {
+    if (show == show_) return;
+    const auto plain = [](Show s) { return s != Show::Edges; };
+    changed_ = changed_ || plain(show) != plain(show_);
+    show_ = show;
+}
+
+void Session::set_wipe(double share) {
+    if (std::isfinite(share)) wipe_ = std::clamp(share, 0.0, 1.0);
+}
+
+void Session::set_best_when_still(bool on) {
+    changed_ = changed_ || on != best_;
+    best_ = on;
+}
+
+void Session::find_walls() {
+    if (!walls_outdated_ || quiet_ < kQuiet || walls_to_come_.valid()) return;
+    walls_outdated_ = false;
+    walls_to_come_ = std::async(std::launch::async, [volume = opened_.volume, scene = scene_] {
+        return std::make_shared<const Walls>(volume, scene);
+    });
+}
+
+void Session::poll() {
+    find_walls();
+    if (walls_to_come_.valid() &&
+        (wait_ || walls_to_come_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+        walls_ = walls_to_come_.get();
+        motion_.set_walls(walls_);
+    }
+    if (!tour_.poll(wait_)) return;
+    message_ = tour_.failed() ? "guided path: nothing connects the two points; set them in the same cavity"
+                              : fmt::format("guided path: {:.1f} mm", tour_.line()->length);
+    if (tour_.line()) motion_.jump(tour_.camera(motion_.camera().up));
+    changed_ = true;
+}
+
+void Session::step(const Controls& controls, double seconds) {
+    if (!is_open()) return;
+    const Camera before = motion_.camera();
+    if (tour_.playing) {
+        tour_.look += controls.look;
+        tour_.step(seconds);
+        motion_.jump(tour_.camera(before.up));
+    } else {
+        motion_.step(controls, seconds);
+    }
+    const bool moved = !same(before, motion_.camera());
+    quiet_ = moved ? 0 : quiet_ + seconds;
+    changed_ = changed_ || moved;
+    recorder_.step(motion_.camera(), seconds);
+    poll();
+}
+
+bool Session::pick_at(const glm::dvec2& pixel, const glm::ivec2& size) {
+    const auto found = pick(volume(), scene_, motion_.camera(), size, pixel);
+    if (found) picks_.push_back(*found);
+    return found.has_value();
+}
+
+bool Session::fly_to(const glm::dvec2& pixel, const glm::ivec2& size) {
+    const auto found = pick(volume(), scene_, motion_.camera(), size, pixel);
+    if (!found) return false;
+    Camera there = motion_.camera();
+    const glm::dvec3 towards = glm::normalize(found->world - there.eye);
+    const glm::dvec3 spacing = volume().geometry.spacing();
+    const double voxel = std::min({spacing.x, spacing.y, spacing.z});
+    const double near = voxel * size.y / (2 * std::tan(glm::radians(there.fov_y) / 2) * kPixelsPerVoxel);
+    // Whoever is nearer already comes half the way, but never into the wall.
+    const double distance = std::min(near, found->distance / 2);
+    there.eye = found->world - distance * towards;
+    there.direction = towards;
+    motion_.fly_to(there, found->world, kFlightSeconds);
+    return true;
+}
+
+std::optional<Ruler> Session::ruler() const {
+    if (picks_.size() < 2) return std::nullopt;
+    const Pick &a = picks_[picks_.size() - 2], &b = picks_.back();
+    return Ruler{glm::length(a.world - b.world), std::hypot(a.uncertainty, b.uncertainty)};
+}
+
+bool Session::moving() const {
+    return is_open() && (motion_.moving() || tour_.playing || quiet_ < kQuiet);
+}
+
+std::optional<DrawRequest> Session::next_request(const glm::ivec2& size) {
+    if (!is_open() || size.x < 1 || size.y < 1) return std::nullopt;
+    const bool now_moving = moving();
+    if (size != asked_size_) {
+        quiet_ = 0;
+        changed_ = true;
+    }
+    if (!changed_ && asked_moving_ == now_moving) return std::nullopt;
+    changed_ = false;
+    asked_moving_ = now_moving;
+    asked_size_ = size;
+    DrawRequest request;
+    request.volume = opened_.volume;
+    request.scene = scene_;
+    request.settings = document().quality.settings;
+    request.scene_number = scene_number_;
+    request.camera = motion_.camera();
+    request.size = size;
+    request.plain = show_ != Show::Edges;
+    request.moving = now_moving;
+    if (best_) request.best = preset_named("accurate").settings;
+    return request;
+}
+
+SceneDocument Session::kept_document(const glm::ivec2& size) const {
+    const SceneDocument& now = document();
+    SceneDocument out = now;
+    const Camera& camera = motion_.camera();
+    out.camera = {{}, camera.eye, {}, camera.direction, camera.up, false, camera.fov_y};
+    out.output.size = size;
+    return out;
+}
+
+}  // namespace edgesplat::viewer
