@@ -36,6 +36,10 @@ if(EDGESPLAT_VTK)
     target_compile_definitions(edgesplat_itk INTERFACE EDGESPLAT_HAS_VTK)
 endif()
 
+# The navigation app: window and widgets. Debian's imgui has its Vulkan backend in the library.
+find_package(glfw3 3.3 REQUIRED)
+pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+
 # One picture by many processes; only the program edgesplat knows of it.
 find_package(MPI QUIET COMPONENTS C)
 option(EDGESPLAT_MPI "Divide pictures among the processes of mpirun" ${MPI_C_FOUND})

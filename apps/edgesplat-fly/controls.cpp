@@ -1,0 +1,226 @@
+#include "apps/edgesplat-fly/controls.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/viewer/keeping.h"
+
+namespace {
+
+using edgesplat::viewer::Controls;
+using edgesplat::viewer::MotionMode;
+using edgesplat::viewer::Session;
+using edgesplat::viewer::Show;
+
+constexpr double kRadiansPerHeight = 3.5;  // that a drag over the picture's height turns
+constexpr double kClickPixels = 4, kDoubleClickSeconds = 0.4;
+constexpr double kDividerPixels = 8;
+
+void toggle(Session& session, Show show) {
+    session.set_show(session.show() == show ? Show::Edges : show);
+}
+
+void toggle_mode(AppState& s) {
+    auto& motion = s.session.motion();
+    const bool fly = motion.mode() == MotionMode::Orbit;
+    motion.set_mode(fly ? MotionMode::Fly : MotionMode::Orbit);
+    s.session.say(fly ? "fly: W A S D to move, mouse to look" : "orbit: drag to turn, wheel to come nearer");
+}
+
+void toggle_recording(AppState& s) {
+    auto& recorder = s.session.recorder();
+    if (recorder.recording()) {
+        recorder.stop();
+        s.session.say(fmt::format("recorded {:.1f} s; a saved scene brings it along", recorder.seconds()));
+    } else {
+        recorder.start();
+        s.session.say("recording the flight");
+    }
+}
+
+constexpr std::array<Shortcut, 36> kShortcuts{{
+    {"F1", "this help", [](AppState& s) { s.help = !s.help; }},
+    {"Tab", "panels on and off", [](AppState& s) { s.panels = !s.panels; }},
+    {"F", "fly, or orbit like a model on a table", toggle_mode},
+    {"Home", "back to the first view",
+     [](AppState& s) {
+         s.session.tour().playing = false;
+         s.session.motion().home();
+     }},
+    {"Space", "plain or edge-preserved", [](AppState& s) { toggle(s.session, Show::Plain); }},
+    {"X", "wipe between the two", [](AppState& s) { toggle(s.session, Show::Wipe); }},
+    {"H", "where and how much was sharpened", [](AppState& s) { toggle(s.session, Show::Sharpening); }},
+    {"B", "most accurate picture on standstill",
+     [](AppState& s) { s.session.set_best_when_still(!s.session.best_when_still()); }},
+    {"C", "walls stop the flight",
+     [](AppState& s) {
+         auto& motion = s.session.motion();
+         motion.set_collisions(!motion.collisions());
+         s.preferences.collisions = motion.collisions();
+     }},
+    {"M", "measure: click to pick the surface",
+     [](AppState& s) { s.tool = s.tool == Tool::Measure ? Tool::Move : Tool::Measure; }},
+    {"Delete", "forget the picks", [](AppState& s) { s.session.clear_picks(); }},
+    {"G", "guided path: click its two ends",
+     [](AppState& s) { s.tool = s.tool == Tool::PathStart || s.tool == Tool::PathEnd ? Tool::Move : Tool::PathStart; }},
+    {"Enter", "travel along the path, stop",
+     [](AppState& s) {
+         auto& tour = s.session.tour();
+         if (!tour.line()) return;
+         if (!tour.playing && tour.position() >= tour.line()->length) tour.set_position(0);
+         tour.playing = !tour.playing;
+     }},
+    {"L", "slices through the last pick", [](AppState& s) { s.slices = !s.slices; }},
+    {"O", "scale bar, orientation and picks", [](AppState& s) { s.overlays = !s.overlays; }},
+    {"Ctrl+Z", "undo", [](AppState& s) { s.session.undo(); }},
+    {"Ctrl+Y", "redo", [](AppState& s) { s.session.redo(); }},
+    {"Ctrl+S", "save the scene beside the volume, or here",
+     [](AppState& s) { s.wishes.save_scene = edgesplat::viewer::free_path(".", "scene", ".toml").string(); }},
+    {"F12", "save the picture as it is shown",
+     [](AppState& s) { s.wishes.save_picture = edgesplat::viewer::free_path(".", "picture", ".png").string(); }},
+    {"Ctrl+R", "record the flight, stop", toggle_recording},
+    {"F11", "full screen", [](AppState& s) { s.wishes.full_screen = true; }},
+    {"Ctrl+Q", "leave", [](AppState& s) { s.wishes.quit = true; }},
+    {"Escape", "stop travelling, put the tool away",
+     [](AppState& s) {
+         s.session.tour().playing = false;
+         s.tool = Tool::Move;
+         s.help = false;
+     }},
+    {"W A S D", "fly forward, left, back, right (orbit: shift)", nullptr},
+    {"Q E", "down, up", nullptr},
+    {"Z V", "roll", nullptr},
+    {"Shift", "three times as fast", nullptr},
+    {"left drag", "orbit, or look around", nullptr},
+    {"right drag", "shift", nullptr},
+    {"wheel", "nearer (orbit), faster (fly)", nullptr},
+    {"double click", "go to that surface and turn about it", nullptr},
+    {"Ctrl+click", "pick the surface", nullptr},
+    {"drag the divider", "move the wipe", nullptr},
+    {"drop a file or folder", "open it", nullptr},
+    {"left stick, right stick", "gamepad: fly, look; triggers: down and up", nullptr},
+    {"pad X, pad Y", "gamepad: plain or edge-preserved; home", nullptr},
+}};
+
+bool pressed(const Input& input, std::string_view keys) {
+    constexpr std::string_view kCtrl = "Ctrl+";
+    const bool ctrl = keys.starts_with(kCtrl);
+    if (ctrl) keys.remove_prefix(kCtrl.size());
+    return ctrl == input.ctrl() && std::ranges::find(input.pressed, keys) != input.pressed.end();
+}
+
+double axis(const Input& input, std::string_view less, std::string_view more) {
+    return (input.holds(more) ? 1.0 : 0.0) - (input.holds(less) ? 1.0 : 0.0);
+}
+
+}  // namespace
+
+std::span<const Shortcut> shortcuts() {
+    return kShortcuts;
+}
+
+void PictureControls::click(AppState& state, const glm::dvec2& pixel, bool twice, bool picking) {
+    Session& session = state.session;
+    const glm::ivec2 size = state.picture_size();
+    if (twice && state.tool == Tool::Move) {
+        if (!session.fly_to(pixel, size)) session.say("nothing to fly to there");
+        return;
+    }
+    if (picking || state.tool == Tool::Measure) {
+        if (!session.pick_at(pixel, size)) session.say("no surface there");
+        return;
+    }
+    if (state.tool != Tool::PathStart && state.tool != Tool::PathEnd) return;
+    const auto found =
+        edgesplat::viewer::pick(session.volume(), session.scene(), session.motion().camera(), size, pixel);
+    if (!found || !session.walls()) {
+        session.say(found ? "the walls are still being found" : "no surface there; click into the cavity");
+        return;
+    }
+    // The clicked wall's own foot is no place to travel to: its opposite side may be far.
+    const glm::dvec3 place = found->world + 2 * session.walls()->voxel() * found->normal;
+    auto& tour = session.tour();
+    if (state.tool == Tool::PathStart) {
+        tour.clear();
+        tour.from = place;
+        state.tool = Tool::PathEnd;
+    } else {
+        tour.to = place;
+        tour.find(session.walls());
+        state.tool = Tool::Move;
+    }
+}
+
+void PictureControls::mouse(AppState& state, const Input& input, bool over_picture, Controls& controls) {
+    Session& session = state.session;
+    const glm::dvec2 at = input.mouse - glm::dvec2(state.area.x, state.area.y);
+    const glm::ivec2 size = state.picture_size();
+    const bool fly = session.motion().mode() == MotionMode::Fly;
+    const bool left = input.down(Button::Left), right = input.down(Button::Right), middle = input.down(Button::Middle);
+    const bool down = left || right || middle;
+    since_click_ += input.seconds;
+    if (down && !was_down_ && over_picture) {
+        const bool divider =
+            session.show() == Show::Wipe && left && std::abs(at.x - session.wipe() * size.x) < kDividerPixels;
+        const bool shifts = right || middle || input.shift();
+        drag_ = divider ? Drag::Wipe : fly && left ? Drag::Look : shifts ? Drag::Pan : Drag::Orbit;
+        pressed_at_ = last_ = at;
+        travelled_ = 0;
+    }
+    const glm::dvec2 way = at - last_;
+    last_ = at;
+    if (down && drag_ != Drag::None) {
+        travelled_ += glm::length(way);
+        const glm::dvec2 turned = kRadiansPerHeight * state.preferences.turn / std::max(size.y, 1) * way;
+        const double sign = state.preferences.invert_look ? 1 : -1;
+        // A drag that is shorter than a hand's tremble is a click.
+        if (travelled_ > kClickPixels || drag_ == Drag::Wipe) {
+            if (drag_ == Drag::Wipe) session.set_wipe(at.x / std::max(size.x, 1));
+            if (drag_ == Drag::Look) controls.look += glm::dvec2(turned.x, sign * turned.y) * 0.5;
+            if (drag_ == Drag::Orbit) controls.orbit += glm::dvec2(-turned.x, turned.y);
+            if (drag_ == Drag::Pan)
+                controls.pan += glm::dvec2(-way.x, way.y) / static_cast<double>(std::max(size.y, 1));
+        }
+    }
+    if (!down && was_down_ && drag_ != Drag::None) {
+        if (travelled_ <= kClickPixels && drag_ != Drag::Wipe && drag_ != Drag::Pan) {
+            const bool twice = since_click_ < kDoubleClickSeconds && glm::length(at - clicked_at_) < 2 * kClickPixels;
+            click(state, pressed_at_, twice, input.ctrl());
+            since_click_ = twice ? 1e9 : 0;
+            clicked_at_ = at;
+        }
+        drag_ = Drag::None;
+    }
+    was_down_ = down;
+    if (over_picture && input.wheel != 0) {
+        if (fly)
+            state.boost = std::clamp(state.boost * std::pow(1.2, input.wheel), 0.1, 10.0);
+        else
+            controls.zoom += input.wheel;
+    }
+}
+
+Controls PictureControls::apply(AppState& state, const Input& input, bool over_picture, bool typing) {
+    Controls controls;
+    if (!typing) {
+        for (const Shortcut& shortcut : kShortcuts)
+            if (shortcut.act != nullptr && pressed(input, shortcut.keys) &&
+                (state.session.is_open() || shortcut.keys == "F1" || shortcut.keys == "Ctrl+Q"))
+                shortcut.act(state);
+        if (!input.ctrl()) {
+            controls.move = {axis(input, "A", "D"), axis(input, "Q", "E"), axis(input, "S", "W")};
+            controls.roll = axis(input, "Z", "V");
+        }
+    }
+    if (!state.session.is_open()) return {};
+    mouse(state, input, over_picture, controls);
+    const Gamepad& pad = input.gamepad;
+    controls.move += glm::dvec3(pad.left.x, pad.rise, pad.left.y);
+    controls.look += 2.0 * input.seconds * state.preferences.turn * pad.right;
+    if (pad.home) state.session.motion().home();
+    if (pad.toggle && !pad_toggle_) toggle(state.session, Show::Plain);
+    pad_toggle_ = pad.toggle;
+    controls.boost = state.boost * state.preferences.speed * (input.shift() ? 3 : 1);
+    return controls;
+}

@@ -1,0 +1,59 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include "apps/edgesplat-fly/panels.h"
+#include "engine/viewer/keeping.h"
+#include "engine/volume/analytic_volumes.h"
+
+namespace {
+
+void recent_files(AppState& state) {
+    for (const std::string& path : state.preferences.recent)
+        if (ImGui::Selectable(path.c_str())) state.wishes.open = path;
+    ImGui::Separator();
+    for (const std::string_view name : edgesplat::analytic_scene_names()) {
+        const std::string path = fmt::format("builtin:{}", name);
+        if (ImGui::Selectable(path.c_str())) state.wishes.open = path;
+    }
+}
+
+void saving(AppState& state) {
+    static std::string scene = "scene.toml", picture = "picture.png";
+    static int width = 0;
+    if (ImGui::InputText("scene", &scene, ImGuiInputTextFlags_EnterReturnsTrue)) state.wishes.save_scene = scene;
+    ImGui::SameLine();
+    if (ImGui::Button("save##scene")) state.wishes.save_scene = scene;
+    if (ImGui::InputText("picture", &picture, ImGuiInputTextFlags_EnterReturnsTrue))
+        state.wishes.save_picture = picture;
+    ImGui::SameLine();
+    if (ImGui::Button("save##picture")) state.wishes.save_picture = picture;
+    ImGui::InputInt("width", &width, 256, 1024);
+    width = std::clamp(width, 0, 16384);
+    ImGui::TextDisabled(width == 0 ? "as large as it is shown" : "in the background, PNG or EXR");
+    const glm::ivec2 shown = state.picture_size();
+    if (width > 0 && shown.x > 0) state.wishes.picture_size = {width, std::clamp(width * shown.y / shown.x, 1, 16384)};
+}
+
+}  // namespace
+
+void file_panel(AppState& state) {
+    static std::string path;
+    if (ImGui::InputText("path", &path, ImGuiInputTextFlags_EnterReturnsTrue) && !path.empty())
+        state.wishes.open = path;
+    ImGui::SameLine();
+    if (ImGui::Button("open") && !path.empty()) state.wishes.open = path;
+    if (ImGui::TreeNode("recent and built in")) {
+        recent_files(state);
+        ImGui::TreePop();
+    }
+    if (!state.session.is_open()) return;
+    saving(state);
+    auto& recorder = state.session.recorder();
+    if (ImGui::Button(recorder.recording() ? "stop recording" : "record the flight"))
+        recorder.recording() ? recorder.stop() : recorder.start();
+    if (recorder.recording() || !recorder.empty()) {
+        ImGui::SameLine();
+        ImGui::Text("%.1f s", recorder.seconds());
+    }
+}

@@ -1,0 +1,90 @@
+// edgesplat-fly: look at a volume from outside like a model on a table, or from inside like an endoscope.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <exception>
+
+#include "apps/edgesplat-fly/app.h"
+
+namespace {
+
+void print_devices() {
+    for (const edgesplat::DeviceInfo& d : edgesplat::list_devices())
+        fmt::print("{}: {} ({}){}\n", d.index, d.name, d.type,
+                   d.rejections.empty() ? "" : " cannot be used: " + d.rejections.front());
+}
+
+void print_script_help() {
+    for (const auto& verb : edgesplat::viewer::script_verbs())
+        fmt::print("{:<11}{}\n", verb.name, verb.help);
+    fmt::print("\nKeys and mouse:\n");
+    for (const Shortcut& shortcut : shortcuts())
+        fmt::print("{:<26}{}\n", shortcut.keys, shortcut.what);
+}
+
+void add_options(CLI::App& app, AppOptions& options) {
+    app.add_option("SOURCE", options.source,
+                   "A volume file, a folder of slices, builtin:NAME or a scene file (default: a builtin scene)");
+    app.add_option("--device", options.device.device,
+                   "A Vulkan device: its number in --list-devices, or a part of its name");
+    app.add_flag_callback(
+        "--list-devices",
+        [] {
+            print_devices();
+            throw CLI::Success();
+        },
+        "Print the Vulkan devices and leave");
+    app.add_flag("--validation", options.device.validation,
+                 "Check every Vulkan call; any message makes the program fail");
+    app.add_option_function<std::string>(
+           "--size",
+           [&options](const std::string& text) {
+               const auto x = text.find('x');
+               try {
+                   options.size = {std::stoi(text.substr(0, x)), std::stoi(text.substr(x + 1))};
+               } catch (const std::exception&) {
+                   options.size = glm::ivec2(0);
+               }
+               if (x == std::string::npos || options.size.x < 1 || options.size.y < 1 || options.size.x > 16384 ||
+                   options.size.y > 16384)
+                   throw CLI::ValidationError("--size " + text, "expected WIDTHxHEIGHT, 1 to 16384 pixels each");
+           },
+           "Pixels of the window (default: as last time)")
+        ->type_name("WxH");
+    app.add_option("--target", options.target,
+                   "Milliseconds a picture may take while something moves (default: 33, 150 without a GPU)")
+        ->check(CLI::Range(1.0, 10000.0));
+    app.add_option_function<double>(
+           "--memory-budget",
+           [&options](double megabytes) { options.memory_budget = static_cast<std::uint64_t>(megabytes * 1048576); },
+           "Device memory a picture may take, MB")
+        ->check(CLI::PositiveNumber);
+    auto* script = app.add_option("--script", options.script, "Replays input from a file, with a fixed time step");
+    app.add_flag("--headless", options.headless, "Without a window; with --script")->needs(script);
+    app.add_option("--record", options.record, "Writes what is done as a script")->excludes(script);
+    app.add_flag("!--no-preferences", options.remember, "Neither read nor write the user's preferences");
+    app.add_flag_callback(
+        "--script-help",
+        [] {
+            print_script_help();
+            throw CLI::Success();
+        },
+        "Print what scripts are made of and leave");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    CLI::App app{"Fly through a volume: edge-preserving splatting, interactively"};
+    app.set_version_flag("--version", "edgesplat-fly " EDGESPLAT_VERSION);
+    AppOptions options;
+    add_options(app, options);
+    CLI11_PARSE(app, argc, argv);
+    try {
+        App(options).run();
+    } catch (const std::exception& error) {
+        fmt::print(stderr, "edgesplat-fly: {}\n", error.what());
+        return 1;
+    }
+    return 0;
+}

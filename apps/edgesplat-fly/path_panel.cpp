@@ -1,0 +1,53 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include "apps/edgesplat-fly/panels.h"
+
+void path_panel(AppState& state) {
+    if (!state.session.is_open()) return;
+    auto& session = state.session;
+    auto& tour = session.tour();
+    const bool choosing = state.tool == Tool::PathStart || state.tool == Tool::PathEnd;
+    if (ImGui::Button(choosing ? "click into the picture..." : "click two points"))
+        state.tool = choosing ? Tool::Move : Tool::PathStart;
+    if (choosing) {
+        ImGui::SameLine();
+        ImGui::TextUnformatted(state.tool == Tool::PathStart ? "the first" : "the second");
+    }
+    if (ImGui::Button("from here")) tour.from = session.motion().camera().eye;
+    ImGui::SameLine();
+    if (ImGui::Button("to here")) {
+        tour.to = session.motion().camera().eye;
+        tour.find(session.walls());
+    }
+    if (tour.searching()) ImGui::TextUnformatted("looking for the way...");
+    if (!tour.line()) return;
+    auto at = static_cast<float>(tour.position());
+    if (ImGui::SliderFloat("mm", &at, 0, static_cast<float>(tour.line()->length), "%.1f")) {
+        tour.playing = false;
+        tour.set_position(static_cast<double>(at));
+        session.motion().jump(tour.camera(session.motion().camera().up));
+    }
+    if (ImGui::Button(tour.playing ? "stop" : "travel")) {
+        if (!tour.playing && tour.position() >= tour.line()->length) tour.set_position(0);
+        tour.playing = !tour.playing;
+    }
+    ImGui::SameLine();
+    if (ImGui::Button("look ahead")) tour.look = glm::dvec2(0);
+    ImGui::SameLine();
+    if (ImGui::Button("to the scene's movie")) {
+        const edgesplat::CameraPath path = tour.path(session.motion().camera().up);
+        session.edit([&](edgesplat::SceneDocument& d) {
+            d.movie.orbit.reset();
+            d.movie.flight.reset();
+            d.movie.voxel = false;
+            d.movie.path = path.keys;
+            d.movie.loop = path.loop;
+        });
+        session.say("the saved scene flies this way: edgesplat movie SCENE");
+    }
+    auto speed = static_cast<float>(tour.speed), fov = static_cast<float>(tour.fov);
+    if (ImGui::SliderFloat("mm/s", &speed, 1, 200, "%.0f", ImGuiSliderFlags_Logarithmic))
+        tour.speed = static_cast<double>(speed);
+    if (ImGui::SliderFloat("view angle", &fov, 20, 120, "%.0f°")) tour.fov = static_cast<double>(fov);
+}

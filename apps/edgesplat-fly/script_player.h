@@ -1,0 +1,43 @@
+// Input from a script in place of a hand's, a frame at a time.
+#pragma once
+
+#include <deque>
+#include <functional>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "apps/edgesplat-fly/input.h"
+#include "engine/viewer/script.h"
+
+/// What the app does for a script beside taking its input.
+struct ScriptHost {
+    std::function<void(const std::string& path)> open;  ///< returns when it is there
+    std::function<bool()> settled;                      ///< no better picture will come
+    std::function<void(const std::string&path)> screenshot, picture, save, report;
+    std::function<void(bool fixed)> fix_quality;
+    std::function<std::string(const std::string& name)> value;  ///< for `expect`; throws Error for an unknown name
+};
+
+class ScriptPlayer {
+  public:
+    ScriptPlayer(std::vector<edgesplat::viewer::ScriptCommand> commands, ScriptHost host, const glm::ivec2& size);
+    /// The next frame's input; nothing at the end. Throws Error: an `expect` that does not hold.
+    std::optional<Input> next();
+
+  private:
+    using Change = std::function<void(Input&)>;
+    void begin(const edgesplat::viewer::ScriptCommand& command);
+    void expect(const edgesplat::viewer::ScriptCommand& command) const;
+    void wander(double seconds, unsigned seed);
+    void frame(Change change = {}) { pending_.push_back(std::move(change)); }
+
+    std::vector<edgesplat::viewer::ScriptCommand> commands_;
+    ScriptHost host_;
+    std::size_t at_ = 0;
+    Input input_;
+    std::deque<Change> pending_;
+    bool settling_ = false;
+    int settle_frames_ = 0;
+};

@@ -1,0 +1,3 @@
+#include "apps/edgesplat-fly/panels.h"
+
+void slices_window(AppState&) {}
