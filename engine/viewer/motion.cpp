@@ -301,6 +301,7 @@ void Motion::go_round(const glm::dvec2& angles) {
     const glm::dvec3 level = at_pole ? f.right : glm::normalize(across), level_up = glm::cross(level, f.forward);
     const double height = std::asin(std::clamp(glm::dot(f.forward, axis_), -1.0, 1.0));
     const double climb = std::clamp(angles.y, height - kPole, height + kPole);
+    if (climb != angles.y) momentum_.orbit.y = 0;
     const double roll = std::atan2(glm::dot(f.forward, glm::cross(level_up, f.up)), glm::dot(level_up, f.up));
     const double levelled = roll * std::expm1(-kLevelling * glm::length(angles));
     const auto carried = [&](const glm::dvec3& v) { return turned(turned(v, -climb, level), angles.x, axis_); };
@@ -337,11 +338,14 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
     constexpr int kMostStrides = 256, kPushes = 6;
     const double voxel = walls_->voxel(), room = kClearance * voxel, least = kLeastClearance * voxel;
     const double whole = glm::length(way);
-    /// Moves a place towards more room, by no more than a limit.
-    const auto push = [&](glm::dvec3& at, double& distance, double limit) {
+    /// Moves a place towards more room, by no more than a limit, and not back along a direction (0: any way).
+    const auto push = [&](glm::dvec3& at, double& distance, double limit, const glm::dvec3& kept) {
         for (int i = 0; i < kPushes && distance < room && limit > 0; ++i) {
+            glm::dvec3 way_out = walls_->away(at);
+            way_out -= kept * std::min(0.0, glm::dot(kept, way_out));
+            if (glm::length(way_out) < 0.1) return;
             const double stride = std::min({room - distance, voxel / 4, limit});
-            const glm::dvec3 next = at + walls_->away(at) * stride;
+            const glm::dvec3 next = at + glm::normalize(way_out) * stride;
             const double there = walls_->distance(next);
             if (!(there > distance)) return;
             at = next;
@@ -349,9 +353,14 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
             limit -= stride;
         }
     };
+    // Where the way goes on, into a passage for example, its mouth must not push back.
+    const auto goes_on = [&](const glm::dvec3& from, const glm::dvec3& direction) {
+        return walls_->distance(from + direction * voxel) > least / 2 &&
+               walls_->distance(from + direction * (1.75 * voxel)) > least / 2;
+    };
     glm::dvec3 at = camera_.eye;
     double distance = walls_->distance(at);
-    if (!entered_ && distance > 0 && distance < least) push(at, distance, voxel);
+    if (!entered_ && distance > 0 && distance < least) push(at, distance, voxel, glm::dvec3(0));
     entered_ |= distance >= least;
     if (!entered_) return way;
     glm::dvec3 rest = way;
@@ -361,7 +370,10 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
         const double stride = std::min(length, std::max(voxel / 4, 0.8 * (distance - room)));
         glm::dvec3 next = at + rest * (stride / length);
         double there = walls_->distance(next);
-        push(next, there, 2 * stride);
+        if (there < room) {
+            const glm::dvec3 direction = rest / length;
+            push(next, there, 2 * stride, goes_on(at, direction) ? direction : glm::dvec3(0));
+        }
         if (!(there >= least)) break;
         rest *= 1 - stride / length;
         at = next;

@@ -136,24 +136,26 @@ inline Cavity shell() {
             c + glm::dvec3(17.5, 0, 0)};
 }
 
-/// 3 x 3 x 3 rooms of side 10 mm, 16 mm apart, with passages of side 4 mm between some.
+/// 2 x 2 x 2 rooms of side 14 mm, 24 mm apart, with passages of side 5 mm between some.
 inline Cavity maze(const glm::dvec3& spacing = glm::dvec3(1)) {
-    const auto room = [](const glm::dvec3& x) {
+    const auto room = [](const glm::dvec3& p) {
         double outside = 1e9;  // distance to the union of boxes, below 0 in one
-        for (int z = 0; z < 3; ++z)
-            for (int y = 0; y < 3; ++y)
-                for (int i = 0; i < 3; ++i) {
-                    const glm::dvec3 c = 8.0 + 16.0 * glm::dvec3(i, y, z) - 0.5;
-                    outside = std::min(outside, box_distance(x, c, glm::dvec3(5)));
-                    if (i < 2) outside = std::min(outside, box_distance(x, c + glm::dvec3(8, 0, 0), {8, 2, 2}));
-                    if (y < 2 && i == z)
-                        outside = std::min(outside, box_distance(x, c + glm::dvec3(0, 8, 0), {2, 8, 2}));
-                    if (z < 2 && i == y)
-                        outside = std::min(outside, box_distance(x, c + glm::dvec3(0, 0, 8), {2, 2, 8}));
+        const auto add = [&](const glm::dvec3& center, const glm::dvec3& half) {
+            outside = std::min(outside, box_distance(p, center, half));
+        };
+        for (int z = 0; z < 2; ++z)
+            for (int y = 0; y < 2; ++y)
+                for (int x = 0; x < 2; ++x) {
+                    const glm::dvec3 c = 11.5 + 24.0 * glm::dvec3(x, y, z);
+                    add(c, glm::dvec3(7));
+                    if (x == 0) add(c + glm::dvec3(12, 0, 0), {12, 2.5, 2.5});
+                    if (y == 0 && x == z) add(c + glm::dvec3(0, 12, 0), {2.5, 12, 2.5});
+                    if (z == 0 && x == y) add(c + glm::dvec3(0, 0, 12), {2.5, 2.5, 12});
                 }
         return -outside;
     };
-    return {"maze", glm::ivec3(glm::dvec3(48) / spacing), spacing, glm::dmat3(1), glm::dvec3(0), room, glm::dvec3(7.5)};
+    return {"maze",          glm::ivec3(glm::dvec3(48) / spacing), spacing, glm::dmat3(1), glm::dvec3(0), room,
+            glm::dvec3(11.5)};
 }
 
 }  // namespace edgesplat::viewer_test
