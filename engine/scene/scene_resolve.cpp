@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "engine/error.h"
+#include "engine/scene/default_materials.h"
 #include "engine/scene/scene_document.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/scene/views.h"
@@ -77,11 +78,6 @@ Material material_of(const MaterialChoice& choice, const Material& usual) {
     return material;
 }
 
-MaterialChoice choice_of(const Material& material) {
-    const LightResponse& r = material.response;
-    return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
-}
-
 /// Beyond them is outside of the box.
 void add_planes(const ClipBox& box, std::vector<Plane>& planes) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -93,6 +89,21 @@ void add_planes(const ClipBox& box, std::vector<Plane>& planes) {
 }
 
 }  // namespace
+
+glm::dvec3 default_color(std::size_t place) {
+    return kPalette[place % kPalette.size()];
+}
+
+double default_extinction(bool highest, const VolumeGeometry& geometry) {
+    const glm::dvec3 spacing = geometry.spacing();
+    const double voxel = (spacing.x + spacing.y + spacing.z) / 3;
+    return (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / voxel;
+}
+
+MaterialChoice choice_of(const Material& material) {
+    const LightResponse& r = material.response;
+    return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
+}
 
 Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     Scene scene;
@@ -113,13 +124,10 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     std::vector<std::size_t> order(iso.size());  // of the document's iso-values, by rising value
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return iso[a] < iso[b]; });
-    const glm::dvec3 spacing = volume.geometry.spacing();
-    const double voxel = (spacing.x + spacing.y + spacing.z) / 3;
     scene.materials.push_back(material_of(document.below, {.color = glm::dvec3(0)}));
     for (std::size_t rank = 0; rank < order.size(); ++rank) {
         const bool highest = rank + 1 == order.size();
-        const Material usual{.color = kPalette[rank % kPalette.size()],
-                             .extinction = (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / voxel};
+        const Material usual{.color = default_color(rank), .extinction = default_extinction(highest, volume.geometry)};
         scene.iso_values.push_back(iso[order[rank]]);
         scene.materials.push_back(document.materials.empty() ? usual
                                                              : material_of(document.materials[order[rank]], usual));

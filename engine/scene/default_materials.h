@@ -1,0 +1,19 @@
+// What resolve_scene gives materials that are left open.
+#pragma once
+
+#include <glm/glm.hpp>
+
+#include "engine/scene/scene_document.h"
+
+namespace edgesplat {
+
+/// Linear light. By a material's place from the lowest iso-value up, the first is 0; after the sixth they begin anew.
+glm::dvec3 default_color(std::size_t place);
+
+/// Per mm. `highest`: no iso-value lies above the material's.
+double default_extinction(bool highest, const VolumeGeometry& geometry);
+
+/// Everything of a material said.
+MaterialChoice choice_of(const Material& material);
+
+}  // namespace edgesplat
