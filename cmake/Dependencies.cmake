@@ -38,7 +38,12 @@ endif()
 
 # The navigation app: window and widgets. Debian's imgui has its Vulkan backend in the library.
 find_package(glfw3 3.3 REQUIRED)
-pkg_check_modules(IMGUI REQUIRED IMPORTED_TARGET imgui)
+pkg_check_modules(IMGUI REQUIRED imgui)
+find_library(IMGUI_LIBRARY imgui HINTS ${IMGUI_LIBRARY_DIRS} REQUIRED)
+# What its pkg-config file leaves out: the backend in it calls Vulkan, which a linker has to see after it.
+add_library(edgesplat_imgui UNKNOWN IMPORTED)
+set_target_properties(edgesplat_imgui PROPERTIES IMPORTED_LOCATION ${IMGUI_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES "${IMGUI_INCLUDE_DIRS}" INTERFACE_LINK_LIBRARIES "stb;Vulkan::Vulkan")
 
 # One picture by many processes; only the program edgesplat knows of it.
 find_package(MPI QUIET COMPONENTS C)

@@ -146,8 +146,13 @@ std::optional<ScaleBar> scale_bar(const Volume& volume, const Camera& camera, in
     const CameraFrame frame = camera_frame(camera);
     const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);
     const double depth = glm::dot(center - frame.eye, frame.forward);
-    const double pixels_per_mm = height / (2 * depth * frame.tan_half_y), longest = most / pixels_per_mm;
-    if (!(depth > 0) || !(longest > 0) || !std::isfinite(longest)) return {};
+    if (!(depth > 0)) return {};
+    return scale_bar(2 * depth * frame.tan_half_y / height, most);
+}
+
+std::optional<ScaleBar> scale_bar(double mm_per_pixel, double most) {
+    const double pixels_per_mm = 1 / mm_per_pixel, longest = most * mm_per_pixel;
+    if (!(longest > 0) || !std::isfinite(longest)) return {};
     const double power = std::pow(10.0, std::floor(std::log10(longest)));
     for (const double factor : {5.0, 2.0, 1.0})
         if (factor * power <= longest) return ScaleBar{factor * power, factor * power * pixels_per_mm};

@@ -33,6 +33,8 @@ struct ScaleBar {
 
 /// The longest one of at most `most` pixels; none where the volume's centre is not in front of the eye.
 std::optional<ScaleBar> scale_bar(const Volume& volume, const Camera& camera, int height, double most);
+/// The same for a pixel's side in mm; none unless that is above 0 and finite.
+std::optional<ScaleBar> scale_bar(double mm_per_pixel, double most);
 
 /// Draws what scene.effects.overlays asks for over a picture in linear light (RGB, or RGBA with the background blended
 /// in): the marker in the lower left corner, the bar in the lower right, the legend in the upper left. Sizes go with

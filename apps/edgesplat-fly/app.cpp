@@ -123,6 +123,7 @@ void App::make_drawer() {
     state_.drawer = std::make_unique<viewer::Drawer>(viewer::Drawer::Options{.device = state_.device,
                                                                              .memory_budget = options_.memory_budget,
                                                                              .target = state_.target,
+                                                                             .rays = state_.rays,
                                                                              .threaded = player_ == nullptr});
 }
 
@@ -170,7 +171,7 @@ void App::grant_wishes() {
         make_drawer();
         state_.session.ask_again();
     }
-    if (wishes.quit) options_.script.clear();
+    leaving_ = leaving_ || wishes.quit;
     try {
         const glm::ivec2 shown = state_.picture_size();
         if (!wishes.save_scene.empty()) {
@@ -284,11 +285,11 @@ bool App::is_busy() const {
 std::optional<Input> App::next_input() {
     if (!player_) {
         Input input = window_->poll(state_.session.moving() ? kWaitMoving : is_busy() ? kWaitBusy : kWaitIdle);
-        if (input.close || state_.wishes.quit) return std::nullopt;
+        if (input.close || leaving_) return std::nullopt;
         return input;
     }
     if (window_) window_->poll(0);
-    return state_.wishes.quit ? std::nullopt : player_->next();
+    return leaving_ ? std::nullopt : player_->next();
 }
 
 void App::run() {

@@ -49,6 +49,8 @@ struct AppState {
     Wishes wishes;
 
     std::optional<edgesplat::viewer::DrawnPicture> shown;  ///< without its pixels once they are on the canvas
+    edgesplat::Image last_edges, last_plain;               ///< its pixels
+    bool sharpening_due = false;                           ///< not made of them yet
     bool fresh = false;                                    ///< `shown` came with this frame
     CanvasPicture edges, plain, sharpening;
     std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
@@ -56,8 +58,9 @@ struct AppState {
     glm::ivec4 area{0};  ///< of the picture in the window: left, top, right, bottom
     Tool tool = Tool::Move;
     bool panels = true, help = false, slices = false;
-    bool overlays = true;              ///< scale bar, orientation, picks
-    double boost = 1;                  ///< factor on flying speed, by the wheel
+    bool overlays = true;  ///< scale bar, orientation, picks
+    double boost = 1;      ///< factor on flying speed, by the wheel
+    edgesplat::viewer::Drawer::Options::Rays rays = edgesplat::viewer::Drawer::Options::Rays::OnProcessor;
     double target = 150;               ///< milliseconds a picture may take while something moves
     std::string error;                 ///< to be shown until it is clicked away
     std::optional<glm::dvec2> cursor;  ///< pixel of the picture below the mouse

@@ -137,9 +137,12 @@ void Canvas::upload(CanvasPicture& picture) {
     const bool fits = picture.image_ && picture.image_.shape().size == glm::ivec3(size, 1);
     if (!fits) {
         picture.image_ = {};
-        picture.image_ = edgesplat::gpu::GpuImage(
-            device_, {.format = kFormat, .size = {size, 1}, .usage = Usage::eTransferDst | Usage::eTransferSrc},
-            "shown picture");
+        picture.image_ =
+            edgesplat::gpu::GpuImage(device_,
+                                     {.format = kFormat,
+                                      .size = {size, 1},
+                                      .usage = Usage::eTransferDst | Usage::eTransferSrc | Usage::eSampled},
+                                     "shown picture");
         const vk::ImageMemoryBarrier2 fresh(vk::PipelineStageFlagBits2::eNone, {},
                                             vk::PipelineStageFlagBits2::eAllCommands, vk::AccessFlagBits2::eMemoryWrite,
                                             vk::ImageLayout::eUndefined, vk::ImageLayout::eGeneral, 0, 0,

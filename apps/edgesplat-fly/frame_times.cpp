@@ -12,7 +12,7 @@ void FrameTimes::add(const edgesplat::viewer::DrawnPicture& picture) {
     spent_ += picture.milliseconds;
     if (picture.moving) {
         moving_.push_back({picture.milliseconds, picture.rung});
-    } else if (!picture.best && picture.rung.level == 0 && picture.rung.scale == 1 && picture.stats.complete) {
+    } else if (!picture.best && picture.rung == edgesplat::viewer::Rung{} && picture.stats.complete) {
         standstills_.push_back(spent_);
     }
 }
@@ -37,7 +37,7 @@ void FrameTimes::write(const std::filesystem::path& path, double target) const {
     std::map<std::string, int> rungs;
     for (const Moving& m : moving_) {
         times.push_back(m.milliseconds);
-        ++rungs[fmt::format("level {} at {:g}", m.rung.level, m.rung.scale)];
+        ++rungs[fmt::format("{}, level {}, scale {:g}", m.rung.rays ? "rays" : "splats", m.rung.level, m.rung.scale)];
     }
     const auto within = std::ranges::count_if(times, [&](double t) { return t <= target; });
     ordered_json moving = summary(times);

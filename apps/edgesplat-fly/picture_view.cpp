@@ -90,9 +90,12 @@ void draw_path(AppState& state, const Pen& pen) {
 void draw_scale_bar(const AppState& state, const Pen& pen) {
     const glm::dvec2 size(state.picture_size());
     const Session& session = state.session;
-    // Inside, the length is that at the wall ahead; outside, at the volume's centre.
-    const auto bar =
-        edgesplat::scale_bar(session.volume(), session.motion().camera(), state.picture_size().y, 0.2 * size.x);
+    // Where there is a wall ahead the length is that at its depth, else at the depth of the volume's centre.
+    const edgesplat::Camera& camera = session.motion().camera();
+    auto bar = edgesplat::scale_bar(session.volume(), camera, state.picture_size().y, 0.2 * size.x);
+    const double ahead = session.walls() ? session.walls()->free_way(camera.eye, camera.direction) : 0;
+    if (ahead > 0 && std::isfinite(ahead))
+        bar = edgesplat::scale_bar(edgesplat::viewer::pixel_size(camera, state.picture_size(), ahead), 0.2 * size.x);
     if (!bar) return;
     const glm::dvec2 right(size.x - pen.em, size.y - 1.2 * pen.em), left(right.x - bar->pixels, right.y);
     pen.line(left, right, kInk, 2);
@@ -132,9 +135,16 @@ Placed whole(CanvasPicture& picture, const glm::ivec4& at) {
     return {&picture, {0, 0, 1, 1}, at};
 }
 
-}  // namespace
+/// Made only while it is shown.
+void make_sharpening(AppState& state) {
+    const auto &edges = state.last_edges, &plain = state.last_plain;
+    const bool both = edges.width > 0 && edges.width == plain.width && edges.height == plain.height;
+    if (state.session.show() != Show::Sharpening || !state.sharpening_due || !both) return;
+    state.sharpening.set(edgesplat::viewer::sharpening_picture(edges, plain));
+    state.sharpening_due = false;
+}
 
-void take_pictures(AppState& state) {
+void take_newest(AppState& state) {
     if (!state.drawer) return;
     if (std::string error = state.drawer->take_error(); !error.empty()) state.error = std::move(error);
     auto picture = state.drawer->take();
@@ -142,13 +152,20 @@ void take_pictures(AppState& state) {
     state.edges.set(edgesplat::viewer::screen_picture(picture->color));
     if (picture->plain) {
         state.plain.set(edgesplat::viewer::screen_picture(*picture->plain));
-        if (state.session.show() == Show::Sharpening)
-            state.sharpening.set(edgesplat::viewer::sharpening_picture(picture->color, *picture->plain));
+        state.last_plain = std::move(*picture->plain);
     }
-    picture->color = {};
+    state.last_edges = std::move(picture->color);
+    state.sharpening_due = true;
     picture->plain.reset();
     state.shown = std::move(*picture);
     state.fresh = true;
+}
+
+}  // namespace
+
+void take_pictures(AppState& state) {
+    take_newest(state);
+    make_sharpening(state);
 }
 
 void place_pictures(AppState& state) {

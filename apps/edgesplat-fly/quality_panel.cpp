@@ -2,6 +2,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include "apps/edgesplat-fly/panels.h"
@@ -97,6 +98,12 @@ void quality_panel(AppState& state) {
         if (knob.used(now)) step_slider(state, knob);
     bool best = state.session.best_when_still();
     if (ImGui::Checkbox("accurate on standstill", &best)) state.session.set_best_when_still(best);
+    constexpr std::array<const char*, 3> kRays{"splats", "rays on a processor", "rays"};
+    int rays = static_cast<int>(state.rays);
+    if (ImGui::Combo("in motion", &rays, kRays.data(), static_cast<int>(kRays.size()))) {
+        state.rays = static_cast<edgesplat::viewer::Drawer::Options::Rays>(rays);
+        state.drawer->set_rays(state.rays);
+    }
     auto target = static_cast<float>(state.target);
     if (ImGui::SliderFloat("ms in motion", &target, 5, 1000, "%.0f", ImGuiSliderFlags_Logarithmic)) {
         state.target = state.preferences.target = static_cast<double>(target);

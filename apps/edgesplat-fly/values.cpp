@@ -47,6 +47,7 @@ const Values& values() {
         {"finished", [](AppState& s) { return s.shown && s.shown->finished ? "yes" : "no"; }},
         {"best", [](AppState& s) { return s.shown && s.shown->best ? "yes" : "no"; }},
         {"moving", [](AppState& s) { return s.shown && s.shown->moving ? "yes" : "no"; }},
+        {"rays", [](AppState& s) { return s.shown && s.shown->rung.rays ? "yes" : "no"; }},
         {"level", [](AppState& s) { return text(s.shown ? s.shown->rung.level : -1); }},
         {"scale", [](AppState& s) { return text(s.shown ? s.shown->rung.scale : 0); }},
         {"splats", [](AppState& s) { return text(s.shown ? static_cast<double>(s.shown->stats.splats_drawn) : 0); }},

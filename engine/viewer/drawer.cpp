@@ -17,7 +17,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 // Voxels that are estimated and collected within a picture's time.
-constexpr std::size_t kQuickVoxelsSoftware = std::size_t{3} << 16U, kQuickVoxels = std::size_t{1} << 25U;
+constexpr std::size_t kQuickVoxelsSoftware = std::size_t{1} << 17U, kQuickVoxels = std::size_t{1} << 25U;
 
 /// A picture that comes this soon needs no coarser one before it, milliseconds.
 constexpr double kSoon = 350;
@@ -65,13 +65,19 @@ struct Drawer::Job {
 
 int Drawer::coarsest_level(const Volume& volume, bool software) {
     const std::size_t most = software ? kQuickVoxelsSoftware : kQuickVoxels;
+    // In memory any level can be made; a file has those that it has.
+    constexpr int kFewest = 24;  // voxels along the longest axis, below which nothing can be made out
+    const auto has = [&](int level) {
+        const glm::ivec3 dims = level_geometry(volume.geometry, level).dims;
+        return volume.values.empty() ? level < level_count(volume) : std::max({dims.x, dims.y, dims.z}) >= kFewest;
+    };
     int level = 0;
-    while (level + 1 < level_count(volume) && level_geometry(volume.geometry, level).voxel_count() > most)
+    while (has(level + 1) && level_geometry(volume.geometry, level).voxel_count() > most)
         ++level;
     return level;
 }
 
-Drawer::Drawer(Options options) : options_(std::move(options)), target_(options_.target) {
+Drawer::Drawer(Options options) : options_(std::move(options)), target_(options_.target), rays_(options_.rays) {
     if (options_.threaded) thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
@@ -110,6 +116,11 @@ void Drawer::set_target(double milliseconds) {
     target_ = milliseconds;
 }
 
+void Drawer::set_rays(Options::Rays rays) {
+    const std::lock_guard lock(mutex_);
+    rays_ = rays;
+}
+
 std::size_t Drawer::renderers() const {
     const std::lock_guard lock(renderers_mutex_);
     return renderers_.size();
@@ -135,7 +146,10 @@ std::optional<DrawnPicture> Drawer::draw_next() {
         if (!wanted_) return std::nullopt;
         job = std::move(wanted_);
         drawing_ = true;
-        if (pace_) pace_->set_target(target_);
+        for (auto* pace : {&pace_, &ray_pace_})
+            if (*pace) (*pace)->set_target(target_);
+        options_.target = target_;
+        options_.rays = rays_;
     }
     std::optional<DrawnPicture> picture;
     try {
@@ -177,6 +191,13 @@ bool Drawer::is_software() {
     return *software_;
 }
 
+bool Drawer::casts_rays(const DrawRequest& request) {
+    using Rays = Options::Rays;
+    const bool wanted = options_.rays == Rays::Always || (options_.rays == Rays::OnProcessor && is_software());
+    return wanted && !request.plain && !request.volume->values.empty() && beyond_ray_casting(request.scene).empty() &&
+           request.settings.edges != EdgeEstimator::Off;
+}
+
 void Drawer::plan(Job& job) {
     if (job.planned) return;
     job.planned = true;
@@ -187,12 +208,17 @@ void Drawer::plan(Job& job) {
         still_times_.clear();
         coarse_.reset();
         pace_.reset();
+        ray_pace_.reset();
         volume_ = job.request.volume;
     }
-    if (!pace_) pace_.emplace(target_, coarsest_level(*volume_, is_software()));
+    if (!pace_) {
+        pace_.emplace(options_.target, coarsest_level(*volume_, is_software()));
+        ray_pace_.emplace(options_.target, 0, true);
+    }
     forget_unused(job);
     using Stage = Job::Stage;
-    const Stage quick{pace_->rung()};
+    const bool rays = casts_rays(job.request);
+    const Stage quick{pace_of(rays).rung()};
     if (job.request.moving) {
         job.stages = {quick};
         return;
@@ -204,8 +230,8 @@ void Drawer::plan(Job& job) {
         return known != still_times_.end() ? known->second : 1e9;
     };
     if (time(1) <= kSoon) return;
-    job.stages.push_back({{0, kHalfScale}});
-    if (time(kHalfScale) > kSoon) job.stages.push_back(quick);
+    if (!rays) job.stages.push_back({{0, kHalfScale}});
+    if (rays || time(kHalfScale) > kSoon) job.stages.push_back(quick);
 }
 
 void Drawer::forget_unused(const Job& job) {
@@ -258,11 +284,12 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     }
     if (kind == Kind::Plain) settings = without_edges(settings);
     const glm::ivec2 size = scaled(request.size, rung.scale);
-    RenderResult result = renderer.render(scene, request.camera, settings, size.x, size.y);
+    RenderResult result = rung.rays ? renderer.raycast(scene, request.camera, settings, {}, size.x, size.y)
+                                    : renderer.render(scene, request.camera, settings, size.x, size.y);
     out.setup += result.stats.setup_milliseconds + result.stats.pipeline_milliseconds;
     if (kind != Kind::Plain) out.stats = std::move(result.stats);
     const std::lock_guard lock(renderers_mutex_);
-    renderers_.at(key).scene_number = request.scene_number;
+    if (!rung.rays) renderers_.at(key).scene_number = request.scene_number;
     std::uint64_t bytes = 0, messages = messages_before_;
     for (const auto& [other, held] : renderers_) {
         bytes += held.renderer->held_bytes();
@@ -285,16 +312,16 @@ DrawnPicture Drawer::draw(const Job& job) {
     out.color = draw_kind(stage.best ? Kind::Best : Kind::Warped, job, stage.rung, out);
     if (job.request.plain) out.plain = draw_kind(Kind::Plain, job, stage.rung, out);
     out.milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    const bool hurried = stage.rung.scale < 1 || stage.rung.level > 0;
-    if (!frozen_ && stage.rung == pace_->rung() && (job.request.moving || hurried)) {
+    const bool hurried = stage.rung.scale < 1 || stage.rung.level > 0 || stage.rung.rays;
+    Pace& pace = pace_of(stage.rung.rays);
+    if (!frozen_ && stage.rung == pace.rung() && (job.request.moving || hurried)) {
         const auto finer = renderers_.find({stage.rung.level - 1, Kind::Warped});
-        pace_->drawn(out.milliseconds, std::min(out.setup, out.milliseconds),
-                     finer != renderers_.end() && finer->second.scene_number == job.request.scene_number);
+        pace.drawn(out.milliseconds, std::min(out.setup, out.milliseconds),
+                   finer != renderers_.end() && finer->second.scene_number == job.request.scene_number);
     }
-    if (stage.rung.level == 0 && !stage.best) still_times_[stage.rung.scale] = out.milliseconds - out.setup;
-    if (job.request.moving || (hurried && (!coarse_ || coarse_->number != job.number || coarse_->rung.level == 0))) {
-        if (!coarse_ || coarse_->number != job.number) coarse_ = out;
-    }
+    if (stage.rung.level == 0 && !stage.rung.rays && !stage.best)
+        still_times_[stage.rung.scale] = out.milliseconds - out.setup;
+    if (hurried && (!coarse_ || coarse_->number != job.number)) coarse_ = out;
     if (!hurried && coarse_ && coarse_->number == job.number) {
         out.coarse_error = rms_when_spread(coarse_->color, out.color);
         out.coarse_rung = coarse_->rung;

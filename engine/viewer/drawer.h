@@ -53,7 +53,10 @@ class Drawer {
         DeviceChoice device;
         std::uint64_t memory_budget = 0;  ///< bytes for each renderer; 0: what the device has
         double target = 150;              ///< milliseconds a picture may take while something moves
-        bool threaded = true;             ///< else pictures are drawn by `take`
+        /// Where pictures in motion are cast with rays if the scene can be (`beyond_ray_casting`): on a processor they
+        /// are there several times as soon as splats.
+        enum class Rays { Never, OnProcessor, Always } rays = Rays::OnProcessor;
+        bool threaded = true;  ///< else pictures are drawn by `take`
     };
     explicit Drawer(Options options);
     ~Drawer();
@@ -70,6 +73,7 @@ class Drawer {
     /// What went wrong since the last call; empty: nothing. The next request is tried anew.
     std::string take_error();
     void set_target(double milliseconds);
+    void set_rays(Options::Rays rays);
     /// Pictures in motion keep the resolution that they have, whatever they take: the same ones on every machine.
     void freeze_pace(bool on) { frozen_ = on; }
     /// Bytes that the renderers hold on the device.
@@ -98,6 +102,8 @@ class Drawer {
     std::optional<DrawnPicture> draw_next();
     DrawnPicture draw(const Job& job);
     Image draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPicture& out);
+    bool casts_rays(const DrawRequest& request);
+    Pace& pace_of(bool rays) { return rays ? *ray_pace_ : *pace_; }
     Renderer& renderer_for(const Key& key, const Job& job);
     std::shared_ptr<const Volume> level_of(const std::shared_ptr<const Volume>& volume, int level);
     void forget_unused(const Job& job);
@@ -113,6 +119,7 @@ class Drawer {
     std::string error_;
     bool drawing_ = false;
     double target_;
+    Options::Rays rays_;
 
     std::atomic<bool> frozen_{false};
     std::atomic<std::uint64_t> asked_{0}, device_bytes_{0}, validation_messages_{0};
@@ -123,7 +130,7 @@ class Drawer {
     std::optional<bool> software_;
     std::shared_ptr<const Volume> volume_;
     std::map<int, std::shared_ptr<const Volume>> levels_;
-    std::optional<Pace> pace_;
+    std::optional<Pace> pace_, ray_pace_;
     std::optional<DrawnPicture> coarse_;    ///< the last one drawn in haste
     std::map<double, double> still_times_;  ///< milliseconds by scale, level 0
     std::uint64_t messages_before_ = 0;     ///< of renderers that are gone

@@ -7,7 +7,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr std::array<double, 8> kScales{0.125, 0.1875, 0.25, 0.375, 0.5, 0.625, 0.75, 1.0};
+constexpr std::array<double, 10> kScales{0.0625, 0.09375, 0.125, 0.1875, 0.25, 0.375, 0.5, 0.625, 0.75, 1.0};
 
 // Shares of the target: what a picture should take, what sends the next one down, and what the next step up may be
 // expected to take.
@@ -37,17 +37,19 @@ std::span<const double> pace_scales() {
     return kScales;
 }
 
-Pace::Pace(double target, int coarsest) : target_(target), coarsest_(coarsest) {
+Pace::Pace(double target, int coarsest, bool rays) : target_(target), coarsest_(rays ? 0 : coarsest) {
+    rung_.rays = rays;
     restart();
 }
 
 void Pace::set_target(double milliseconds) {
+    if (milliseconds == target_) return;
     target_ = milliseconds;
     calm_ = 0;
 }
 
 void Pace::restart() {
-    rung_ = {coarsest_, kLeastScale};
+    rung_ = {coarsest_, kLeastScale, rung_.rays};
     calm_ = 0;
     since_finer_ = -1;
     finer_blocked_ = finer_penalty_ = 0;

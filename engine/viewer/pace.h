@@ -6,11 +6,12 @@
 
 namespace edgesplat::viewer {
 
-/// How coarse a picture is: the volume's resolution (voxels of 2^level along each axis), and its width and height as a
-/// share of the window's.
+/// How coarse a picture is: the volume's resolution (voxels of 2^level along each axis), its width and height as a
+/// share of the window's, and whether rays are cast through the values in place of splatting.
 struct Rung {
     int level = 0;
     double scale = 1;
+    bool rays = false;
     bool operator==(const Rung&) const = default;
 };
 
@@ -21,8 +22,9 @@ std::span<const double> pace_scales();
 /// target, and up only after several that leave room, so that quality does not flicker.
 class Pace {
   public:
-    /// `target`: milliseconds that a picture may take, > 0. Levels 0 to `coarsest` may be drawn.
-    Pace(double target, int coarsest);
+    /// `target`: milliseconds that a picture may take, > 0. Levels 0 to `coarsest` may be drawn, or with `rays` level 0
+    /// alone.
+    Pace(double target, int coarsest, bool rays = false);
 
     void set_target(double milliseconds);
     double target() const { return target_; }
