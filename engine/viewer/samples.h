@@ -22,8 +22,6 @@ class Samples {
     double at(const glm::ivec3& i) const;
     /// Trilinear; positions outside the voxels' centres have the value of the nearest point between them.
     double linear(const glm::dvec3& voxel) const;
-    /// Tensor product of Catmull-Rom splines (Keys 1981, a = -1/2): goes through the samples, third order.
-    double cubic(const glm::dvec3& voxel) const;
     /// The eight samples around the cell whose lowest corner is `cell`; bit k of the place is the step along axis k.
     std::array<double, 8> corners(const glm::ivec3& cell) const;
     /// Central differences of `linear` at distance 1 voxel; per voxel along each axis.

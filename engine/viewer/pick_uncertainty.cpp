@@ -1,0 +1,154 @@
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "engine/viewer/pick_internal.h"
+#include "engine/volume/filters.h"
+
+namespace edgesplat::viewer {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Along a ray the place nearest to t, at most two voxels away, where `field` reaches `value`.
+template <typename Field>
+std::optional<double> crossing_near(const Field& field, const IndexRay& ray, double t, double value) {
+    const double voxel = 1 / glm::length(ray.step), step = voxel / 4;
+    const auto f = [&](double at) { return field(ray.at(at)) - value; };
+    const double here = f(t);
+    double before = here, after = here;
+    for (int k = 1; k <= 8; ++k) {
+        const double back = f(t - k * step), on = f(t + k * step);
+        const bool crossed_back = (back > 0) != (before > 0), crossed_on = (on > 0) != (after > 0);
+        const double there = crossed_on ? bisected(f, t + (k - 1) * step, t + k * step) : kInfinity;
+        const double behind = crossed_back ? bisected(f, t - k * step, t - (k - 1) * step) : kInfinity;
+        if (crossed_on || crossed_back) return std::abs(there - t) < std::abs(behind - t) ? there : behind;
+        before = back;
+        after = on;
+    }
+    return std::nullopt;
+}
+
+/// Samples around a place, sorted.
+std::array<double, 64> samples_around(const Samples& samples, const glm::dvec3& voxel) {
+    const glm::ivec3 low = glm::ivec3(glm::floor(voxel)) - 1;
+    std::array<double, 64> values{};
+    for (int k = 0; k < 64; ++k)
+        values[static_cast<std::size_t>(k)] = samples.at(low + glm::ivec3(k & 3, (k >> 2) & 3, k >> 4));
+    std::sort(values.begin(), values.end());
+    return values;
+}
+
+/// The step that all differences of sorted values are multiples of: of quantisation, or of yes-or-no data. 0 where
+/// there is none.
+double common_step(const std::array<double, 64>& values) {
+    const double least = 1e-4 * (values.back() - values.front());
+    double step = 0;
+    for (std::size_t i = 1; i < values.size(); ++i) {
+        // Euclid's algorithm; remainders are to the nearest multiple, so that rounding does not make them whole steps.
+        double other = values[i] - values[i - 1];
+        while (other > least) {
+            const double rest = step > 0 ? std::abs(std::remainder(step, other)) : 0;
+            step = other;
+            other = rest;
+        }
+    }
+    return step;
+}
+
+/// By how much the value at a contour may be wrong without the samples showing it.
+double value_uncertainty(const Samples& samples, const glm::dvec3& voxel) {
+    const std::array<double, 64> values = samples_around(samples, voxel);
+    const double range = values.back() - values.front();
+    if (!(range > 0)) return 0;
+    // Of an edge so sharp that half of its height and more lies between neighbouring samples they hardly tell the
+    // place: of Gaussian edges of 0.2 to 0.6 voxel's blur trilinear interpolation is off by as much as this.
+    const std::array<double, 8> v = samples.corners(glm::ivec3(glm::floor(voxel)));
+    double steepness = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+        for (const std::size_t axis : {1U, 2U, 4U})
+            steepness = std::max(steepness, std::abs(v[k | axis] - v[k]));
+    const double voxels_off = 0.55 * std::clamp(steepness / range - 0.48, 0.0, 0.52);
+    const double stored = samples.volume().packed ? samples.volume().packed->quantisation_error() : 0;
+    return std::max(common_step(values) / 2, voxels_off * steepness) + stored;
+}
+
+/// The cubic B-spline through the samples near a place, of fourth order where trilinear interpolation is of second.
+/// What lies more than 5 voxels beyond the crossings looked for counts for less than 1/700.
+class LocalSpline {
+  public:
+    LocalSpline(const Samples& samples, const glm::dvec3& center) {
+        constexpr int kHalf = 9;
+        const glm::ivec3 last = samples.volume().geometry.dims - 1, middle(glm::round(center));
+        low_ = glm::clamp(middle - kHalf, glm::ivec3(0), last);
+        dims_ = glm::clamp(middle + kHalf, glm::ivec3(0), last) - low_ + 1;
+        std::vector<float> block;
+        glm::ivec3 i;
+        for (i.z = 0; i.z < dims_.z; ++i.z)
+            for (i.y = 0; i.y < dims_.y; ++i.y)
+                for (i.x = 0; i.x < dims_.x; ++i.x)
+                    block.push_back(static_cast<float>(samples.at(low_ + i)));
+        coefficients_ = bspline_coefficients(block, dims_);
+    }
+
+    double operator()(const glm::dvec3& voxel) const {
+        const glm::dvec3 p = glm::clamp(voxel - glm::dvec3(low_), glm::dvec3(0), glm::dvec3(dims_ - 1));
+        const glm::ivec3 cell(p);
+        std::array<std::array<double, 4>, 3> w{};
+        std::array<std::array<int, 4>, 3> at{};
+        for (int axis = 0; axis < 3; ++axis) {
+            const auto k = static_cast<std::size_t>(axis);
+            const double t = p[axis] - cell[axis], u = 1 - t;
+            w[k] = {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
+                    t * t * t / 6};
+            const int last = dims_[axis] - 1;
+            for (int j = 0; j < 4; ++j) {  // mirrored
+                const int place = std::abs(cell[axis] + j - 1);
+                at[k][static_cast<std::size_t>(j)] = std::clamp(place > last ? 2 * last - place : place, 0, last);
+            }
+        }
+        double sum = 0;
+        for (std::size_t z = 0; z < 4; ++z)
+            for (std::size_t y = 0; y < 4; ++y)
+                for (std::size_t x = 0; x < 4; ++x)
+                    sum += w[0][x] * w[1][y] * w[2][z] *
+                           static_cast<double>(coefficients_[static_cast<std::size_t>(
+                               (at[2][z] * dims_.y + at[1][y]) * dims_.x + at[0][x])]);
+        return sum;
+    }
+
+  private:
+    glm::ivec3 low_{0}, dims_{1};
+    std::vector<float> coefficients_;
+};
+
+}  // namespace
+
+double contour_uncertainty(const Samples& samples, const IndexRay& ray, double t, double value) {
+    const double voxel = 1 / glm::length(ray.step);
+    const auto linear = [&](const glm::dvec3& p) { return samples.linear(p); };
+    const LocalSpline spline(samples, ray.at(t));
+    // The two agree here and there by chance: rays beside this one are asked too.
+    const glm::dvec3 along = ray.step * voxel;
+    const glm::dvec3 other = std::abs(along.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
+    const glm::dvec3 side = glm::normalize(glm::cross(along, other)), up = glm::cross(side, along);
+    double disagreement = 0;
+    for (int k = 0; k < 5; ++k) {
+        IndexRay beside = ray;
+        if (k > 0) beside.origin += (k % 2 == 0 ? 0.4 : -0.4) * (k < 3 ? side : up);
+        const auto own = k == 0 ? std::optional(t) : crossing_near(linear, beside, t, value);
+        if (!own) continue;
+        const auto theirs = crossing_near(spline, beside, *own, value);
+        disagreement = std::max(disagreement, theirs ? std::abs(*theirs - *own) : 2 * voxel);
+    }
+    constexpr double h = 0.05;  // voxels
+    const double slope = std::abs(linear(ray.at(t + h * voxel)) - linear(ray.at(t - h * voxel))) / (2 * h * voxel);
+    const double off = value_uncertainty(samples, ray.at(t));
+    // Twice: measured on edges of 0.6 to 1 voxel's blur, the error is within it for more than 95 rays in 100.
+    return 2 * disagreement + (off > 0 ? std::min(off / std::max(slope, 1e-300), 2 * voxel) : 0);
+}
+
+}  // namespace edgesplat::viewer
