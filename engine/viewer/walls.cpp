@@ -12,6 +12,10 @@
 namespace edgesplat::viewer {
 namespace {
 
+/// Diagonals of a cell within which surfaces are looked for themselves. Beyond, the distance to where they cross edges
+/// of the grid is too large by a tenth of a diagonal at most.
+constexpr double kNear = 1.25;
+
 std::shared_ptr<const Volume> of_bounded_size(std::shared_ptr<const Volume> volume) {
     if (!volume) fail("walls: no volume");
     if (volume->packed) {
@@ -97,7 +101,7 @@ struct Walls::Matter {
             const glm::dvec3 to_node = geometry.index_to_world_axes * (index - glm::dvec3(i));
             radius = std::min(radius, glm::length(to_node) + std::abs(d));
         }
-        if (std::abs(mean) > 2 * diagonal) return mean;
+        if (std::abs(mean) > kNear * diagonal) return mean;
         const auto nearest = nearest_on_surface(field, values, crossed, index, radius * (1 + 1e-9));
         const double size = nearest ? glm::length(*nearest - geometry.index_to_world_axes * index) : std::abs(mean);
         return values.solid(field.value(index)) ? -size : size;

@@ -14,7 +14,7 @@ namespace edgesplat::viewer {
 /// Solid is the matter of which one voxel (the mean of the three spacings) lets at most half of the light through:
 /// extinction >= ln 2 / spacing at the interpolated value, by material or transfer function, inside the box of the
 /// volume (half a voxel beyond the outermost centres) and not cut away. Distances are in mm, negative inside. Within
-/// about three voxels of a surface they are those to the surface of the trilinear field itself; further away an exact
+/// about two voxels of a surface they are those to the surface of the trilinear field itself; further away an exact
 /// Euclidean distance transform (Felzenszwalb and Huttenlocher 2012) to all places where that surface crosses an edge
 /// of the grid. At corners of clip planes and outside the volume they are lower bounds. Constant, and thread-safe.
 class Walls {

@@ -171,6 +171,10 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
     const glm::ivec3 low = glm::max(glm::ivec3(glm::floor(index - reach)), glm::ivec3(-1));
     const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(index + reach)), dims - 1);
     const glm::dvec3 thickness = 1.0 / glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
+    const glm::dmat3& axes = geometry.index_to_world_axes;
+    const double skew = std::abs(glm::dot(axes[0], axes[1])) + std::abs(glm::dot(axes[1], axes[2])) +
+                        std::abs(glm::dot(axes[2], axes[0]));
+    const bool orthogonal = skew < 1e-6 * glm::dot(thickness, thickness);
     Nearest nearest{radius * radius};
     glm::ivec3 c;
     for (c.z = low.z; c.z <= high.z; ++c.z)
@@ -185,9 +189,9 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
                     continue;
                 const glm::dvec3 gap =
                     glm::max(glm::max(glm::dvec3(c) - index, index - glm::dvec3(c + 1)), glm::dvec3(0)) * thickness;
-                // Along one axis, whatever the angles between them.
-                const double apart = std::max({gap.x, gap.y, gap.z});
-                if (apart * apart > nearest.square) continue;
+                // Between axes that are not orthogonal only the one that is furthest counts.
+                const double widest = std::max({gap.x, gap.y, gap.z});
+                if ((orthogonal ? glm::dot(gap, gap) : widest * widest) > nearest.square) continue;
                 const std::array<double, 8> v = field.corners(c);
                 const auto [least, most] = std::minmax_element(v.begin(), v.end());
                 const int first = values.interval(*least), last = values.interval(*most);

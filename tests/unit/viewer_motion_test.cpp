@@ -428,7 +428,7 @@ TEST(ViewerMotion, LeavesMatterItWasPutInto) {
         std::mt19937 engine(11);
         std::uniform_real_distribution<double> any(2, 45);
         int tried = 0;
-        while (tried < 20) {
+        while (tried < 10) {
             const glm::dvec3 place(any(engine), any(engine), any(engine));
             if (cavity.room(place) > -1) continue;
             ++tried;
