@@ -20,9 +20,8 @@ struct Slice {
     // What the inverse needs.
     glm::ivec2 across{0, 1};  ///< axes of index space that go along rows and down columns
     glm::bvec2 turned{false};
-    double depth = 0;      ///< voxel along `axis`
-    double voxels = 1;     ///< of the volume per pixel; more than 1 where a packed volume is shown coarsely
-    glm::dvec2 extent{1};  ///< voxels of the volume across and down
+    double depth = 0;   ///< voxel along `axis`
+    double voxels = 1;  ///< of the volume per pixel; more than 1 where a packed volume is shown coarsely
 };
 
 /// The slice of voxels nearest to `voxel` (index space; clamped to the volume) perpendicular to an axis 0..2. A packed
