@@ -30,6 +30,8 @@ class History {
         at_ = states_.size() - 1;
     }
 
+    /// Whether the state of now is one on the way.
+    bool on_the_way() const { return dragged_.has_value(); }
     bool can_undo() const { return at_ > 0 || dragged_; }
     bool can_redo() const { return at_ + 1 < states_.size() && !dragged_; }
     void undo() {

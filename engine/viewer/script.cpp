@@ -15,7 +15,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr std::array<ScriptVerb, 24> kVerbs{{
+constexpr std::array<ScriptVerb, 26> kVerbs{{
     {"size", "nn", "width and height of the window's content, pixels"},
     {"step", "n", "seconds from frame to frame from here on (1/60)"},
     {"quality", "w", "of pictures in motion: measured (by the clock), or fixed (level and size that do not change)"},
@@ -24,6 +24,8 @@ constexpr std::array<ScriptVerb, 24> kVerbs{{
     {"settle", "", "lets frames pass until no better picture comes"},
     {"move", "nn", "the mouse goes to a pixel, from the window's top left corner"},
     {"drag", "nnn", "the mouse goes to a pixel in so many frames"},
+    {"aim", "wnn", "the mouse goes to a widget, to shares of its width and height: aim scene.histogram 0.5 0.2"},
+    {"tap", "w", "left button, down and up in the middle of a widget"},
     {"press", "b", "a mouse button goes down: left, right, middle"},
     {"release", "b", "it comes up"},
     {"click", "nn", "left button, down and up at a pixel"},

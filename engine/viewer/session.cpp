@@ -50,7 +50,7 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     motion_.set_center(center_of(opened_.volume->geometry));
     tour_.clear();
     recorder_ = {};
-    picks_.clear();
+    clear_picks();
     walls_.reset();
     message_.clear();
     apply();
@@ -70,8 +70,8 @@ void Session::apply() {
 
 void Session::edit(const std::function<void(SceneDocument&)>& change, bool finished) {
     SceneDocument document = history_->now();
-    change(document);
     try {
+        change(document);
         validate(document.quality.settings);
         resolve_scene(document, *opened_.volume);
     } catch (const Error& error) {
@@ -81,6 +81,10 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
     const bool same_scene = document == history_->now();
     history_->change(std::move(document), finished);
     if (!same_scene) apply();
+}
+
+void Session::finish_edit() {
+    if (is_open() && history_->on_the_way()) history_->change(SceneDocument(history_->now()), true);
 }
 
 void Session::undo() {
@@ -152,8 +156,15 @@ void Session::step(const Controls& controls, double seconds) {
 
 bool Session::pick_at(const glm::dvec2& pixel, const glm::ivec2& size) {
     const auto found = pick(volume(), scene_, motion_.camera(), size, pixel);
-    if (found) picks_.push_back(*found);
-    return found.has_value();
+    if (!found) return false;
+    picks_.push_back(*found);
+    point_ = found->world;
+    return true;
+}
+
+void Session::clear_picks() {
+    picks_.clear();
+    point_.reset();
 }
 
 bool Session::fly_to(const glm::dvec2& pixel, const glm::ivec2& size) {

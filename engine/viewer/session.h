@@ -51,6 +51,8 @@ class Session {
 
     /// Changes the document; `finished`: undo comes back to it. A change that cannot be drawn is refused and said.
     void edit(const std::function<void(SceneDocument&)>& change, bool finished = true);
+    /// Ends changes that were not finished: undo comes back to what is now. Without any, nothing happens.
+    void finish_edit();
     void undo();
     void redo();
     bool can_undo() const { return is_open() && history_->can_undo(); }
@@ -77,7 +79,10 @@ class Session {
     /// Flies there and makes it the centre that one turns about. Whether there is a surface.
     bool fly_to(const glm::dvec2& pixel, const glm::ivec2& size);
     const std::vector<Pick>& picks() const { return picks_; }
-    void clear_picks() { picks_.clear(); }
+    void clear_picks();
+    /// The place that slices go through, world mm: the last pick, or what was set since; none where there is neither.
+    const std::optional<glm::dvec3>& point() const { return point_; }
+    void set_point(const glm::dvec3& world) { point_ = world; }
     std::optional<Ruler> ruler() const;
 
     /// What is to be drawn for a window's picture of that size; nothing if that is what was asked for last.
@@ -111,6 +116,7 @@ class Session {
     std::future<std::shared_ptr<const Walls>> walls_to_come_;
     bool walls_outdated_ = false;
     std::vector<Pick> picks_;
+    std::optional<glm::dvec3> point_;
     Show show_ = Show::Edges;
     double wipe_ = 0.5;
     bool best_ = false;
