@@ -11,6 +11,7 @@
 #include "apps/edgesplat-fly/picture_view.h"
 #include "engine/error.h"
 #include "engine/image_file.h"
+#include "engine/scene/nearest_name.h"
 #include "engine/viewer/keeping.h"
 
 namespace {
@@ -21,7 +22,8 @@ namespace viewer = edgesplat::viewer;
 constexpr const char* kBuiltin = "builtin:cube-hole";
 constexpr const char* kProgram = "edgesplat-fly " EDGESPLAT_VERSION;
 constexpr double kTargetSoftware = 150, kTarget = 33;
-constexpr double kTextSize = 15;  // pixels, on a screen of the usual density
+constexpr double kSlicesShare = 0.34, kSlicesMost = 24;  // of the width beside the panels; lengths of text
+constexpr double kTextSize = 15;                         // pixels, on a screen of the usual density
 // Seconds that one waits for something to happen: while something moves, is drawn, and never mind.
 constexpr double kWaitMoving = 0.004, kWaitBusy = 0.03, kWaitIdle = 0.5;
 
@@ -113,6 +115,7 @@ void App::close_gui() {
     canvas_.reset();
     for (CanvasPicture* picture : {&state_.edges, &state_.plain, &state_.sharpening})
         *picture = {};
+    state_.slice_pictures = {};
     state_.pictures.clear();
     if (device_) messages_ += device_->validation_messages();
     device_.reset();
@@ -200,7 +203,12 @@ void App::grant_wishes() {
 void App::lay_out(const Input& input) {
     const int line = static_cast<int>(std::lround(1.7 * state_.em));
     const int left = state_.panels ? std::min(static_cast<int>(std::lround(22 * state_.em)), input.size.x / 2) : 0;
-    state_.area = {left, 0, input.size.x, std::max(input.size.y - line, 1)};
+    const int bottom = std::max(input.size.y - line, 1), beside = input.size.x - left;
+    const bool slices = state_.slices && state_.session.is_open();
+    const int width = std::clamp(static_cast<int>(std::lround(kSlicesShare * beside)), 0,
+                                 static_cast<int>(std::lround(kSlicesMost * state_.em)));
+    state_.area = {left, 0, input.size.x - (slices ? width : 0), bottom};
+    state_.slices_area = {state_.area.z, 0, input.size.x, bottom};
     const glm::dvec2 at = input.mouse - glm::dvec2(state_.area.x, state_.area.y);
     const glm::dvec2 size(state_.picture_size());
     const bool inside = at.x >= 0 && at.y >= 0 && at.x < size.x && at.y < size.y;
@@ -209,6 +217,7 @@ void App::lay_out(const Input& input) {
 
 void App::show_panels() {
     const auto em = static_cast<float>(state_.em);
+    state_.places.clear();
     if (state_.panels) {
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize({static_cast<float>(state_.area.x), static_cast<float>(state_.area.w)});
@@ -232,6 +241,8 @@ void App::show_panels() {
         ImGui::End();
     }
     slices_window(state_);
+    // What a hand let go of is what undo comes back to.
+    if (!ImGui::IsAnyItemActive() && !state_.editing.clip.held) state_.session.finish_edit();
     status_line(state_, state_.area.w, canvas_->size().y - state_.area.w);
     help_window(state_);
     notices(state_);
@@ -279,7 +290,8 @@ void App::frame(const Input& input) {
 }
 
 bool App::is_busy() const {
-    return state_.drawer->busy() || state_.loading || !state_.writing.empty() || state_.session.tour().searching();
+    return state_.drawer->busy() || state_.loading || !state_.writing.empty() || state_.session.tour().searching() ||
+           state_.editing.counter.busy();
 }
 
 std::optional<Input> App::next_input() {
@@ -347,6 +359,16 @@ ScriptHost App::script_host() {
         times_.clear();
     };
     host.fix_quality = [this](bool fixed) { state_.drawer->freeze_pace(fixed); };
+    host.widget = [this](const std::string& name) {
+        const auto found = state_.places.find(name);
+        if (found != state_.places.end()) return found->second;
+        std::vector<std::string> names;
+        for (const auto& [known, place] : state_.places)
+            names.push_back(known);
+        const std::string nearest = edgesplat::nearest_name(name, names);
+        edgesplat::fail("'{}' is no widget that can be seen now{}", name,
+                        nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
+    };
     host.value = [this](const std::string& name) { return value(name); };
     return host;
 }

@@ -1,8 +1,10 @@
 // What the parts of the window share: the session, and how it is looked at.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +12,8 @@
 
 #include "apps/edgesplat-fly/canvas.h"
 #include "apps/edgesplat-fly/input.h"
+#include "apps/edgesplat-fly/scene_editing.h"
+#include "apps/edgesplat-fly/slice_pictures.h"
 #include "engine/viewer/preferences.h"
 #include "engine/viewer/session.h"
 
@@ -55,7 +59,8 @@ struct AppState {
     CanvasPicture edges, plain, sharpening;
     std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
 
-    glm::ivec4 area{0};  ///< of the picture in the window: left, top, right, bottom
+    glm::ivec4 area{0};         ///< of the picture in the window: left, top, right, bottom
+    glm::ivec4 slices_area{0};  ///< of the slices; empty without them
     Tool tool = Tool::Move;
     bool panels = true, help = false, slices = false;
     bool overlays = true;  ///< scale bar, orientation, picks
@@ -65,7 +70,14 @@ struct AppState {
     std::string error;                 ///< to be shown until it is clicked away
     std::optional<glm::dvec2> cursor;  ///< pixel of the picture below the mouse
 
-    explicit AppState(bool wait) : session(wait) {}
+    SceneEditing editing;
+    SliceView slice_view;
+    SlicePictures slice_pictures;
+    std::map<std::string, glm::dvec4> places;  ///< of widgets in the last frame, for scripts: left, top, right, bottom
+    std::string scope;                         ///< see Scope
+    bool wait;                                 ///< what else happens on threads is done before a frame ends
+
+    explicit AppState(bool waits) : session(waits), wait(waits) {}
     glm::ivec2 picture_size() const { return {area.z - area.x, area.w - area.y}; }
     /// A length of text and widgets, pixels.
     double em = 16;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "apps/edgesplat-fly/clip_handles.h"
 #include "engine/viewer/keeping.h"
 
 namespace {
@@ -214,7 +215,7 @@ Controls PictureControls::apply(AppState& state, const Input& input, bool over_p
         }
     }
     if (!state.session.is_open()) return {};
-    mouse(state, input, over_picture, controls);
+    if (!clip_handles(state, input, over_picture)) mouse(state, input, over_picture, controls);
     const Gamepad& pad = input.gamepad;
     controls.move += glm::dvec3(pad.left.x, pad.rise, pad.left.y);
     controls.look += 2.0 * input.seconds * state.preferences.turn * pad.right;

@@ -1,6 +1,8 @@
 // The panels: each one file. They show the state, and change it through the session or through wishes.
 #pragma once
 
+#include <functional>
+
 #include "apps/edgesplat-fly/app_state.h"
 
 void file_panel(AppState& state);
@@ -14,3 +16,16 @@ void status_line(AppState& state, double top, double height);
 void help_window(AppState& state);
 /// Progress while something is read, and what went wrong.
 void notices(AppState& state);
+
+// What the scene's panel is made of; a session must be open.
+void histogram_panel(AppState& state);
+/// Whether materials or a transfer function say what is seen.
+void color_source(AppState& state);
+void transfer_panel(AppState& state);
+void materials_panel(AppState& state);
+void lights_panel(AppState& state);
+void effects_panel(AppState& state);
+void clip_panel(AppState& state);
+/// A list of those presets that are transfer functions, or materials.
+void presets_choice(AppState& state, const char* label, bool transfer,
+                    const std::function<void(const edgesplat::ScenePreset&)>& take);

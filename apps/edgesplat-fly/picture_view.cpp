@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/edgesplat-fly/clip_handles.h"
+#include "apps/edgesplat-fly/pen.h"
 #include "engine/overlays.h"
 #include "engine/viewer/screen.h"
 
@@ -14,42 +16,7 @@ namespace {
 using edgesplat::viewer::Session;
 using edgesplat::viewer::Show;
 
-constexpr ImU32 kInk = IM_COL32(255, 255, 255, 230), kShade = IM_COL32(0, 0, 0, 160);
 constexpr ImU32 kPick = IM_COL32(255, 210, 60, 255), kPath = IM_COL32(90, 220, 255, 200);
-
-ImVec2 to_im(const glm::dvec2& p) {
-    return {static_cast<float>(p.x), static_cast<float>(p.y)};
-}
-
-/// Draws in the picture's pixels, on what is below all panels.
-struct Pen {
-    ImDrawList* list;
-    glm::dvec2 corner;
-    double em;
-
-    void line(const glm::dvec2& a, const glm::dvec2& b, ImU32 color, double width = 1.5) const {
-        list->AddLine(to_im(corner + a), to_im(corner + b), kShade, static_cast<float>(width + 2));
-        list->AddLine(to_im(corner + a), to_im(corner + b), color, static_cast<float>(width));
-    }
-    void dot(const glm::dvec2& at, double radius, ImU32 color) const {
-        list->AddCircleFilled(to_im(corner + at), static_cast<float>(radius + 1.5), kShade);
-        list->AddCircleFilled(to_im(corner + at), static_cast<float>(radius), color);
-    }
-    void text(const glm::dvec2& at, const std::string& words, ImU32 color = kInk) const {
-        const ImVec2 p = to_im(corner + at);
-        list->AddText({p.x + 1, p.y + 1}, kShade, words.c_str());
-        list->AddText(p, color, words.c_str());
-    }
-};
-
-/// A world line, cut where it passes the eye.
-void world_line(const AppState& state, const Pen& pen, const glm::dvec3& a, const glm::dvec3& b, ImU32 color) {
-    const auto& camera = state.session.motion().camera();
-    const auto from = edgesplat::viewer::project(camera, state.picture_size(), a);
-    const auto to = edgesplat::viewer::project(camera, state.picture_size(), b);
-    const double most = 4.0 * glm::length(glm::dvec2(state.picture_size()));
-    if (from && to && glm::length(*from) < most && glm::length(*to) < most) pen.line(*from, *to, color);
-}
 
 void draw_divider(const AppState& state, const Pen& pen) {
     const glm::dvec2 size(state.picture_size());
@@ -163,6 +130,15 @@ void take_newest(AppState& state) {
 
 }  // namespace
 
+void world_line(const AppState& state, const Pen& pen, const glm::dvec3& a, const glm::dvec3& b, ImU32 color,
+                double width) {
+    const auto& camera = state.session.motion().camera();
+    const auto from = edgesplat::viewer::project(camera, state.picture_size(), a);
+    const auto to = edgesplat::viewer::project(camera, state.picture_size(), b);
+    const double most = 4.0 * glm::length(glm::dvec2(state.picture_size()));
+    if (from && to && glm::length(*from) < most && glm::length(*to) < most) pen.line(*from, *to, color, width);
+}
+
 void take_pictures(AppState& state) {
     take_newest(state);
     make_sharpening(state);
@@ -208,5 +184,6 @@ void draw_over_picture(AppState& state) {
         draw_scale_bar(state, pen);
         draw_orientation(state, pen);
     }
+    draw_clip_handles(state, pen);
     list->PopClipRect();
 }

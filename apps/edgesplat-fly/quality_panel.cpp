@@ -93,7 +93,7 @@ void device_choice(AppState& state) {
 void quality_panel(AppState& state) {
     if (!state.session.is_open()) return;
     presets(state);
-    const Settings& now = state.session.document().quality.settings;
+    const Settings now = state.session.document().quality.settings;  // an edit would move it
     for (const Knob& knob : edgesplat::ladder())
         if (knob.used(now)) step_slider(state, knob);
     bool best = state.session.best_when_still();

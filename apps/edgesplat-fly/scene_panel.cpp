@@ -1,8 +1,56 @@
 #include <imgui.h>
 
 #include "apps/edgesplat-fly/panels.h"
+#include "apps/edgesplat-fly/widgets.h"
+
+namespace {
+
+/// What is kept between frames belongs to one volume.
+void begin_anew(AppState& state) {
+    const auto& volume = state.session.opened().volume;
+    SceneEditing& editing = state.editing;
+    if (editing.volume == volume) return;
+    editing.volume = volume;
+    editing.plot = {};
+    editing.plot.low = volume->min_value;
+    editing.plot.high = volume->max_value;
+    editing.put_away.clear();
+}
+
+void steps_back(AppState& state) {
+    auto& session = state.session;
+    ImGui::BeginDisabled(!session.can_undo());
+    if (button(state, "undo")) session.undo();
+    ImGui::EndDisabled();
+    ImGui::SameLine();
+    ImGui::BeginDisabled(!session.can_redo());
+    if (button(state, "redo")) session.redo();
+    ImGui::EndDisabled();
+}
+
+void values_panel(AppState& state) {
+    color_source(state);
+    histogram_panel(state);
+    if (!state.session.document().transfer.empty()) transfer_panel(state);
+    materials_panel(state);
+}
+
+}  // namespace
 
 void scene_panel(AppState& state) {
     if (!state.session.is_open()) return;
-    ImGui::TextUnformatted("...");
+    begin_anew(state);
+    const Scope scope(state, "scene");
+    steps_back(state);
+    if (!ImGui::BeginTabBar("parts")) return;
+    constexpr std::array<std::pair<const char*, void (*)(AppState&)>, 4> kParts{
+        {{"Values", values_panel}, {"Light", lights_panel}, {"Effects", effects_panel}, {"Clip", clip_panel}}};
+    for (const auto& [name, panel] : kParts) {
+        const bool open = ImGui::BeginTabItem(name);
+        note(state, name);
+        if (!open) continue;
+        panel(state);
+        ImGui::EndTabItem();
+    }
+    ImGui::EndTabBar();
 }

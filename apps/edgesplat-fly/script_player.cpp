@@ -113,6 +113,12 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
                 in.mouse += (to - in.mouse) / static_cast<double>(left);
             });
     }
+    if (c.verb == "aim") aim(c, place(1));
+    if (c.verb == "tap") {
+        aim(c, glm::dvec2(0.5));
+        frame([](Input& in) { set_button(in, Button::Left, true); });
+        frame([](Input& in) { set_button(in, Button::Left, false); });
+    }
     if (c.verb == "press" || c.verb == "release")
         frame([b = button_named(c.words[0]), down = c.verb == "press"](Input& in) { set_button(in, b, down); });
     if (c.verb == "click" || c.verb == "double") clicked(place(0));
@@ -136,6 +142,18 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
     if (c.verb == "save") host_.save(c.words[0]);
     if (c.verb == "expect") expect(c);
     if (c.verb == "report") host_.report(c.words[0]);
+}
+
+void ScriptPlayer::aim(const ScriptCommand& command, const glm::dvec2& share) {
+    // Where it is when it comes to it, not now.
+    frame([this, where = command.where, name = command.words[0], share](Input& in) {
+        try {
+            const glm::dvec4 at = host_.widget(name);
+            in.mouse = {at.x + share.x * (at.z - at.x), at.y + share.y * (at.w - at.y)};
+        } catch (const edgesplat::Error& error) {
+            edgesplat::fail("{}: {}", where, error.what());
+        }
+    });
 }
 
 void ScriptPlayer::wander(double seconds, unsigned seed) {

@@ -17,6 +17,7 @@ struct ScriptHost {
     std::function<bool()> settled;                      ///< no better picture will come
     std::function<void(const std::string&path)> screenshot, picture, save, report;
     std::function<void(bool fixed)> fix_quality;
+    std::function<glm::dvec4(const std::string& name)> widget;  ///< its place; throws Error where it is not to be seen
     std::function<std::string(const std::string& name)> value;  ///< for `expect`; throws Error for an unknown name
 };
 
@@ -30,6 +31,7 @@ class ScriptPlayer {
     using Change = std::function<void(Input&)>;
     void begin(const edgesplat::viewer::ScriptCommand& command);
     void expect(const edgesplat::viewer::ScriptCommand& command) const;
+    void aim(const edgesplat::viewer::ScriptCommand& command, const glm::dvec2& share);
     void wander(double seconds, unsigned seed);
     void frame(Change change = {}) { pending_.push_back(std::move(change)); }
 

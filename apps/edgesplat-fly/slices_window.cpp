@@ -1,3 +1,251 @@
-#include "apps/edgesplat-fly/panels.h"
+// Three slices through one point, beside the picture.
+#include <fmt/format.h>
+#include <imgui.h>
 
-void slices_window(AppState&) {}
+#include <algorithm>
+#include <cmath>
+
+#include "apps/edgesplat-fly/panels.h"
+#include "apps/edgesplat-fly/pen.h"
+#include "apps/edgesplat-fly/widgets.h"
+#include "engine/error.h"
+#include "engine/viewer/samples.h"
+
+namespace {
+
+namespace viewer = edgesplat::viewer;
+using viewer::Slice;
+
+constexpr ImU32 kGround = IM_COL32(13, 13, 16, 255), kFrame = IM_COL32(70, 72, 84, 255);
+constexpr ImU32 kCross = IM_COL32(255, 210, 60, 190), kEye = IM_COL32(90, 220, 255, 255);
+
+glm::dvec3 center(const edgesplat::VolumeGeometry& geometry) {
+    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+}
+
+bool inside(const edgesplat::VolumeGeometry& geometry, const glm::dvec3& world) {
+    const glm::dvec3 voxel = geometry.to_index(world);
+    return glm::all(glm::greaterThanEqual(voxel, glm::dvec3(-0.5))) &&
+           glm::all(glm::lessThanEqual(voxel, glm::dvec3(geometry.dims) - 0.5));
+}
+
+/// The last pick; without one the eye where it is inside, else the middle.
+glm::dvec3 linked_point(const AppState& state) {
+    const auto& session = state.session;
+    if (session.point()) return *session.point();
+    const auto& geometry = session.volume().geometry;
+    const glm::dvec3& eye = session.motion().camera().eye;
+    return inside(geometry, eye) ? eye : center(geometry);
+}
+
+viewer::ScreenPicture grey_picture(const Slice& slice) {
+    viewer::ScreenPicture out{slice.width, slice.height, {}};
+    out.pixels.reserve(4 * slice.grey.size());
+    for (const std::uint8_t grey : slice.grey)
+        out.pixels.insert(out.pixels.end(), {grey, grey, grey, 255});
+    return out;
+}
+
+void update(AppState& state, int axis, const glm::dvec3& voxel) {
+    SlicePicture& shown = state.slice_pictures[static_cast<std::size_t>(axis)];
+    const auto& volume = state.session.volume();
+    const SliceView& view = state.slice_view;
+    const int depth = std::clamp(static_cast<int>(std::lround(voxel[axis])), 0, volume.geometry.dims[axis] - 1);
+    if (shown.slice && shown.volume == &volume && shown.depth == depth && shown.low == view.low &&
+        shown.high == view.high) {
+        shown.slice->cross = viewer::pixel_at(*shown.slice, voxel);
+        return;
+    }
+    shown.slice.reset();
+    try {
+        shown.slice = viewer::slice(volume, axis, voxel, view.low, view.high);
+        shown.picture.set(grey_picture(*shown.slice));
+    } catch (const edgesplat::Error& error) {
+        state.session.say(error.what());
+    }
+    shown.volume = &volume;
+    shown.depth = depth;
+    shown.low = view.low;
+    shown.high = view.high;
+}
+
+/// Letters of the patient's directions: where +x, +y and +z point, then where they come from.
+std::string letter(const glm::dvec3& way) {
+    const glm::dvec3 size = glm::abs(way);
+    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return std::string(1, (way[static_cast<int>(axis)] > 0 ? "LPS" : "RAI")[axis]);
+}
+
+/// A slice in its rectangle of the window.
+struct Cell {
+    ImDrawList* list;
+    const Slice& slice;
+    glm::dvec2 low, high;  ///< of the slice's picture
+
+    glm::dvec2 scale() const { return (high - low) / glm::dvec2(slice.width, slice.height); }
+    glm::dvec2 place(const glm::dvec2& pixel) const { return low + pixel * scale(); }
+    glm::dvec2 pixel(const glm::dvec2& at) const { return (at - low) / scale(); }
+};
+
+void letters(const AppState& state, const Cell& cell) {
+    const auto& volume = state.session.volume();
+    if (!volume.in_patient) return;
+    const auto way = [&](const glm::dvec2& step) {
+        return volume.geometry.index_to_world_axes *
+               (viewer::voxel_at(cell.slice, cell.slice.cross + step) - viewer::voxel_at(cell.slice, cell.slice.cross));
+    };
+    const Pen pen{cell.list, glm::dvec2(0), state.em};
+    const glm::dvec2 middle = (cell.low + cell.high) / 2.0, half = 0.5 * state.em * glm::dvec2(0.6, 1.1);
+    const double edge = 0.3 * state.em;
+    pen.text({cell.low.x + edge, middle.y - half.y}, letter(way({-1, 0})));
+    pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(way({1, 0})));
+    pen.text({middle.x - half.x, cell.low.y + edge}, letter(way({0, -1})));
+    pen.text({middle.x - half.x, cell.high.y - edge - 2 * half.y}, letter(way({0, 1})));
+}
+
+void cross(const Cell& cell) {
+    const glm::dvec2 at = cell.place(cell.slice.cross);
+    cell.list->AddLine(to_im({cell.low.x, at.y}), to_im({cell.high.x, at.y}), kCross);
+    cell.list->AddLine(to_im({at.x, cell.low.y}), to_im({at.x, cell.high.y}), kCross);
+}
+
+/// Where the eye is and looks, projected into the slice; an eye beyond the slice is shown at its side.
+void eye(const AppState& state, const Cell& cell) {
+    const auto& geometry = state.session.volume().geometry;
+    const auto& camera = state.session.motion().camera();
+    const auto seen = [&](const glm::dvec3& world) {
+        return cell.place(viewer::pixel_at(cell.slice, geometry.to_index(world)));
+    };
+    const glm::dvec2 there = seen(camera.eye), margin(0.5 * state.em);
+    const glm::dvec2 at = glm::clamp(there, cell.low + margin, cell.high - margin);
+    const glm::dvec2 way = seen(camera.eye + edgesplat::unit(camera.direction)) - there;
+    // A view along the slice's axis has no direction in it.
+    const double flat = glm::length(way) / glm::length(cell.scale() / cell.slice.pixel_mm);
+    const auto radius = static_cast<float>(0.22 * state.em);
+    if (flat > 0.05) {
+        const glm::dvec2 along = 1.1 * state.em * std::min(1.4 * flat, 1.0) * glm::normalize(way),
+                         across(-along.y, along.x);
+        cell.list->AddLine(to_im(at), to_im(at + along), kShade, 4);
+        cell.list->AddLine(to_im(at), to_im(at + along), kEye, 2);
+        cell.list->AddTriangleFilled(to_im(at + 1.3 * along), to_im(at + 0.8 * along + 0.3 * across),
+                                     to_im(at + 0.8 * along - 0.3 * across), kEye);
+    }
+    cell.list->AddCircleFilled(to_im(at), radius + 1.5F, kShade);
+    if (at == there)
+        cell.list->AddCircleFilled(to_im(at), radius, kEye);
+    else
+        cell.list->AddCircle(to_im(at), radius, kEye, 0, 1.5F);
+}
+
+void mouse(AppState& state, const Cell& cell, const glm::dvec3& voxel) {
+    const auto& geometry = state.session.volume().geometry;
+    glm::dvec3 to = voxel;
+    const ImVec2 at = ImGui::GetIO().MousePos;
+    const float wheel = ImGui::IsItemHovered() ? ImGui::GetIO().MouseWheel : 0;
+    if (ImGui::IsItemActive()) {
+        to = viewer::voxel_at(cell.slice, cell.pixel({static_cast<double>(at.x), static_cast<double>(at.y)}));
+        to[cell.slice.axis] = voxel[cell.slice.axis];
+    }
+    to[cell.slice.axis] += static_cast<double>(wheel);
+    to = glm::clamp(to, glm::dvec3(0), glm::dvec3(geometry.dims - 1));
+    if (to != voxel && (wheel != 0 || ImGui::IsItemActive())) state.session.set_point(geometry.to_world(to));
+}
+
+/// One slice in a rectangle; all around it is painted, since the window is transparent over the slice.
+void show(AppState& state, int axis, const glm::dvec3& voxel, const glm::dvec2& low, const glm::dvec2& high) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    SlicePicture& shown = state.slice_pictures[static_cast<std::size_t>(axis)];
+    if (!shown.slice || shown.picture.empty()) {
+        list->AddRectFilled(to_im(low), to_im(high), kGround);
+        return;
+    }
+    const glm::dvec2 size = glm::dvec2(shown.slice->width, shown.slice->height) * shown.slice->pixel_mm;
+    const glm::dvec2 fits =
+        glm::max(glm::floor(std::min((high.x - low.x) / size.x, (high.y - low.y) / size.y) * size), glm::dvec2(1));
+    const glm::dvec2 corner = glm::floor(low + (high - low - fits) / 2.0);
+    const Cell cell{list, *shown.slice, corner, corner + fits};
+    list->AddRectFilled(to_im(low), to_im({cell.low.x, high.y}), kGround);
+    list->AddRectFilled(to_im({cell.high.x, low.y}), to_im(high), kGround);
+    list->AddRectFilled(to_im({cell.low.x, low.y}), to_im({cell.high.x, cell.low.y}), kGround);
+    list->AddRectFilled(to_im({cell.low.x, cell.high.y}), to_im({cell.high.x, high.y}), kGround);
+    list->AddRect(to_im(low), to_im(high), kFrame);
+    state.pictures.push_back({&shown.picture, {0, 0, 1, 1}, {glm::ivec2(cell.low), glm::ivec2(cell.high)}});
+    list->PushClipRect(to_im(cell.low), to_im(cell.high), true);
+    cross(cell);
+    eye(state, cell);
+    letters(state, cell);
+    list->PopClipRect();
+    const std::string name = fmt::format("slice{}", axis);
+    ImGui::SetCursorScreenPos(to_im(cell.low));
+    ImGui::InvisibleButton(name.c_str(), to_im(fits));
+    note(state, name.c_str());
+    mouse(state, cell, voxel);
+}
+
+void window_sliders(AppState& state) {
+    SliceView& view = state.slice_view;
+    const auto& volume = state.session.volume();
+    const auto least = static_cast<double>(volume.min_value), most = static_cast<double>(volume.max_value);
+    ImGui::SetNextItemWidth(-3.5F * static_cast<float>(state.em));
+    ImGui::SliderScalar("black", ImGuiDataType_Double, &view.low, &least, &most, "%.5g");
+    note(state, "black");
+    ImGui::SetNextItemWidth(-3.5F * static_cast<float>(state.em));
+    ImGui::SliderScalar("white", ImGuiDataType_Double, &view.high, &least, &most, "%.5g");
+    note(state, "white");
+    // Black stays below white, whichever of them was moved.
+    const double gap = 1e-3 * (most - least);
+    view.low = std::clamp(view.low, least, most - gap);
+    view.high = std::clamp(view.high, view.low + gap, most);
+}
+
+void contents(AppState& state) {
+    const Scope scope(state, "slices");
+    const auto& volume = state.session.volume();
+    const glm::dvec3 world = linked_point(state), voxel = volume.geometry.to_index(world);
+    const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+    const glm::dvec2 corner(static_cast<double>(at.x), static_cast<double>(at.y));
+    const double pad = 0.4 * state.em, foot = 6.8 * state.em, width = static_cast<double>(size.x);
+    const double height = std::floor((static_cast<double>(size.y) - foot) / 3);
+    // Radiologists' order: from above, from the front, from the side.
+    constexpr std::array<int, 3> kOrder{2, 1, 0};
+    for (std::size_t i = 0; i < kOrder.size(); ++i) {
+        const glm::dvec2 low = corner + glm::dvec2(0, static_cast<double>(i) * height);
+        update(state, kOrder[i], voxel);
+        show(state, kOrder[i], voxel, low, low + glm::dvec2(width, height));
+    }
+    const glm::dvec2 under = corner + glm::dvec2(0, 3 * height);
+    ImGui::GetWindowDrawList()->AddRectFilled(to_im(under), {at.x + size.x, at.y + size.y}, kGround);
+    ImGui::SetCursorScreenPos(to_im(under + pad));
+    ImGui::BeginGroup();
+    window_sliders(state);
+    ImGui::Text("%.1f, %.1f, %.1f mm", world.x, world.y, world.z);
+    if (inside(volume.geometry, world))
+        ImGui::TextDisabled("voxel %.1f, %.1f, %.1f: %g", voxel.x, voxel.y, voxel.z,
+                            viewer::interpolated(volume, voxel));
+    ImGui::EndGroup();
+}
+
+}  // namespace
+
+void slices_window(AppState& state) {
+    if (!state.slices || !state.session.is_open()) return;
+    const auto& volume = state.session.opened().volume;
+    if (state.slice_view.volume != volume) {
+        state.slice_view = {volume, volume->min_value, volume->max_value};
+        state.slice_pictures = {};
+    }
+    const glm::dvec4 area(state.slices_area);
+    const glm::dvec2 size(area.z - area.x, area.w - area.y);
+    if (!(volume->max_value > volume->min_value) || size.x < 2 || size.y < 8 * state.em) return;
+    ImGui::SetNextWindowPos(to_im({area.x, area.y}));
+    ImGui::SetNextWindowSize(to_im(size));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0, 0});
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0);
+    ImGui::Begin("slices", nullptr,
+                 ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
+                     ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                     ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoFocusOnAppearing);
+    contents(state);
+    ImGui::End();
+    ImGui::PopStyleVar(2);
+}

@@ -6,6 +6,7 @@
 
 #include "apps/edgesplat-fly/app.h"
 #include "engine/error.h"
+#include "engine/scene/scene_keys.h"
 
 namespace {
 
@@ -77,6 +78,13 @@ const Values& values() {
         {"clip_planes",
          [](AppState& s) { return text(static_cast<double>(s.session.scene().effects.clip.keep.size())); }},
         {"lights", [](AppState& s) { return text(static_cast<double>(s.session.scene().lights.size())); }},
+        {"undo", [](AppState& s) { return s.session.can_undo() ? "yes" : "no"; }},
+        {"redo", [](AppState& s) { return s.session.can_redo() ? "yes" : "no"; }},
+        {"point.x", [](AppState& s) { return text(s.session.point() ? s.session.point()->x : -1e9); }},
+        {"point.y", [](AppState& s) { return text(s.session.point() ? s.session.point()->y : -1e9); }},
+        {"point.z", [](AppState& s) { return text(s.session.point() ? s.session.point()->z : -1e9); }},
+        {"keep_box", [](AppState& s) { return s.session.document().keep_box ? "on" : "off"; }},
+        {"remove_box", [](AppState& s) { return s.session.document().remove_box ? "on" : "off"; }},
         {"path", [](AppState& s) { return text(s.session.tour().line() ? s.session.tour().line()->length : -1); }},
         {"path.position", [](AppState& s) { return text(s.session.tour().position()); }},
         {"recorded", [](AppState& s) { return text(s.session.recorder().seconds()); }},
@@ -90,6 +98,10 @@ const Values& values() {
 }  // namespace
 
 std::string App::value(const std::string& name) {
+    // scene.effects.fog.density and the like: any number of the scene file.
+    constexpr std::string_view kScene = "scene.";
+    if (name.starts_with(kScene))
+        return text(edgesplat::number_at(state_.session.document(), name.substr(kScene.size())));
     const auto found = values().find(name);
     if (found == values().end()) {
         std::string names;

@@ -1,0 +1,105 @@
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "apps/edgesplat-fly/panels.h"
+#include "apps/edgesplat-fly/widgets.h"
+#include "engine/viewer/iso_edit.h"
+#include "engine/viewer/transfer_edit.h"
+
+namespace {
+
+namespace viewer = edgesplat::viewer;
+using edgesplat::MaterialChoice;
+using edgesplat::SceneDocument;
+
+/// "bone, from 300"
+std::string title(const edgesplat::Scene& scene, std::size_t m) {
+    const auto& iso = scene.iso_values;
+    std::string text = scene.materials[m].name;
+    if (!text.empty()) text += ", ";
+    if (iso.empty()) return text + "all values";
+    if (m == 0) return text + fmt::format("below {:.5g}", iso.front());
+    text += fmt::format("from {:.5g}", iso[m - 1]);
+    return m < iso.size() ? text + fmt::format(" to {:.5g}", iso[m]) : text;
+}
+
+void name_field(AppState& state, std::size_t m) {
+    std::string name = state.session.scene().materials[m].name;
+    const bool changed = ImGui::InputText("name", &name);
+    note(state, "name");
+    if (changed) state.session.edit([&](SceneDocument& d) { viewer::material_choice(d, m).name = name; }, false);
+}
+
+/// Light on it; `member` of the document's material.
+void response(AppState& state, std::size_t m, const char* label, double value, const SlideRange& range,
+              std::optional<double> MaterialChoice::*member) {
+    slide(state, label, value, range,
+          [m, member](SceneDocument& d, double v) { viewer::material_choice(d, m).*member = v; });
+}
+
+/// Whether it is still there.
+bool iso_value(AppState& state, std::size_t m) {
+    auto& session = state.session;
+    const auto& volume = session.volume();
+    const double value = session.scene().iso_values[m - 1];
+    // Past the others it goes in the plot: here the slider would be another material's then.
+    const auto iso = session.scene().iso_values;
+    const double low = volume.min_value, high = volume.max_value, gap = viewer::kIsoGap * (high - low);
+    const double least = m > 1 ? iso[m - 2] + gap : low, most = m < iso.size() ? iso[m] - gap : high;
+    slide(state, "iso-value", value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
+        viewer::move_iso_value(d, volume, m - 1, std::clamp(v, least, std::max(least, most)));
+    });
+    const bool needed = session.document().transfer.empty() && session.scene().iso_values.size() == 1;
+    if (needed) return true;
+    ImGui::SameLine();
+    if (!button(state, "remove")) return true;
+    session.edit([&](SceneDocument& d) { viewer::remove_iso_value(d, m - 1); });
+    return false;
+}
+
+void details(AppState& state, std::size_t m) {
+    auto& session = state.session;
+    const bool materials = session.document().transfer.empty();
+    if (m > 0 && !iso_value(state, m)) return;
+    const edgesplat::Material material = session.scene().materials.at(m);
+    if (materials) {
+        const auto scale = viewer::ExtinctionScale::of(session.volume().geometry);
+        response(state, m, "per mm", material.extinction, {0, scale.most, "%.4f", true}, &MaterialChoice::extinction);
+        name_field(state, m);
+        presets_choice(state, "preset", false, [&](const edgesplat::ScenePreset& preset) {
+            session.edit([&](SceneDocument& d) { viewer::take_material(d, session.volume(), m, preset); });
+        });
+    }
+    const edgesplat::LightResponse light = session.scene().materials.at(m).response;
+    response(state, m, "ambient", light.ambient, {0, 2}, &MaterialChoice::ambient);
+    response(state, m, "diffuse", light.diffuse, {0, 2}, &MaterialChoice::diffuse);
+    response(state, m, "specular", light.specular, {0, 2}, &MaterialChoice::specular);
+    response(state, m, "shininess", light.shininess, {1, 1000, "%.0f", true}, &MaterialChoice::shininess);
+}
+
+void material(AppState& state, std::size_t m) {
+    const bool materials = state.session.document().transfer.empty();
+    const Scope scope(state, fmt::format("material{}", m));
+    if (materials) {
+        color(state, "##colour", state.session.scene().materials[m].color,
+              [m](SceneDocument& d, const glm::dvec3& v) { viewer::material_choice(d, m).color = v; });
+        ImGui::SameLine();
+    }
+    const std::string text = title(state.session.scene(), m);
+    const bool open = ImGui::TreeNodeEx("material", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", text.c_str());
+    note(state, "title");
+    if (!open) return;
+    details(state, m);
+    ImGui::TreePop();
+}
+
+}  // namespace
+
+void materials_panel(AppState& state) {
+    // From the top, since the matter that is opaque comes last.
+    for (std::size_t m = state.session.scene().materials.size(); m-- > 0;)
+        if (m < state.session.scene().materials.size()) material(state, m);
+}
