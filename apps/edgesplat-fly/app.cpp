@@ -148,7 +148,6 @@ void App::finish_loading() {
         if (window_) window_->set_title("Edgesplat: " + loading->path());
     } catch (const std::exception& error) {
         state_.error = error.what();
-        if (player_) edgesplat::fail("{}", error.what());
     }
 }
 
@@ -343,6 +342,7 @@ ScriptHost App::script_host() {
     host.open = [this](const std::string& path) {
         begin_loading(path);
         finish_loading();
+        if (!state_.error.empty()) edgesplat::fail("{}", state_.error);
     };
     host.settled = [this] { return !is_busy() && !state_.session.moving(); };
     host.screenshot = [this](const std::string& path) { edgesplat::write_image(path, as_image(canvas_->read())); };
