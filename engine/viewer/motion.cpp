@@ -13,7 +13,7 @@ constexpr double kMoveTime = 0.12, kLookTime = 0.04, kOrbitTime = 0.06, kPanTime
 constexpr double kRollRate = 1.2;                                                                          // radians/s
 constexpr double kZoomFactor = 0.85;                                                                       // a step
 constexpr double kLevelling = 2;  // of a roll, per radian orbited
-constexpr double kReach = 20;     // extents of the volume that the eye may be away from it
+constexpr double kReach = 8;      // extents of the volume that the eye may be away from it
 constexpr double kHomeSeconds = 0.8;
 constexpr double kPole = glm::half_pi<double>();
 

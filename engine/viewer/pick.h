@@ -28,11 +28,11 @@ struct Pick {
 ///
 /// Where that happens in solid matter (half of the light is lost in one voxel, as in Walls) the place is the surface
 /// by which the ray came into it: an iso-contour, whose crossing is computed to 1e-9 of a voxel, a clip plane, or the
-/// side of the volume. Of an iso-contour the uncertainty adds up half a step of the values' quantisation, twice the
-/// disagreement with the cubic B-spline through the samples, and what an edge sharper than samples can show leaves
-/// open; a clip plane has none; the side of the volume, half a voxel. In other matter the place is where the opacity is
-/// reached, and the uncertainty the distance between the opacities halfway to it and halfway beyond it (0.25 and 0.75).
-/// Throws Error: opacity out of range, a camera without a frame.
+/// side of the volume. Of an iso-contour the uncertainty is twice the disagreement with the cubic B-spline through
+/// the samples, and the larger of half a step of the values' quantisation and what an edge sharper than samples can
+/// show leaves open; a clip plane has none; the side of the volume, half a voxel. In other matter the place is where
+/// the opacity is reached, and the uncertainty the distance between the opacities halfway to it and halfway beyond it
+/// (0.25 and 0.75). Throws Error: opacity out of range, an invalid scene, a camera without a frame.
 std::optional<Pick> pick(const Volume& volume, const Scene& scene, const Camera& camera, const glm::ivec2& size,
                          const glm::dvec2& pixel, double opacity = 0.5);
 

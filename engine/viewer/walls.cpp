@@ -108,7 +108,7 @@ struct Walls::Matter {
     }
 };
 
-Walls::Walls(std::shared_ptr<const Volume> volume, const Scene& scene) {
+Walls::Walls(const std::shared_ptr<const Volume>& volume, const Scene& scene) {
     validate(scene);
     matter_ = std::make_shared<const Matter>(volume, scene);
     clip_ = with_unit_normals(scene.effects.clip);

@@ -24,7 +24,7 @@ class Walls {
 
     /// Keeps the volume, or a coarser one made from it. Throws Error for a volume without voxels, for an invalid scene,
     /// and where a packed file cannot be read.
-    Walls(std::shared_ptr<const Volume> volume, const Scene& scene);
+    Walls(const std::shared_ptr<const Volume>& volume, const Scene& scene);
     /// The same matter with other clip planes; costs nothing.
     Walls(const Walls& walls, const Clip& clip);
 

@@ -226,7 +226,7 @@ TEST(ViewerMotion, PanAndZoom) {
     for (int i = 0; i < 50; ++i)
         motion.step(controls, kFrame);
     rest(motion);
-    EXPECT_LE(glm::length(motion.camera().eye), 2100);
+    EXPECT_LE(glm::length(motion.camera().eye), 801);
     controls.zoom = 100;
     for (int i = 0; i < 50; ++i)
         motion.step(controls, kFrame);

@@ -2,12 +2,14 @@
 #include "engine/viewer/pick.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <random>
+#include <string>
 
 #include "engine/volume/pack_volume.h"
 #include "tests/unit/refusal.h"
@@ -314,7 +316,8 @@ TEST(ViewerPick, TheSideOfTheVolume) {
 TEST(ViewerPick, PackedVolumesGiveTheSame) {
     const Cavity cavity = ball();
     const auto volume = sampled(cavity);
-    const auto file = std::filesystem::temp_directory_path() / "edgesplat-viewer-pick-test.h5";
+    const auto file =
+        std::filesystem::temp_directory_path() / ("edgesplat-viewer-pick-" + std::to_string(getpid()) + ".h5");
     pack_volume(*volume, file.string());
     const Volume packed = open_packed(file.string());
     Random random;

@@ -2,9 +2,11 @@
 #include "engine/viewer/slices.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
+#include <string>
 
 #include "engine/volume/pack_volume.h"
 #include "engine/volume/packed_volume.h"
@@ -107,7 +109,8 @@ TEST(ViewerSlices, PackedVolumesCoarsely) {
     for (int i = 0; i < 1500 * 8 * 6; ++i)
         volume.values.push_back(static_cast<float>(i % 1500));
     finish_volume(volume);
-    const auto file = std::filesystem::temp_directory_path() / "edgesplat-viewer-slices-test.h5";
+    const auto file =
+        std::filesystem::temp_directory_path() / ("edgesplat-viewer-slices-" + std::to_string(getpid()) + ".h5");
     pack_volume(volume, file.string());
     const Volume packed = open_packed(file.string());
     const Slice fine = slice(packed, 0, {700, 3, 2}, 0, 1500), same = slice(volume, 0, {700, 3, 2}, 0, 1500);

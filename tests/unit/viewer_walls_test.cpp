@@ -2,6 +2,7 @@
 #include "engine/viewer/walls.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include <filesystem>
 #include <iostream>
 #include <random>
+#include <string>
 
 #include "engine/volume/load_volume.h"
 #include "engine/volume/pack_volume.h"
@@ -238,7 +240,8 @@ TEST(ViewerWalls, ClipPlanesOpenWhatTheyCutAway) {
 TEST(ViewerWalls, PackedVolumesGiveTheSame) {
     const Cavity ball = hollow_ball();
     const auto volume = sampled(ball);
-    const auto file = std::filesystem::temp_directory_path() / "edgesplat-viewer-walls-test.h5";
+    const auto file =
+        std::filesystem::temp_directory_path() / ("edgesplat-viewer-walls-" + std::to_string(getpid()) + ".h5");
     pack_volume(*volume, file.string());
     const auto packed = std::make_shared<const Volume>(open_packed(file.string()));
     const Walls walls(volume, solid_scene()), same(packed, solid_scene());
