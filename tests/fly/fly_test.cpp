@@ -1,0 +1,181 @@
+// The navigation app from a script: what is shown, moved, measured, kept, and said when it goes wrong.
+#include "tests/fly/fly_program.h"
+
+#include <cstdlib>
+
+namespace edgesplat {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+TEST_F(FlyTest, OpensABuiltinSceneWithoutArguments) {
+    fly("settle\nexpect volume == builtin:cube-hole\nexpect finished == yes\nexpect error == none\n"
+        "expect level == 0\nexpect scale == 1\nexpect rays == no\nscreenshot a.png\n",
+        "");
+    const Image shown = image("a.png");
+    EXPECT_EQ(shown.width, 480);
+    EXPECT_EQ(shown.height, 320);
+}
+
+TEST_F(FlyTest, ASavedSceneIsTheStandstillPicture) {
+    fly("settle\nkey O\nmove 400 150\npress left\ndrag 440 120 6\nrelease left\nwheel 4\nframes 40\nsettle\n"
+        "expect finished == yes\npicture shown.png\nsave kept.toml\n");
+    const ProgramRun rendered = run("render kept.toml -o rendered.png");
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    const Image shown = image("shown.png"), again = image("rendered.png");
+    EXPECT_GE(compare_images(shown, again).psnr, 60);
+    const Image black(again.width, again.height, again.channels);
+    EXPECT_LT(compare_images(black, again).psnr, 20);  // there is something in it
+}
+
+TEST_F(FlyTest, TheWipeIsPlainOnItsLeftAndEdgePreservedOnItsRight) {
+    fly("settle\nkey O\nsettle\npicture edges.png\nkey Space\nsettle\nexpect show == plain\npicture plain.png\n"
+        "key X\nsettle\nexpect show == wipe\nexpect wipe == 0.5\nmove 360 100\npress left\ndrag 410 140 4\nrelease "
+        "left\n"
+        "settle\nexpect wipe > 0.6\nexpect wipe < 0.8\npicture wipe.png\nkey H\nsettle\nexpect show == sharpening\n"
+        "picture sharpened.png\nkey H\nexpect show == edges\n");
+    const Image edges = image("edges.png"), plain = image("plain.png"), wipe = image("wipe.png");
+    const int width = wipe.width;
+    const double whole = compare_images(edges, plain).psnr;
+    EXPECT_LT(whole, 40);
+    // Where the divider stands and what is written on it is not compared.
+    EXPECT_GE(compare_images(columns(wipe, 0, width / 3), columns(plain, 0, width / 3)).psnr, whole + 10);
+    const int right = width - 4;
+    EXPECT_GE(compare_images(columns(wipe, right, width), columns(edges, right, width)).psnr, whole + 10);
+    EXPECT_LT(compare_images(image("sharpened.png"), edges).psnr, 40);
+}
+
+TEST_F(FlyTest, WhatIsNotShownIsNotDrawn) {
+    fly("settle\nexpect renderers == 1\nkey X\nsettle\nexpect renderers >= 2\nkey X\nsettle\nexpect renderers == 1\n");
+}
+
+TEST_F(FlyTest, PicksAndMeasuresTheSurface) {
+    // A ball of radius 20 around the middle of 64^3 voxels of 1 mm; the picture's middle looks at its nearest point.
+    fly("settle\nhold Ctrl\nclick 360 147\nlet Ctrl\nexpect picks == 1\nexpect pick.value > 0.45\n"
+        "expect pick.value < 0.55\nkey M\nclick 360 187\nexpect picks == 2\nexpect ruler > 1\nexpect ruler < 30\n"
+        "expect ruler.uncertainty >= 0\nexpect ruler.uncertainty < 1\nclick 242 2\nexpect picks == 2\n"
+        "expect message == no surface there\nkey Delete\nexpect picks == 0\n",
+        "builtin:sphere:64");
+}
+
+TEST_F(FlyTest, ADoubleClickFliesThereAndHomeComesBack) {
+    fly("settle\nexpect eye.y < -30\ndouble 360 147\nframes 90\nsettle\nexpect eye.y > -15\nkey Home\nframes "
+        "120\nsettle\n"
+        "expect eye.y < -30\nexpect finished == yes\n",
+        "builtin:sphere:64");
+}
+
+TEST_F(FlyTest, WallsHoldAFlightBack) {
+    fly("settle\nkey F\nexpect mode == fly\nexpect collisions == on\nhold W\nframes 600\nlet W\nexpect room > 0\n"
+        "expect room < 3\nkey C\nexpect collisions == off\nhold W\nframes 60\nlet W\nexpect room < 0\n",
+        "builtin:sphere:64");
+}
+
+TEST_F(FlyTest, TravelsAGuidedPath) {
+    fly("settle\nkey G\nclick 335 147\nclick 380 147\nframes 2\nexpect path > 0\nexpect message has guided path\nkey "
+        "Enter\n"
+        "frames 20\nexpect path.position > 0\nkey Escape\nsettle\nexpect finished == yes\n",
+        "builtin:sphere:64");
+}
+
+TEST_F(FlyTest, ARecordedFlightIsTheSavedScenesMovie) {
+    fly("settle\nkey Ctrl+R\nmove 400 150\npress left\ndrag 460 150 30\nrelease left\nframes 30\nkey Ctrl+R\n"
+        "expect recorded > 0.5\nsave flown.toml\n");
+    const std::string scene = text_of(folder_ / "flown.toml");
+    EXPECT_THAT(scene, HasSubstr("[[movie.path]]"));
+    const ProgramRun movie = run("movie flown.toml -o frames/%04d.png --size 32x24 --fps 5");
+    EXPECT_EQ(movie.status, 0) << movie.err;
+}
+
+TEST_F(FlyTest, ResizesAndMinimises) {
+    fly("settle\nsize 700 500\nsettle\nexpect finished == yes\nscreenshot large.png\nsize 0 0\nframes 5\nsize 333 241\n"
+        "settle\nexpect finished == yes\nscreenshot small.png\nkey Tab\nexpect panels == off\nsettle\nkey F1\n"
+        "expect help == on\nframes 3\nscreenshot help.png\n");
+    EXPECT_EQ(image("large.png").width, 700);
+    EXPECT_EQ(image("small.png").height, 241);
+    EXPECT_LT(compare_images(image("small.png"), image("help.png")).psnr, 30);
+}
+
+TEST_F(FlyTest, AFileThatCannotBeReadIsSaidAndTheSceneStays) {
+    std::ofstream(folder_ / "broken.nrrd") << "NRRD0004\ntype: nonsense\n\n";
+    fly("settle\ndrop broken.nrrd\nframes 3\nexpect error has broken.nrrd\nexpect volume == builtin:torus:32\n"
+        "expect finished == yes\ndrop builtin:sphere:24\nframes 2\nsettle\nexpect volume == builtin:sphere:24\n");
+}
+
+TEST_F(FlyTest, AnExpectationThatDoesNotHoldEndsItWithFileAndLine) {
+    const ProgramRun result = try_to_fly("frames 1\nexpect show == plain\n", "builtin:sphere:16");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("script.txt:4: expect: show is edges, expected == plain"));
+    const ProgramRun unknown = try_to_fly("expect nothing == plain\n", "builtin:sphere:16");
+    EXPECT_EQ(unknown.status, 1);
+    EXPECT_THAT(unknown.err, HasSubstr("'nothing' is no value"));
+    EXPECT_EQ(try_to_fly("", "--size 0x5").status, 105);
+    const ProgramRun missing = try_to_fly("open missing.nrrd\n", "builtin:sphere:16");
+    EXPECT_EQ(missing.status, 1);
+    EXPECT_THAT(missing.err, HasSubstr("missing.nrrd"));
+}
+
+TEST_F(FlyTest, WithoutAScreenItSaysSo) {
+    const ProgramRun result =
+        run_shell("env -u DISPLAY -u WAYLAND_DISPLAY '" EDGESPLAT_FLY "' --no-preferences builtin:sphere:16");
+    EXPECT_EQ(result.status, 1);
+    EXPECT_THAT(result.err, HasSubstr("no screen"));
+    EXPECT_EQ(run_shell("'" EDGESPLAT_FLY "' --headless builtin:sphere:16").status, 107);
+}
+
+TEST_F(FlyTest, RemembersWhatWasOpened) {
+    std::ofstream(folder_ / "script.txt") << "size 480 320\nopen builtin:sphere:16\nframes 1\n";
+    const ProgramRun result = run_shell("env XDG_CONFIG_HOME=settings '" EDGESPLAT_FLY
+                                        "' --headless --validation --script script.txt builtin:torus:16");
+    EXPECT_EQ(result.status, 0) << result.err;
+    const std::string kept = text_of(folder_ / "settings" / "edgesplat" / "fly.toml");
+    EXPECT_THAT(kept, HasSubstr("builtin:sphere:16"));
+    EXPECT_THAT(kept, HasSubstr("width = 480"));
+}
+
+TEST_F(FlyTest, ThroughTheNose) {
+    const char* data = std::getenv("EDGESPLAT_DATA");
+    const fs::path volume = fs::path(data == nullptr ? "" : data) / "cranium_ct" / "cranium.nhdr";
+    if (data == nullptr || !fs::exists(volume)) GTEST_SKIP() << "EDGESPLAT_DATA names no folder with cranium_ct";
+    std::ofstream(folder_ / "nose.toml") << "iso_values = [-400]\n[volume]\npath = \"" << volume.string()
+                                         << "\"\n[camera]\nvoxel = true\neye = [128, 148, 14]\n"
+                                            "direction = [0, 1, 0.05]\nup = [0, 0, 1]\nfov = 90\n";
+    fly("settle\nexpect mode == fly\nexpect finished == yes\nexpect room > 0\nhold W\nframes 60\nlet W\nexpect room > "
+        "0\n"
+        "key X\nsettle\nexpect show == wipe\nmove 360 100\npress left\ndrag 410 100 5\nrelease left\nexpect wipe > "
+        "0.6\n"
+        "screenshot wipe.png\nkey X\nsettle\nkey M\nclick 330 120\nclick 390 170\nexpect picks == 2\nexpect ruler > "
+        "0.5\n"
+        "expect ruler < 80\nexpect ruler.uncertainty < 2\nkey O\nsettle\npicture shown.png\nsave kept.toml\n"
+        "size 420 300\nsettle\nsize 0 0\nframes 3\nsize 480 320\nsettle\nexpect finished == yes\n",
+        "nose.toml");
+    const ProgramRun rendered = run("render kept.toml -o rendered.png");
+    ASSERT_EQ(rendered.status, 0) << rendered.err;
+    EXPECT_GE(compare_images(image("shown.png"), image("rendered.png")).psnr, 60);
+}
+
+class FlyScript : public FlyTest, public testing::WithParamInterface<std::string> {};
+
+TEST_P(FlyScript, Holds) {
+    const ProgramRun result =
+        run_shell("'" EDGESPLAT_FLY "' --headless --no-preferences --validation --script '" EDGESPLAT_SOURCE_DIR
+                  "/tests/scripts/" +
+                  GetParam() + ".txt'");
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(result.err, "");
+}
+
+std::vector<std::string> scripts() {
+    std::vector<std::string> names;
+    for (const auto& entry : fs::directory_iterator(EDGESPLAT_SOURCE_DIR "/tests/scripts"))
+        if (entry.path().extension() == ".txt") names.push_back(entry.path().stem().string());
+    std::ranges::sort(names);
+    return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FlyScript, testing::ValuesIn(scripts()), [](const auto& tested) { return tested.param; });
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(FlyScript);
+
+}  // namespace
+}  // namespace edgesplat
