@@ -25,13 +25,13 @@ class FlyTest : public CliTest {
     Image image(const std::string& name) const { return read_image(folder_ / name).image; }
 };
 
-/// Columns [first, last) of a picture.
-inline Image columns(const Image& image, int first, int last) {
-    Image out(last - first, image.height, image.channels);
-    for (int y = 0; y < image.height; ++y)
+/// Columns [first, last) of a picture, without its uppermost rows.
+inline Image columns(const Image& image, int first, int last, int top = 40) {
+    Image out(last - first, image.height - top, image.channels);
+    for (int y = 0; y < out.height; ++y)
         for (int x = first; x < last; ++x)
             for (int c = 0; c < image.channels; ++c)
-                out.at(x - first, y, c) = image.at(x, y, c);
+                out.at(x - first, y, c) = image.at(x, y + top, c);
     return out;
 }
 
