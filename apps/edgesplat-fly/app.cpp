@@ -285,6 +285,7 @@ void App::frame(const Input& input) {
     show_panels();
     draw_over_picture(state_);
     ImGui::Render();
+    if (std::exchange(lose_window_, false)) throw vk::DeviceLostError("as a script wants it");
     present();
 }
 
@@ -368,6 +369,12 @@ ScriptHost App::script_host() {
         const std::string nearest = edgesplat::nearest_name(name, names);
         edgesplat::fail("'{}' is no widget that can be seen now{}", name,
                         nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
+    };
+    host.lose_device = [this](bool window) {
+        if (window)
+            lose_window_ = true;
+        else
+            state_.drawer->lose_device();
     };
     host.value = [this](const std::string& name) { return value(name); };
     return host;

@@ -62,6 +62,7 @@ class App {
     FrameTimes times_;
     glm::ivec2 size_{1280, 800};
     bool leaving_ = false;
+    bool lose_window_ = false;
     int lost_ = 0;                ///< devices in a row
     std::uint64_t messages_ = 0;  ///< of validation, by devices that are gone
 };

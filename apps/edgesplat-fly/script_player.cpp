@@ -141,6 +141,7 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
     if (c.verb == "picture") host_.picture(c.words[0]);
     if (c.verb == "save") host_.save(c.words[0]);
     if (c.verb == "expect") expect(c);
+    if (c.verb == "lose") host_.lose_device(c.words[0] == "window");
     if (c.verb == "report") host_.report(c.words[0]);
 }
 

@@ -17,6 +17,7 @@ struct ScriptHost {
     std::function<bool()> settled;                      ///< no better picture will come
     std::function<void(const std::string&path)> screenshot, picture, save, report;
     std::function<void(bool fixed)> fix_quality;
+    std::function<void(bool window)> lose_device;               ///< the window's, or the one that pictures are drawn on
     std::function<glm::dvec4(const std::string& name)> widget;  ///< its place; throws Error where it is not to be seen
     std::function<std::string(const std::string& name)> value;  ///< for `expect`; throws Error for an unknown name
 };

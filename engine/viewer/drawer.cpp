@@ -132,10 +132,7 @@ void Drawer::run(const std::stop_token& stop) {
             std::unique_lock lock(mutex_);
             if (!changed_.wait(lock, stop, [this] { return wanted_ != nullptr; })) return;
         }
-        if (auto picture = draw_next()) {
-            const std::lock_guard lock(mutex_);
-            ready_ = std::move(picture);
-        }
+        draw_next();
     }
 }
 
@@ -154,6 +151,7 @@ std::optional<DrawnPicture> Drawer::draw_next() {
     std::optional<DrawnPicture> picture;
     try {
         plan(*job);
+        if (lose_.exchange(false)) fail("Vulkan: ErrorDeviceLost, as it was asked for");
         picture = draw(*job);
         if (picture->stats.complete) job->stages.pop_back();  // else more of its blocks come with the next one
         picture->finished = job->stages.empty();
@@ -168,7 +166,9 @@ std::optional<DrawnPicture> Drawer::draw_next() {
     const std::lock_guard lock(mutex_);
     drawing_ = false;
     if (!job->stages.empty() && !wanted_) wanted_ = std::move(job);
-    return picture;
+    if (!options_.threaded) return picture;
+    if (picture) ready_ = std::move(picture);
+    return std::nullopt;
 }
 
 void Drawer::failed(const std::string& what) {

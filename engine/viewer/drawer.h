@@ -76,6 +76,8 @@ class Drawer {
     void set_rays(Options::Rays rays);
     /// Pictures in motion keep the resolution that they have, whatever they take: the same ones on every machine.
     void freeze_pace(bool on) { frozen_ = on; }
+    /// The next picture finds its device lost, to see what becomes of it.
+    void lose_device() { lose_ = true; }
     /// Bytes that the renderers hold on the device.
     std::uint64_t device_bytes() const { return device_bytes_; }
     /// Of all renderers that there were.
@@ -99,6 +101,7 @@ class Drawer {
     struct Job;
 
     void run(const std::stop_token& stop);
+    /// Draws the next picture and returns it, or with a thread leaves it for `take`.
     std::optional<DrawnPicture> draw_next();
     DrawnPicture draw(const Job& job);
     Image draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPicture& out);
@@ -121,7 +124,7 @@ class Drawer {
     double target_;
     Options::Rays rays_;
 
-    std::atomic<bool> frozen_{false};
+    std::atomic<bool> frozen_{false}, lose_{false};
     std::atomic<std::uint64_t> asked_{0}, device_bytes_{0}, validation_messages_{0};
     // Of the drawing thread alone.
     mutable std::mutex renderers_mutex_;

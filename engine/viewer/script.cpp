@@ -15,7 +15,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr std::array<ScriptVerb, 26> kVerbs{{
+constexpr std::array<ScriptVerb, 27> kVerbs{{
     {"size", "nn", "width and height of the window's content, pixels"},
     {"step", "n", "seconds from frame to frame from here on (1/60)"},
     {"quality", "w", "of pictures in motion: measured (by the clock), or fixed (level and size that do not change)"},
@@ -41,6 +41,7 @@ constexpr std::array<ScriptVerb, 26> kVerbs{{
     {"picture", "t", "writes the picture as it is shown to a PNG file"},
     {"save", "t", "writes the scene to a file"},
     {"expect", "wct", "stops with an error unless a value compares so: see --script-help"},
+    {"lose", "w", "what happens when a device is lost: window or pictures"},
     {"report", "t", "writes what pictures took since the last report to a JSON file"},
 }};
 

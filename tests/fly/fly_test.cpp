@@ -99,6 +99,14 @@ TEST_F(FlyTest, ResizesAndMinimises) {
     EXPECT_LT(compare_images(image("small.png"), image("help.png")).psnr, 30);
 }
 
+TEST_F(FlyTest, LostDevicesAreOpenedAnew) {
+    fly("settle\npicture before.png\nlose window\nframes 2\nsettle\nexpect finished == yes\nexpect error == none\n"
+        "picture after.png\nlose pictures\nsize 484 320\nsettle\nsize 480 320\nsettle\nexpect finished == yes\n"
+        "expect error == none\npicture again.png\n");
+    EXPECT_GE(compare_images(image("before.png"), image("after.png")).psnr, 60);
+    EXPECT_GE(compare_images(image("before.png"), image("again.png")).psnr, 60);
+}
+
 TEST_F(FlyTest, AFileThatCannotBeReadIsSaidAndTheSceneStays) {
     std::ofstream(folder_ / "broken.nrrd") << "NRRD0004\ntype: nonsense\n\n";
     fly("settle\ndrop broken.nrrd\nframes 3\nexpect error has broken.nrrd\nexpect volume == builtin:torus:32\n"
