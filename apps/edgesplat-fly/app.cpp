@@ -216,7 +216,7 @@ void App::lay_out(const Input& input) {
 
 void App::show_panels() {
     const auto em = static_cast<float>(state_.em);
-    state_.places.clear();
+    state_.places = {{"picture", glm::dvec4(state_.area)}};
     if (state_.panels) {
         ImGui::SetNextWindowPos({0, 0});
         ImGui::SetNextWindowSize({static_cast<float>(state_.area.x), static_cast<float>(state_.area.w)});
