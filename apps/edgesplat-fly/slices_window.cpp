@@ -10,6 +10,7 @@
 #include "apps/edgesplat-fly/widgets.h"
 #include "engine/error.h"
 #include "engine/viewer/samples.h"
+#include "engine/viewer/screen.h"
 
 namespace {
 
@@ -97,10 +98,15 @@ void letters(const AppState& state, const Cell& cell) {
     const Pen pen{cell.list, glm::dvec2(0), state.em};
     const glm::dvec2 middle = (cell.low + cell.high) / 2.0, half = 0.5 * state.em * glm::dvec2(0.6, 1.1);
     const double edge = 0.3 * state.em;
-    pen.text({cell.low.x + edge, middle.y - half.y}, letter(way({-1, 0})));
-    pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(way({1, 0})));
-    pen.text({middle.x - half.x, cell.low.y + edge}, letter(way({0, -1})));
-    pen.text({middle.x - half.x, cell.high.y - edge - 2 * half.y}, letter(way({0, 1})));
+    // A slice of few voxels has no room for all of them.
+    if (cell.high.x - cell.low.x > 4 * state.em) {
+        pen.text({cell.low.x + edge, middle.y - half.y}, letter(way({-1, 0})));
+        pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(way({1, 0})));
+    }
+    if (cell.high.y - cell.low.y > 4 * state.em) {
+        pen.text({middle.x - half.x, cell.low.y + edge}, letter(way({0, -1})));
+        pen.text({middle.x - half.x, cell.high.y - edge - 2 * half.y}, letter(way({0, 1})));
+    }
 }
 
 void cross(const Cell& cell) {
@@ -198,10 +204,22 @@ void window_sliders(AppState& state) {
     view.high = std::clamp(view.high, view.low + gap, most);
 }
 
+/// The linked point in the picture.
+void mark(const AppState& state, const glm::dvec3& world) {
+    const auto at = viewer::project(state.session.motion().camera(), state.picture_size(), world);
+    if (!at || !state.overlays) return;
+    const Pen pen{ImGui::GetBackgroundDrawList(), glm::dvec2(state.area.x, state.area.y), state.em};
+    const glm::dvec2 limit(state.picture_size());
+    if (at->x < 0 || at->y < 0 || at->x >= limit.x || at->y >= limit.y) return;
+    for (const glm::dvec2& way : {glm::dvec2(1, 0), glm::dvec2(0, 1), glm::dvec2(-1, 0), glm::dvec2(0, -1)})
+        pen.line(*at + 0.3 * state.em * way, *at + 0.8 * state.em * way, kCross);
+}
+
 void contents(AppState& state) {
     const Scope scope(state, "slices");
     const auto& volume = state.session.volume();
     const glm::dvec3 world = linked_point(state), voxel = volume.geometry.to_index(world);
+    mark(state, world);
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     const glm::dvec2 corner(static_cast<double>(at.x), static_cast<double>(at.y));
     const double pad = 0.4 * state.em, foot = 6.8 * state.em, width = static_cast<double>(size.x);
