@@ -13,6 +13,9 @@
 #include "apps/edgesplat-fly/surface.h"
 #include "apps/edgesplat-fly/window.h"
 
+/// What scripts may expect, with commas between.
+std::string value_names();
+
 struct AppOptions {
     std::string source;  ///< volume or scene file; empty: a builtin scene
     edgesplat::DeviceChoice device;

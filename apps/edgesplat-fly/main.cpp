@@ -17,7 +17,7 @@ void print_devices() {
 void print_script_help() {
     for (const auto& verb : edgesplat::viewer::script_verbs())
         fmt::print("{:<11}{}\n", verb.name, verb.help);
-    fmt::print("\nKeys and mouse:\n");
+    fmt::print("\nValues: {}\n\nKeys and mouse:\n", value_names());
     for (const Shortcut& shortcut : shortcuts())
         fmt::print("{:<26}{}\n", shortcut.keys, shortcut.what);
 }
@@ -79,7 +79,11 @@ int main(int argc, char** argv) {
     app.set_version_flag("--version", "edgesplat-fly " EDGESPLAT_VERSION);
     AppOptions options;
     add_options(app, options);
-    CLI11_PARSE(app, argc, argv);
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        return app.exit(error) == 0 ? 0 : 2;
+    }
     try {
         App(options).run();
     } catch (const std::exception& error) {

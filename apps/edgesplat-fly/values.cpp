@@ -97,17 +97,15 @@ const Values& values() {
 
 }  // namespace
 
+std::string value_names() {
+    std::string names;
+    for (const auto& [known, get] : values())
+        names += (names.empty() ? "" : ", ") + known;
+    return names;
+}
+
 std::string App::value(const std::string& name) {
-    // scene.effects.fog.density and the like: any number of the scene file.
-    constexpr std::string_view kScene = "scene.";
-    if (name.starts_with(kScene))
-        return text(edgesplat::number_at(state_.session.document(), name.substr(kScene.size())));
     const auto found = values().find(name);
-    if (found == values().end()) {
-        std::string names;
-        for (const auto& [known, get] : values())
-            names += (names.empty() ? "" : ", ") + known;
-        edgesplat::fail("'{}' is no value; there are {}", name, names);
-    }
+    if (found == values().end()) edgesplat::fail("'{}' is no value; there are {}", name, value_names());
     return found->second(state_);
 }

@@ -40,7 +40,7 @@ constexpr std::array<ScriptVerb, 27> kVerbs{{
     {"screenshot", "t", "writes the window's content to a PNG file"},
     {"picture", "t", "writes the picture as it is shown to a PNG file"},
     {"save", "t", "writes the scene to a file"},
-    {"expect", "wct", "stops with an error unless a value compares so: see --script-help"},
+    {"expect", "wct", "stops with an error unless a value (below) compares so: ==, !=, <, <=, >, >=, has"},
     {"lose", "w", "what happens when a device is lost: window or pictures"},
     {"report", "t", "writes what pictures took since the last report to a JSON file"},
 }};

@@ -120,7 +120,7 @@ TEST_F(FlyTest, AnExpectationThatDoesNotHoldEndsItWithFileAndLine) {
     const ProgramRun unknown = try_to_fly("expect nothing == plain\n", "builtin:sphere:16");
     EXPECT_EQ(unknown.status, 1);
     EXPECT_THAT(unknown.err, HasSubstr("'nothing' is no value"));
-    EXPECT_EQ(try_to_fly("", "--size 0x5").status, 105);
+    EXPECT_EQ(try_to_fly("", "--size 0x5").status, 2);
     const ProgramRun missing = try_to_fly("open missing.nrrd\n", "builtin:sphere:16");
     EXPECT_EQ(missing.status, 1);
     EXPECT_THAT(missing.err, HasSubstr("missing.nrrd"));
@@ -131,7 +131,14 @@ TEST_F(FlyTest, WithoutAScreenItSaysSo) {
         run_shell("env -u DISPLAY -u WAYLAND_DISPLAY '" EDGESPLAT_FLY "' --no-preferences builtin:sphere:16");
     EXPECT_EQ(result.status, 1);
     EXPECT_THAT(result.err, HasSubstr("no screen"));
-    EXPECT_EQ(run_shell("'" EDGESPLAT_FLY "' --headless builtin:sphere:16").status, 107);
+    EXPECT_EQ(run_shell("'" EDGESPLAT_FLY "' --headless builtin:sphere:16").status, 2);
+}
+
+TEST_F(FlyTest, TheManualKnowsEveryKeyAndCommand) {
+    const ProgramRun help = run_shell("'" EDGESPLAT_FLY "' --script-help");
+    EXPECT_EQ(help.status, 0);
+    EXPECT_THAT(help.out, HasSubstr("Space"));
+    EXPECT_THAT(text_of(EDGESPLAT_SOURCE_DIR "/docs/fly.md"), HasSubstr(help.out));
 }
 
 TEST_F(FlyTest, RemembersWhatWasOpened) {
