@@ -98,13 +98,17 @@ const Values& values() {
 }  // namespace
 
 std::string value_names() {
-    std::string names;
+    std::string names = "scene.KEY of any number in the scene file";
     for (const auto& [known, get] : values())
-        names += (names.empty() ? "" : ", ") + known;
+        names += ", " + known;
     return names;
 }
 
 std::string App::value(const std::string& name) {
+    // scene.effects.fog.density and the like: any number of the scene file.
+    constexpr std::string_view kScene = "scene.";
+    if (name.starts_with(kScene))
+        return text(edgesplat::number_at(state_.session.document(), name.substr(kScene.size())));
     const auto found = values().find(name);
     if (found == values().end()) edgesplat::fail("'{}' is no value; there are {}", name, value_names());
     return found->second(state_);
