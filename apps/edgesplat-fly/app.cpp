@@ -40,6 +40,11 @@ edgesplat::Image as_image(const viewer::ScreenPicture& picture) {
     return image;
 }
 
+bool usable(const std::vector<edgesplat::DeviceInfo>& devices, const std::string& name) {
+    return std::ranges::any_of(
+        devices, [&](const edgesplat::DeviceInfo& device) { return device.name == name && device.rejections.empty(); });
+}
+
 }  // namespace
 
 App::App(const AppOptions& options) : options_(options), state_(!options.script.empty()) {
@@ -47,8 +52,10 @@ App::App(const AppOptions& options) : options_(options), state_(!options.script.
     const auto& remembered = state_.preferences;
     size_ = options_.size.x > 0 ? options_.size : glm::ivec2(remembered.width, remembered.height);
     state_.device = options_.device;
-    if (state_.device.device.empty()) state_.device.device = remembered.device;
     state_.devices = edgesplat::list_devices();
+    // A device that was chosen once may be gone.
+    if (state_.device.device.empty() && usable(state_.devices, remembered.device))
+        state_.device.device = remembered.device;
     if (!options_.script.empty()) {
         auto commands = viewer::read_script(options_.script, &is_key);
         player_ = std::make_unique<ScriptPlayer>(std::move(commands), script_host(), size_);
@@ -104,9 +111,27 @@ void App::open_gui() {
         extensions.instance = Window::instance_extensions();
         extensions.device = {VK_KHR_SWAPCHAIN_EXTENSION_NAME};
     }
-    device_ = std::make_unique<edgesplat::gpu::Device>(state_.device, extensions);
-    canvas_ = std::make_unique<Canvas>(*device_);
-    if (window_) surface_ = std::make_unique<Surface>(*device_, window_->handle());
+    const auto open = [&](const edgesplat::DeviceChoice& choice) {
+        device_ = std::make_unique<edgesplat::gpu::Device>(choice, extensions);
+        if (window_) surface_ = std::make_unique<Surface>(*device_, window_->handle());
+    };
+    // Not every device that can draw pictures can draw to the screen.
+    std::string reasons;
+    std::vector<std::string> candidates{state_.device.device};
+    for (const edgesplat::DeviceInfo& device : state_.devices)
+        if (window_ && device.rejections.empty()) candidates.push_back(std::to_string(device.index));
+    for (const std::string& candidate : candidates) {
+        try {
+            open({.device = candidate, .validation = state_.device.validation});
+            canvas_ = std::make_unique<Canvas>(*device_);
+            return;
+        } catch (const edgesplat::Error& error) {
+            surface_.reset();
+            device_.reset();
+            if (reasons.empty()) reasons = error.what();
+        }
+    }
+    edgesplat::fail("{}", reasons);
 }
 
 void App::close_gui() {

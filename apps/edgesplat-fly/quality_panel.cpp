@@ -82,7 +82,7 @@ void device_choice(AppState& state) {
         if (!device.rejections.empty()) {
             ImGui::TextDisabled("%s: %s", label.c_str(), device.rejections.front().c_str());
         } else if (ImGui::Selectable(label.c_str(), device.name == current)) {
-            state.wishes.device = std::to_string(device.index);
+            state.wishes.device = device.name;
         }
     }
     ImGui::EndCombo();
