@@ -108,7 +108,7 @@ bool clip_handles(AppState& state, const Input& input, bool over_picture) {
         return true;
     }
     hand.hovered.reset();
-    if (!over_picture || !free || input.ctrl()) return false;
+    if (!over_picture || !free || input.ctrl() || state.tool != Tool::Move) return false;
     hand.hovered =
         viewer::handle_at(handles, state.session.motion().camera(), state.picture_size(), pixel, kReach * state.em);
     if (!pressed || !hand.hovered) return false;

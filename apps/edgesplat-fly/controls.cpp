@@ -40,7 +40,7 @@ void toggle_recording(AppState& s) {
     }
 }
 
-constexpr std::array<Shortcut, 36> kShortcuts{{
+constexpr std::array<Shortcut, 39> kShortcuts{{
     {"F1", "this help", [](AppState& s) { s.help = !s.help; }},
     {"Tab", "panels on and off", [](AppState& s) { s.panels = !s.panels; }},
     {"F", "fly, or orbit like a model on a table", toggle_mode},
@@ -99,6 +99,9 @@ constexpr std::array<Shortcut, 36> kShortcuts{{
     {"double click", "go to that surface and turn about it", nullptr},
     {"Ctrl+click", "pick the surface", nullptr},
     {"drag the divider", "move the wipe", nullptr},
+    {"drag a handle", "move a clip plane, or a side of a box", nullptr},
+    {"histogram", "drag; double click adds, right click removes", nullptr},
+    {"slices", "click or drag: the point; wheel: the next slice", nullptr},
     {"drop a file or folder", "open it", nullptr},
     {"left stick, right stick", "gamepad: fly, look; triggers: down and up", nullptr},
     {"pad X, pad Y", "gamepad: plain or edge-preserved; home", nullptr},

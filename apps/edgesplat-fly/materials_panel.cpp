@@ -47,7 +47,8 @@ bool iso_value(AppState& state, std::size_t m) {
     const double value = session.scene().iso_values[m - 1];
     // Past the others it goes in the plot: here the slider would be another material's then.
     const auto iso = session.scene().iso_values;
-    const double low = volume.min_value, high = volume.max_value, gap = viewer::kIsoGap * (high - low);
+    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const double gap = viewer::kIsoGap * (high - low);
     const double least = m > 1 ? iso[m - 2] + gap : low, most = m < iso.size() ? iso[m] - gap : high;
     slide(state, "iso-value", value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
         viewer::move_iso_value(d, volume, m - 1, std::clamp(v, least, std::max(least, most)));

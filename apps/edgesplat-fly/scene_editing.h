@@ -23,7 +23,7 @@ class ValueCounter {
   public:
     /// Null until they are there. `wait`: they are there at once.
     const ValueStatistics* of(const std::shared_ptr<const edgesplat::Volume>& volume, bool wait);
-    bool busy() const { return to_come_.valid(); }
+    bool busy() const;
 
   private:
     std::shared_ptr<const edgesplat::Volume> volume_, counted_;  ///< being counted; that `found_` is of

@@ -12,8 +12,8 @@ void begin_anew(AppState& state) {
     if (editing.volume == volume) return;
     editing.volume = volume;
     editing.plot = {};
-    editing.plot.low = volume->min_value;
-    editing.plot.high = volume->max_value;
+    editing.plot.low = static_cast<double>(volume->min_value);
+    editing.plot.high = static_cast<double>(volume->max_value);
     editing.put_away.clear();
 }
 

@@ -57,6 +57,8 @@ void update(AppState& state, int axis, const glm::dvec3& voxel) {
         shown.slice->cross = viewer::pixel_at(*shown.slice, voxel);
         return;
     }
+    // Of a file slices are read once the eye stands: they must not hold up the flight.
+    if (shown.slice && shown.volume == &volume && volume.packed && state.session.moving()) return;
     shown.slice.reset();
     try {
         shown.slice = viewer::slice(volume, axis, voxel, view.low, view.high);
@@ -249,7 +251,7 @@ void slices_window(AppState& state) {
     if (!state.slices || !state.session.is_open()) return;
     const auto& volume = state.session.opened().volume;
     if (state.slice_view.volume != volume) {
-        state.slice_view = {volume, volume->min_value, volume->max_value};
+        state.slice_view = {volume, static_cast<double>(volume->min_value), static_cast<double>(volume->max_value)};
         state.slice_pictures = {};
     }
     const glm::dvec4 area(state.slices_area);

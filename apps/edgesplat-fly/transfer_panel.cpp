@@ -85,7 +85,8 @@ void transfer_panel(AppState& state) {
     }
     const std::size_t i = *chosen;
     const auto& volume = session.volume();
-    const double low = volume.min_value, high = volume.max_value, gap = 1e-5 * (high - low);
+    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const double gap = 1e-5 * (high - low);
     color(state, "colour", points[i].color, [i](SceneDocument& d, const glm::dvec3& v) { d.transfer.at(i).color = v; });
     ImGui::SameLine();
     ImGui::Text("of point %zu of %zu", i + 1, points.size());

@@ -17,6 +17,10 @@ ValueStatistics counted(const edgesplat::Volume& volume) {
 
 }  // namespace
 
+bool ValueCounter::busy() const {
+    return to_come_.valid() && to_come_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
 const ValueStatistics* ValueCounter::of(const std::shared_ptr<const edgesplat::Volume>& volume, bool wait) {
     if (counted_ == volume) return &found_;
     if (to_come_.valid() && (wait || to_come_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {

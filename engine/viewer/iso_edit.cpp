@@ -10,7 +10,8 @@ namespace {
 
 /// The allowed value that is nearest to `value` beside `others`; none where there is no room.
 std::optional<double> free_value(const std::vector<double>& others, const Volume& volume, double value) {
-    const double low = volume.min_value, high = volume.max_value, gap = kIsoGap * (high - low);
+    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const double gap = kIsoGap * (high - low);
     if (!(gap > 0) || !std::isfinite(value)) return std::nullopt;
     const auto allowed = [&](double v) {
         // A value that is just the gap away from another one may lie nearer by rounding.
@@ -99,8 +100,9 @@ std::size_t take_material(SceneDocument& document, const Volume& volume, std::si
     taken.name = look.name.empty() ? preset.name : look.name;
     material_choice(document, material) = std::move(taken);
     if (material == 0 || content.iso_values.empty()) return material;
-    const double value = content.iso_values.front(), low = volume.min_value, high = volume.max_value;
-    if (!(value > low && value <= high)) return material;
+    const double value = content.iso_values.front();
+    if (!(value > static_cast<double>(volume.min_value) && value <= static_cast<double>(volume.max_value)))
+        return material;
     return move_iso_value(document, volume, material - 1, value) + 1;
 }
 
