@@ -9,13 +9,6 @@
 
 #include "engine/error.h"
 
-// Declared by GLFW only behind its own inclusion of Vulkan's header.
-extern "C" {
-int glfwGetPhysicalDevicePresentationSupport(VkInstance instance, VkPhysicalDevice device, std::uint32_t family);
-VkResult glfwCreateWindowSurface(VkInstance instance, GLFWwindow* window, const VkAllocationCallbacks* allocator,
-                                 VkSurfaceKHR* surface);
-}
-
 namespace {
 
 using edgesplat::fail;

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
 
 #include "engine/renderer.h"
 #include "engine/viewer/pace.h"
@@ -92,7 +93,7 @@ class Drawer {
     struct Key {
         int level;
         Kind kind;
-        auto operator<=>(const Key&) const = default;
+        bool operator<(const Key& other) const { return std::tie(level, kind) < std::tie(other.level, other.kind); }
     };
     struct Held {
         std::unique_ptr<Renderer> renderer;

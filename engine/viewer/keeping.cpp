@@ -64,7 +64,7 @@ void save_picture(const PictureOrder& order) {
 
 fs::path free_path(const fs::path& folder, const std::string& stem, const std::string& extension) {
     for (int number = 1;; ++number) {
-        const fs::path path = folder / fmt::format("{}-{}{}", stem, number, extension);
+        fs::path path = folder / fmt::format("{}-{}{}", stem, number, extension);
         std::error_code error;
         if (!fs::exists(path, error)) return path;
     }
