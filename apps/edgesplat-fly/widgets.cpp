@@ -24,6 +24,13 @@ std::string name_of(std::string label) {
     return label;
 }
 
+/// Without the label beside it.
+void note_field(AppState& state, const char* label, float width) {
+    if (!ImGui::IsItemVisible()) return;
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    note(state, name_of(label), {glm::dvec2(low.x, low.y), glm::dvec2(low.x + width, high.y)});
+}
+
 template <typename T>
 void change(AppState& state, const T& value, const Setter<T>& set) {
     state.session.edit([&](edgesplat::SceneDocument& d) { set(d, value); }, false);
@@ -52,22 +59,25 @@ void note(AppState& state, const char* label) {
 }
 
 void slide(AppState& state, const char* label, double value, const SlideRange& range, const Setter<double>& set) {
+    const float width = ImGui::CalcItemWidth();
     const auto flags = range.logarithmic ? ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_NoRoundToFormat : 0;
     if (ImGui::SliderScalar(label, ImGuiDataType_Double, &value, &range.low, &range.high, range.format, flags))
         change(state, value, set);
-    note(state, label);
+    note_field(state, label, width);
 }
 
 void slide(AppState& state, const char* label, int value, int low, int high, const Setter<int>& set) {
+    const float width = ImGui::CalcItemWidth();
     if (ImGui::SliderInt(label, &value, low, high)) change(state, std::clamp(value, low, high), set);
-    note(state, label);
+    note_field(state, label, width);
 }
 
 void drag3(AppState& state, const char* label, const glm::dvec3& value, double speed, const Setter<glm::dvec3>& set) {
+    const float width = ImGui::CalcItemWidth();
     glm::dvec3 v = value;
     if (ImGui::DragScalarN(label, ImGuiDataType_Double, &v.x, 3, static_cast<float>(speed), nullptr, nullptr, "%.2f"))
         change(state, v, set);
-    note(state, label);
+    note_field(state, label, width);
 }
 
 void flag(AppState& state, const char* label, bool value, const Setter<bool>& set) {
