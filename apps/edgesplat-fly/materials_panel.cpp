@@ -50,7 +50,7 @@ bool iso_value(AppState& state, std::size_t m) {
     const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
     const double gap = viewer::kIsoGap * (high - low);
     const double least = m > 1 ? iso[m - 2] + gap : low, most = m < iso.size() ? iso[m] - gap : high;
-    slide(state, "iso-value", value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
+    slide(state, "iso", value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
         viewer::move_iso_value(d, volume, m - 1, std::clamp(v, least, std::max(least, most)));
     });
     const bool needed = session.document().transfer.empty() && session.scene().iso_values.size() == 1;

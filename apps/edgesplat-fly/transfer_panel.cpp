@@ -26,8 +26,9 @@ void to_transfer(AppState& state) {
     auto& session = state.session;
     auto points = std::exchange(state.editing.put_away, {});
     if (points.empty()) {
-        const auto range = static_cast<double>(session.volume().max_value - session.volume().min_value);
-        points = viewer::transfer_of_materials(session.scene(), kStep * range);
+        const auto low = static_cast<double>(session.volume().min_value);
+        const auto high = static_cast<double>(session.volume().max_value);
+        points = viewer::transfer_of_materials(session.scene(), low, high, kStep * (high - low));
     }
     state.editing.plot.chosen.reset();
     session.edit([&](SceneDocument& d) { viewer::use_transfer(d, points); });
@@ -87,9 +88,11 @@ void transfer_panel(AppState& state) {
     const auto& volume = session.volume();
     const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
     const double gap = 1e-5 * (high - low);
-    color(state, "colour", points[i].color, [i](SceneDocument& d, const glm::dvec3& v) { d.transfer.at(i).color = v; });
+    color(state, "##colour", points[i].color,
+          [i](SceneDocument& d, const glm::dvec3& v) { d.transfer.at(i).color = v; });
     ImGui::SameLine();
-    ImGui::Text("of point %zu of %zu", i + 1, points.size());
+    ImGui::AlignTextToFramePadding();
+    ImGui::Text("point %zu of %zu", i + 1, points.size());
     ImGui::SameLine();
     if (button(state, "remove")) {
         session.edit([&](SceneDocument& d) { viewer::remove_transfer_point(d.transfer, i); });

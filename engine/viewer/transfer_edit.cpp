@@ -34,7 +34,7 @@ bool remove_transfer_point(TransferPoints& points, std::size_t place) {
     return true;
 }
 
-TransferPoints transfer_of_materials(const Scene& scene, double width) {
+TransferPoints transfer_of_materials(const Scene& scene, double low, double high, double width) {
     const auto& iso = scene.iso_values;
     const auto& materials = scene.materials;
     const auto color = [&](std::size_t m) {
@@ -42,13 +42,17 @@ TransferPoints transfer_of_materials(const Scene& scene, double width) {
         if (m + 1 < materials.size()) return materials[m + 1].color;
         return materials[m == 0 ? 0 : m - 1].color;
     };
+    const auto point = [&](double value, std::size_t m) {
+        return TransferPoint{value, color(m), materials[m].extinction};
+    };
     TransferPoints points;
     for (std::size_t i = 0; i < iso.size(); ++i) {
         const double room = i == 0 ? width : std::min(width, (iso[i] - iso[i - 1]) / 2);
-        points.push_back({iso[i] - room, color(i), materials[i].extinction});
-        points.push_back({iso[i], color(i + 1), materials[i + 1].extinction});
+        points.push_back(point(iso[i] - room, i));
+        points.push_back(point(iso[i], i + 1));
     }
-    if (iso.empty() && !materials.empty()) points.push_back({0, materials.front().color, materials.front().extinction});
+    if (points.empty() || low < points.front().value) points.insert(points.begin(), point(low, 0));
+    if (high > points.back().value) points.push_back(point(high, materials.size() - 1));
     return points;
 }
 

@@ -23,9 +23,10 @@ void move_transfer_point(TransferPoints& points, std::size_t place, double value
 /// The last one stays. Whether it is gone.
 bool remove_transfer_point(TransferPoints& points, std::size_t place);
 
-/// The materials of a scene as a function: steps `width` > 0 wide or narrower that end at the iso-values. What is
-/// transparent has the colour of what lies next to it, since colours are interpolated.
-TransferPoints transfer_of_materials(const Scene& scene, double width);
+/// The materials of a scene as a function: steps `width` > 0 wide or narrower that end at the iso-values, and a point
+/// at `low` and `high` where these lie beyond, so that what is added changes the function only up to its neighbours.
+/// What is transparent has the colour of what lies next to it, since colours are interpolated.
+TransferPoints transfer_of_materials(const Scene& scene, double low, double high, double width);
 
 /// Points in place of the materials' colours and extinctions; iso-values and their materials stay as edges.
 void use_transfer(SceneDocument& document, TransferPoints points);

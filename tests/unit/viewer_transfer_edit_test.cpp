@@ -113,8 +113,10 @@ TEST(TransferEdit, MaterialsBecomeAFunctionOfTheSameExtinctions) {
     scene.iso_values = {0.2, 0.6, 0.601};
     scene.materials = {{{0, 0, 0}, 0}, {{1, 0, 0}, 0.5}, {{0, 1, 0}, 4}, {{0, 0, 1}, 9}};
     const double width = 0.01;
-    const TransferPoints points = transfer_of_materials(scene, width);
-    EXPECT_EQ(points.size(), 6U);
+    const TransferPoints points = transfer_of_materials(scene, 0, 1, width);
+    ASSERT_EQ(points.size(), 8U);
+    EXPECT_EQ(points.front().value, 0);
+    EXPECT_EQ(points.back().value, 1);
     for (double value = -0.1; value < 1.1; value += 1.0 / 4096) {
         std::size_t m = 0;
         double above = 1;
@@ -129,6 +131,8 @@ TEST(TransferEdit, MaterialsBecomeAFunctionOfTheSameExtinctions) {
     }
     scene.transfer = points;
     EXPECT_NO_THROW(validate(scene));
+    // Ends that the steps reach already are not doubled.
+    EXPECT_EQ(transfer_of_materials(scene, 0.19, 0.601, width).size(), 6U);
 }
 
 TEST(TransferEdit, DocumentsChangeBetweenMaterialsAndFunctions) {
