@@ -5,28 +5,13 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
 #include "engine/error.h"
 
 namespace {
-
-Input& input_of(GLFWwindow* window) {
-    return *static_cast<Input*>(glfwGetWindowUserPointer(window));
-}
-
-void on_key(GLFWwindow* window, int code, int, int action, int) {
-    const std::string_view name = key_name(code);
-    if (name.empty()) return;
-    Input& input = input_of(window);
-    if (action == GLFW_RELEASE) {
-        input.held.erase(Key(name));
-        return;
-    }
-    input.held.insert(Key(name));
-    input.pressed.emplace_back(name);
-}
 
 /// Inner dead zone of a stick, where hands rest.
 double stick(float value) {
@@ -36,6 +21,44 @@ double stick(float value) {
 }
 
 }  // namespace
+
+Window& Window::of(GLFWwindow* window) {
+    return *static_cast<Window*>(glfwGetWindowUserPointer(window));
+}
+
+void Window::on_key(GLFWwindow* window, int code, int /*scancode*/, int action, int /*modifiers*/) {
+    const std::string_view name = key_name(code);
+    if (!name.empty()) of(window).events_.push_back({Key(name), Button::Left, action != GLFW_RELEASE, {}});
+}
+
+void Window::on_button(GLFWwindow* window, int button, int action, int /*modifiers*/) {
+    constexpr std::array<Button, 3> kButtons{Button::Left, Button::Right, Button::Middle};
+    if (button < 0 || button >= static_cast<int>(kButtons.size())) return;
+    Event event{{}, kButtons[static_cast<std::size_t>(button)], action == GLFW_PRESS, {}};
+    glfwGetCursorPos(window, &event.at.x, &event.at.y);
+    of(window).events_.push_back(event);
+}
+
+std::optional<glm::dvec2> Window::take_events() {
+    // What goes down and comes up between two frames is seen by both of them, however slow they are.
+    std::optional<glm::dvec2> at;
+    bool went_down = false, came_up = false;
+    for (; !events_.empty(); events_.pop_front()) {
+        const Event& event = events_.front();
+        if (event.down ? came_up : went_down) break;
+        (event.down ? went_down : came_up) = true;
+        if (event.key.empty()) {
+            input_.buttons[static_cast<std::size_t>(event.button)] = event.down;
+            at = event.at;
+        } else if (event.down) {
+            input_.held.insert(event.key);
+            input_.pressed.push_back(event.key);
+        } else {
+            input_.held.erase(event.key);
+        }
+    }
+    return at;
+}
 
 Window::Window(const glm::ivec2& size, const std::string& title) {
     static std::string reason;
@@ -56,18 +79,16 @@ Window::Window(const glm::ivec2& size, const std::string& title) {
         edgesplat::fail("window: none of {}x{} could be opened ({})", size.x, size.y, reason);
     }
     glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
-    glfwSetWindowUserPointer(window_, &input_);
-    glfwSetKeyCallback(window_, &on_key);
-    glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned int c) { input_of(w).text.push_back(c); });
-    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { input_of(w).wheel += y; });
-    glfwSetMouseButtonCallback(window_, [](GLFWwindow* w, int button, int action, int) {
-        if (button < 3) input_of(w).buttons[static_cast<std::size_t>(button)] = action == GLFW_PRESS;
-    });
+    glfwSetWindowUserPointer(window_, this);
+    glfwSetKeyCallback(window_, &Window::on_key);
+    glfwSetMouseButtonCallback(window_, &Window::on_button);
+    glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned int c) { of(w).input_.text.push_back(c); });
+    glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
-        if (focused == GLFW_FALSE) input_of(w).held.clear();  // releases go to whoever has the focus now
+        if (focused == GLFW_FALSE) of(w).input_.held.clear();  // releases go to whoever has the focus now
     });
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
-        input_of(w).dropped.insert(input_of(w).dropped.end(), paths, paths + count);
+        of(w).input_.dropped.insert(of(w).input_.dropped.end(), paths, paths + count);
     });
     last_ = glfwGetTime();
 }
@@ -105,7 +126,7 @@ Input Window::poll(double wait) {
     input_.text.clear();
     input_.dropped.clear();
     input_.wheel = 0;
-    if (wait > 0)
+    if (wait > 0 && events_.empty())
         glfwWaitEventsTimeout(wait);
     else
         glfwPollEvents();
@@ -117,6 +138,7 @@ Input Window::poll(double wait) {
     glm::ivec2 window_size(0);
     glfwGetWindowSize(window_, &window_size.x, &window_size.y);
     glfwGetCursorPos(window_, &input_.mouse.x, &input_.mouse.y);
+    if (const auto at = take_events()) input_.mouse = *at;
     if (window_size.x > 0 && window_size.y > 0) input_.mouse *= glm::dvec2(input_.size) / glm::dvec2(window_size);
     read_gamepad();
     input_.close = glfwWindowShouldClose(window_) == GLFW_TRUE;

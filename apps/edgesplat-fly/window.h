@@ -1,7 +1,7 @@
 // The window on the screen: what is done in it, and how its content gets there.
 #pragma once
 
-#include <memory>
+#include <deque>
 #include <string>
 #include <vector>
 
@@ -31,9 +31,21 @@ class Window {
     static void install_clipboard(GLFWwindow* window);
 
   private:
+    /// A key or a mouse button that went down or came up.
+    struct Event {
+        Key key;  ///< empty: a button
+        Button button = Button::Left;
+        bool down = false;
+        glm::dvec2 at{0};  ///< of the mouse then, window coordinates
+    };
     void read_gamepad();
+    std::optional<glm::dvec2> take_events();
+    static void on_key(GLFWwindow* window, int code, int scancode, int action, int modifiers);
+    static void on_button(GLFWwindow* window, int button, int action, int modifiers);
+    static Window& of(GLFWwindow* window);
     GLFWwindow* window_ = nullptr;
     Input input_;
+    std::deque<Event> events_;  ///< that no frame has seen yet
     double last_ = 0;
     bool full_screen_ = false;
     glm::ivec4 windowed_{0};  ///< place and size before it filled the screen

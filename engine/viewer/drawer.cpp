@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/frame_plan.h"
 #include "engine/scene/ladder.h"
 #include "engine/viewer/display.h"
 #include "engine/volume/packed_volume.h"
@@ -198,6 +199,18 @@ bool Drawer::casts_rays(const DrawRequest& request) {
            request.settings.edges != EdgeEstimator::Off;
 }
 
+Rung Drawer::quick_rung(const DrawRequest& request, bool rays) {
+    Rung rung = pace_of(rays).rung();
+    // In narrow passages a coarse level has the eye in matter, and shows nothing but that.
+    const bool outside = rung.level > 0 && !eye_in_opaque(*request.volume, request.scene, request.camera);
+    while (rung.level > 0 && outside &&
+           eye_in_opaque(*level_of(request.volume, rung.level), request.scene, request.camera)) {
+        --rung.level;
+        rung.scale = std::max(pace_scales().front(), rung.scale / 2);
+    }
+    return rung;
+}
+
 void Drawer::plan(Job& job) {
     if (job.planned) return;
     job.planned = true;
@@ -218,7 +231,7 @@ void Drawer::plan(Job& job) {
     forget_unused(job);
     using Stage = Job::Stage;
     const bool rays = casts_rays(job.request);
-    const Stage quick{pace_of(rays).rung()};
+    const Stage quick{quick_rung(job.request, rays)};
     if (job.request.moving) {
         job.stages = {quick};
         return;

@@ -107,6 +107,7 @@ class Drawer {
     DrawnPicture draw(const Job& job);
     Image draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPicture& out);
     bool casts_rays(const DrawRequest& request);
+    Rung quick_rung(const DrawRequest& request, bool rays);
     Pace& pace_of(bool rays) { return rays ? *ray_pace_ : *pace_; }
     Renderer& renderer_for(const Key& key, const Job& job);
     std::shared_ptr<const Volume> level_of(const std::shared_ptr<const Volume>& volume, int level);

@@ -118,6 +118,7 @@ void Session::set_best_when_still(bool on) {
 void Session::find_walls() {
     if (!walls_outdated_ || quiet_ < kQuiet || walls_to_come_.valid()) return;
     walls_outdated_ = false;
+    walls_volume_ = opened_.volume;
     walls_to_come_ = std::async(std::launch::async, [volume = opened_.volume, scene = scene_] {
         return std::make_shared<const Walls>(volume, scene);
     });
@@ -127,8 +128,16 @@ void Session::poll() {
     find_walls();
     if (walls_to_come_.valid() &&
         (wait_ || walls_to_come_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
-        walls_ = walls_to_come_.get();
-        motion_.set_walls(walls_);
+        try {
+            auto found = walls_to_come_.get();
+            if (walls_volume_ == opened_.volume) {  // and not those of what was open before
+                walls_ = std::move(found);
+                motion_.set_walls(walls_);
+            }
+        } catch (const Error& error) {
+            message_ = error.what();
+        }
+        walls_volume_.reset();
     }
     if (!tour_.poll(wait_)) return;
     message_ = tour_.failed() ? "guided path: nothing connects the two points; set them in the same cavity"

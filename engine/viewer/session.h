@@ -114,6 +114,7 @@ class Session {
     FlightRecorder recorder_;
     std::shared_ptr<const Walls> walls_;
     std::future<std::shared_ptr<const Walls>> walls_to_come_;
+    std::shared_ptr<const Volume> walls_volume_;  ///< whose they are
     bool walls_outdated_ = false;
     std::vector<Pick> picks_;
     std::optional<glm::dvec3> point_;
