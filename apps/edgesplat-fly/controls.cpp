@@ -174,7 +174,8 @@ void PictureControls::mouse(AppState& state, const Input& input, bool over_pictu
     }
     const glm::dvec2 way = at - last_;
     last_ = at;
-    if (down && drag_ != Drag::None) {
+    // Also with the button up again: what was dragged between two slow frames counts.
+    if (drag_ != Drag::None) {
         travelled_ += glm::length(way);
         const glm::dvec2 turned = kRadiansPerHeight * state.preferences.turn / std::max(size.y, 1) * way;
         const double sign = state.preferences.invert_look ? 1 : -1;

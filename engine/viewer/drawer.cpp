@@ -1,5 +1,7 @@
 #include "engine/viewer/drawer.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -24,6 +26,8 @@ constexpr std::size_t kQuickVoxelsSoftware = std::size_t{1} << 17U, kQuickVoxels
 constexpr double kSoon = 350;
 
 constexpr double kHalfScale = 0.5;
+
+constexpr int kNiceness = 5;
 
 glm::ivec2 scaled(const glm::ivec2& size, double scale) {
     return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * scale)), 1);
@@ -128,6 +132,8 @@ std::size_t Drawer::renderers() const {
 }
 
 void Drawer::run(const std::stop_token& stop) {
+    // Where drawing takes the processor the window answers first. Threads of a driver that are made here follow.
+    setpriority(PRIO_PROCESS, 0, kNiceness);
     while (!stop.stop_requested()) {
         {
             std::unique_lock lock(mutex_);
