@@ -69,7 +69,8 @@ TEST_F(FlyTest, ADoubleClickFliesThereAndHomeComesBack) {
 }
 
 TEST_F(FlyTest, WallsHoldAFlightBack) {
-    fly("settle\nkey F\nexpect mode == fly\nexpect collisions == on\nstep 0.1\nhold W\nframes 120\nlet W\nexpect room > 0\n"
+    fly("settle\nkey F\nexpect mode == fly\nexpect collisions == on\nstep 0.1\nhold W\nframes 120\nlet W\nexpect room "
+        "> 0\n"
         "expect room < 3\nkey C\nexpect collisions == off\nhold W\nframes 20\nlet W\nexpect room < 0\n",
         "builtin:sphere:64");
 }
