@@ -8,6 +8,8 @@ find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
+# Pictures: PNG, and for everything else OpenImageIO.
+find_package(PNG REQUIRED)
 # OpenImageIO's CMake package on Debian 12 asks for programs its -dev package does not bring; pkg-config works.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 

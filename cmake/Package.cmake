@@ -6,6 +6,7 @@ foreach(library footprints volume scene reference engine)
     set_target_properties(edgesplat_${library} PROPERTIES EXPORT_NAME ${library})
     install(TARGETS edgesplat_${library} EXPORT edgesplatTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endforeach()
+install(TARGETS edgesplat_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat)
 install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_folder})
 
 # The library's face; what only its own sources include stays at home.

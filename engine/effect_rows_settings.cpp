@@ -65,7 +65,7 @@ std::vector<Effect> settings_effects() {
                     .base = warp,
                     .resources = {"splat traits"},
                     .record = {{"curvature", 2}},
-                    .constants = {{shader::SPEC_CURVED, "SPEC_CURVED"}, {shader::SPEC_NODES, "SPEC_NODES", 10}},
+                    .constants = {{shader::SPEC_CURVED, "SPEC_CURVED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}},
                     .frame_fields = {"traits", "curvature_unit"},
                     .scene_fields = {"traits", "curvature_unit"}});
     rows.push_back({.name = "edge weights",
@@ -120,7 +120,7 @@ std::vector<Effect> settings_effects() {
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.sheets = SheetCut::Sliced; },
                     .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets"},
-                    .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 10}}});
+                    .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}}});
     rows.push_back({.name = "half sheets",
                     .help = "a sheet's colour and depth take half the memory",
                     .call = "settings.sheet_format = \"half\"; --sheet-format half",

@@ -22,7 +22,7 @@ std::vector<Effect> view_effects() {
          .turn_on =
              [](FrameRequest& r) {
                  const VolumeGeometry& g = r.volume->geometry;
-                 const glm::dvec3 middle = g.to_world(glm::dvec3(g.dims - 1) / 2.0);
+                 const glm::dvec3 middle = g.center();
                  r.scene.effects.clip.keep = {{middle, r.camera.eye - middle + glm::dvec3(0, 0, 1e-3)}};
                  r.scene.effects.clip.remove = {{middle, middle - r.camera.eye + glm::dvec3(0, 1e-3, 0)},
                                                 {g.to_world(glm::dvec3(g.dims - 1) * 0.25), glm::dvec3(-1, 0, 0)}};

@@ -5,7 +5,6 @@
 
 #include "engine/error.h"
 #include "engine/frame.h"
-#include "engine/passes/1_estimate_edges.h"
 #include "engine/row_box.h"
 
 namespace edgesplat {
@@ -81,12 +80,16 @@ CollectionBlock whole_block(const glm::ivec3& dims) {
     return {glm::ivec3(0), dims, glm::ivec3(0), dims};
 }
 
+passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
+    return {plan.estimator, plan.skip_buried, plan.params.iso_count};
+}
+
 passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
-    const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
     return {.core_size = plan.dims,
+            .iso_count = plan.params.iso_count,
             .edges = plan.edge_field,
             .buried = plan.buried,
-            .smooth = plan.edge_field && marched,
+            .smooth = plan.edge_field && marches(plan.estimator),
             .curved = plan.curved,
             .weighted = plan.weighted,
             .clip = plan.clip,
@@ -153,10 +156,11 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
     if (resources.transfer) params.transfer = resources.transfer.address();
 
     commands.run([&] {
-        if (plan.buried) commands.span("1a_mark_buried", [&] { passes::mark_buried(commands, block.size, plan.clip); });
+        if (plan.buried)
+            commands.span("1a_mark_buried",
+                          [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
         if (plan.edge_field) {
-            commands.span("1_estimate_edges",
-                          [&] { passes::estimate_edges(commands, region, plan.estimator, plan.skip_buried); });
+            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
         }
         commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
     });

@@ -5,6 +5,7 @@
 
 #include "engine/frame_plan.h"
 #include "engine/frame_resources.h"
+#include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
 
 namespace edgesplat {
@@ -16,7 +17,8 @@ struct CollectionBlock {
 };
 CollectionBlock whole_block(const glm::ivec3& dims);
 
-/// What pass 2 is given for the whole volume.
+/// What passes 1b and 1c are given, and pass 2 for the whole volume.
+passes::EstimateEdges estimate_inputs(const CollectionPlan& plan);
 passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 
 /// Splats that a block added to the list.

@@ -43,11 +43,11 @@ std::string variant(const char* shader, const gpu::Specialization& constants) {
 double fragments(const FrameRequest& request, const FramePlan& plan) {
     const auto& geometry = request.volume->geometry;
     const CameraFrame view = camera_frame(request.camera);
-    const glm::dvec3 centre = geometry.to_world(0.5 * glm::dvec3(geometry.dims - 1));
+    const glm::dvec3 centre = geometry.center();
     const glm::dvec3 spacing = geometry.spacing();
     const double depth = std::max(glm::dot(view.forward, centre - view.eye), spacing.x);
     const double pixels_per_mm = request.size.y / (2 * view.tan_half_y * depth);
-    const double across = 3.2 * (spacing.x + spacing.y + spacing.z) / 3 * pixels_per_mm + 1;
+    const double across = 3.2 * geometry.mean_spacing() * pixels_per_mm + 1;
     const double pixels = static_cast<double>(request.size.x) * request.size.y;
     // Each splat has its own part of every sheet that it is in; what is saturated is not shaded.
     const double slices = 1 + 0.5 * (plan.sheets_per_splat - 1);
@@ -69,17 +69,15 @@ class Passes {
         if (plan.buried) {
             std::vector<std::string> axes;
             for (std::uint32_t axis = 0; axis < 3; ++axis)
-                axes.push_back(variant("1a_mark_buried.comp", {{shader::SPEC_AXIS, axis},
-                                                               {shader::SPEC_CLIP_KEEP, plan.clip.keep},
-                                                               {shader::SPEC_CLIP_REMOVE, plan.clip.remove}}));
+                axes.push_back(
+                    variant("1a_mark_buried.comp", passes::mark_constants(axis, plan.params.iso_count, plan.clip)));
             add("setup", "1a_mark_buried", kRates.bury_voxel * voxels, axes);
         }
         if (plan.edge_field) {
             std::vector<std::string> shaders{
-                variant("1b_estimate_edges.comp", passes::estimate_constants(plan.estimator, plan.skip_buried))};
-            const bool marched = plan.estimator == EdgeEstimator::March || plan.estimator == EdgeEstimator::Cubic;
-            if (marched)
-                shaders.push_back(variant("1c_adopt_edges.comp", {{shader::SPEC_BURIED, plan.skip_buried ? 1U : 0U}}));
+                variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))};
+            if (marches(plan.estimator))
+                shaders.push_back(variant("1c_adopt_edges.comp", passes::adopt_constants(estimate_inputs(plan))));
             const double rate = plan.estimator == EdgeEstimator::Off     ? kRates.normal_voxel
                                 : plan.estimator == EdgeEstimator::Cubic ? kRates.spline_voxel
                                                                          : kRates.edge_voxel;
@@ -97,9 +95,10 @@ class Passes {
         if (f.occluded) {
             add("setup", "2b_occlude_ambient", kRates.occlude_splat * splats,
                 {variant("2b_occlude_ambient.comp",
-                         passes::occlude_constants({static_cast<std::uint32_t>(clip.keep.size()),
-                                                    static_cast<std::uint32_t>(clip.remove.size())},
-                                                   !request.scene.transfer.empty()))});
+                         passes::occlude_constants({.iso_count = f.collection.params.iso_count,
+                                                    .clip = {static_cast<std::uint32_t>(clip.keep.size()),
+                                                             static_cast<std::uint32_t>(clip.remove.size())},
+                                                    .transfer = !request.scene.transfer.empty()}))});
         }
         if (f.light_frames.empty()) return;
         double sweep = 0;

@@ -40,10 +40,19 @@ bool is_opaque(double extinction, const VolumeGeometry& geometry) {
     return extinction * shortest_step(geometry) >= kOpaquePerVoxel;
 }
 
+/// What the device is given: so much that nothing is seen behind a voxel of it, and so little that the sums and means
+/// over a picture's splats stay within a float.
+double bounded(double extinction, const VolumeGeometry& geometry) {
+    constexpr double kMostAVoxel = 1e20;
+    const glm::dvec3 s = geometry.spacing();
+    return std::min(extinction, kMostAVoxel / std::max({s.x, s.y, s.z}));
+}
+
 std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume& volume) {
     std::vector<shader::TransferRow> rows;
     for (const TransferPoint& point : scaled_transfer(scene, volume))
-        rows.push_back({static_cast<float>(point.value), glm::dvec4(point.color, point.extinction)});
+        rows.push_back(
+            {static_cast<float>(point.value), glm::dvec4(point.color, bounded(point.extinction, volume.geometry))});
     if (!rows.empty()) rows.resize(shader::TRANSFER_ROWS + 1, {3e38F, rows.back().matter});
     return rows;
 }
@@ -216,12 +225,8 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.dims = plan.dims;
     params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
     std::fill(std::begin(params.iso), std::end(params.iso), 3e38F);
-    for (std::size_t j = 0; j < scene.iso_values.size(); ++j) {
-        // In a constant volume every sample is 0 and an iso-value is either reached or not.
-        const double constant = scene.iso_values[j] <= static_cast<double>(volume.min_value) ? 0.0 : 1.0;
-        params.iso[j] = static_cast<float>(
-            volume.max_value > volume.min_value ? scaled_value(volume, scene.iso_values[j]) : constant);
-    }
+    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
+        params.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
     plan.transfer = transfer_rows(scene, volume);
     int farthest = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
@@ -264,6 +269,11 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
     return is_opaque(extinctions_of(scene, material).least, volume.geometry);
 }
 
+double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, const Settings& settings) {
+    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
+    return settings.sheet_spacing / glm::length(to_index * camera_frame(camera).forward);
+}
+
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach) {
@@ -274,7 +284,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const glm::dvec3 anchor = 0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high));
     const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
     const double voxel_along_view = 1.0 / glm::length(to_index * view.forward);
-    const double thickness = settings.sheet_spacing * voxel_along_view;
+    const double thickness = sheet_thickness(geometry, camera, settings);
 
     FramePlan plan;
     // Several samples are of the picture alone; a light's picture is the scene without effects.
@@ -290,7 +300,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .weighted = weighting(settings) != 0,
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
-                                                                                  : 10U};
+                             : settings.warp == WarpFamily::Paper                 ? 10U
+                                                                                  : 8U};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.variant.transfer = !scene.transfer.empty();
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
@@ -325,8 +336,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.gradient = payload == shader::PAYLOAD_COLOR && scene.effects.background_top.has_value();
     if (plan.gradient) p.background_top = to_float(*scene.effects.background_top);
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        p.materials[m] =
-            glm::vec4(to_float(scene.materials[m].color), static_cast<float>(scene.materials[m].extinction));
+        p.materials[m] = glm::vec4(to_float(scene.materials[m].color),
+                                   static_cast<float>(bounded(scene.materials[m].extinction, volume.geometry)));
     }
 
     p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);

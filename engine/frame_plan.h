@@ -45,6 +45,9 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
 /// buried from outside is in front of it.
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
 
+/// Of a picture's sheets along the view, mm.
+double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, const Settings& settings);
+
 /// Passes 3 to 7 for one picture.
 struct FramePlan {
     passes::DrawVariant variant{};

@@ -63,8 +63,10 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 
 RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
                                    const glm::ivec3& dims)
-    : bindings_(device, pipelines), layout_(pipelines.layout()), bricks_(brick_image(device, dims, "bricks")) {
-    block_ = gpu::Buffer(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters");
+    : bindings_(device, pipelines),
+      layout_(pipelines.layout()),
+      bricks_(brick_image(device, dims, "bricks")),
+      block_(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters") {
     commands.run([&] {
         bindings_.prepare(commands);
         commands.prepare({&bricks_});
@@ -100,7 +102,8 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
     commands.run([&] {
         commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
         commands.prepare({&scratch});
-        commands.span("raycast_bricks", [&] { passes::classify_bricks(commands, plan.block.scene.dims); });
+        commands.span("raycast_bricks",
+                      [&] { passes::classify_bricks(commands, plan.block.scene.dims, plan.block.scene.iso_count); });
     });
     // The slot must not be left with an image that is gone.
     bind(device, shader::BIND_BRICK_SCRATCH, bricks_);

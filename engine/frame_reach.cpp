@@ -209,9 +209,10 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
     bindings.write_block(shader::BIND_OCCLUSION, block);
     commands.run([&] {
         commands.span("2b_occlude_ambient", [&] {
-            passes::occlude_ambient(
-                commands,
-                {.splat_count = resources.splat_count, .clip = clip, .transfer = !plan.matter.transfer.empty()});
+            passes::occlude_ambient(commands, {.splat_count = resources.splat_count,
+                                               .iso_count = resources.scene.mapped<shader::SceneParams>(1)[0].iso_count,
+                                               .clip = clip,
+                                               .transfer = !plan.matter.transfer.empty()});
         });
     });
     return commands.span_times();

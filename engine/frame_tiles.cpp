@@ -53,7 +53,7 @@ std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, s
 }
 
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const SheetPart& part) {
+                  const Division& division) {
     const auto& p = plan.params;
     commands.run([&] {
         for (const gpu::Buffer* zeroed :
@@ -66,7 +66,7 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
     });
     const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
     const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
-    const glm::uvec2 sheets = part.count > 1 ? sheets_of_part(pairs, part) : glm::uvec2(0, p.sheet_count);
+    const glm::uvec2 sheets = division.sheets(pairs, p.sheet_base);
     const std::size_t count = sheets.y - sheets.x;
     Chunks chunks =
         plan_chunks(pairs.subspan(sheets.x, count), starts.subspan(sheets.x, count + 1), chunk_pairs(p.tiles));

@@ -36,7 +36,7 @@ std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, s
 /// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn of the part. Milliseconds are left in
 /// `commands`.
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const SheetPart& part = {});
+                  const Division& division = {});
 
 /// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
 /// With rounds, each chunk is waited for, and each round where `between` is to be called after it (it may throw). Of a

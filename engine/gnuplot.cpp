@@ -6,22 +6,16 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <fstream>
 #include <system_error>
 
 #include "engine/error.h"
+#include "engine/image_file.h"
+#include "engine/memory_file.h"
 
 namespace edgesplat {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string quoted(const fs::path& path) {
-    std::string text = "'";
-    for (const char c : path.string())
-        text += c == '\'' ? "''" : std::string(1, c);
-    return text + "'";
-}
 
 std::string script_of(const Plot& figure, PlotFormat format) {
     const bool svg = format == PlotFormat::Svg;
@@ -45,45 +39,39 @@ std::string script_of(const Plot& figure, PlotFormat format) {
     return script + plot + "\n";
 }
 
-void run_gnuplot(const std::string& script, const fs::path& target) {
-    const fs::path script_file = fs::path(target).replace_extension(".gp");
-    {
-        std::ofstream out(script_file);
-        out << "set output " << quoted(target) << "\n" << script << "set output\n";
-        if (!out.flush()) fail("{}: cannot be written", script_file.string());
-    }
+}  // namespace
+
+std::string run_gnuplot(const std::string& script) {
+    const MemoryFile in, out;
+    in.fill(script);
     // No shell in between: nothing in a path can be mistaken for syntax.
-    std::string program = "gnuplot", argument = script_file.string();
-    char* arguments[] = {program.data(), argument.data(), nullptr};
+    std::string program = "gnuplot";
+    char* arguments[] = {program.data(), nullptr};
+    posix_spawn_file_actions_t files;
+    ::posix_spawn_file_actions_init(&files);
+    ::posix_spawn_file_actions_adddup2(&files, in.descriptor(), STDIN_FILENO);
+    ::posix_spawn_file_actions_adddup2(&files, out.descriptor(), STDOUT_FILENO);
     pid_t child = 0;
-    const int problem = ::posix_spawnp(&child, program.c_str(), nullptr, nullptr, arguments, environ);
+    const int problem = ::posix_spawnp(&child, program.c_str(), &files, nullptr, arguments, environ);
+    ::posix_spawn_file_actions_destroy(&files);
     int status = 0;
     if (problem == 0) ::waitpid(child, &status, 0);
-    std::error_code ignored;
-    fs::remove(script_file, ignored);
     if (problem == ENOENT || (WIFEXITED(status) && WEXITSTATUS(status) == 127))
         fail("gnuplot is not installed (Debian: gnuplot-nox); it draws the plots");
     if (problem != 0) fail("gnuplot cannot be started: {}", std::generic_category().message(problem));
-    if (status != 0 || !fs::exists(target, ignored))
-        fail("gnuplot failed to write {} (status {})", target.string(), status);
+    std::string drawn = out.text();
+    if (status != 0 || drawn.empty()) fail("gnuplot failed (status {})", status);
+    return drawn;
 }
-
-}  // namespace
 
 void draw_script(const std::string& script, const fs::path& target) {
     const fs::path folder = target.parent_path();
     std::error_code error;
     fs::create_directories(folder, error);
     if (error) fail("{}: {}", folder.string(), error.message());
-    if (::access(folder.c_str(), W_OK) != 0) fail("{}: cannot be written", folder.string());
-    const fs::path temporary = folder / fmt::format(".{}.{}", ::getpid(), target.filename().string());
-    try {
-        run_gnuplot(script, temporary);
-        fs::rename(temporary, target);
-    } catch (...) {
-        fs::remove(temporary, error);
-        throw;
-    }
+    check_output_path(target);
+    const FileContent file{target, run_gnuplot(script)};
+    write_files({&file, 1});
 }
 
 fs::path draw(const Plot& plot, const fs::path& folder, PlotFormat format) {

@@ -28,7 +28,11 @@ enum class PlotFormat { Png, Svg };
 /// if it is missing. Throws Error if gnuplot is missing or fails, or the folder cannot be written.
 std::filesystem::path draw(const Plot& plot, const std::filesystem::path& folder, PlotFormat format);
 
-/// The same for a gnuplot script of one's own, which sets its terminal but no output.
+/// What gnuplot writes for a script, which sets its terminal but no output: a picture file. No file is made. Throws
+/// Error if gnuplot is missing or fails.
+std::string run_gnuplot(const std::string& script);
+
+/// The same as a file, as `draw` makes it.
 void draw_script(const std::string& script, const std::filesystem::path& target);
 
 }  // namespace edgesplat

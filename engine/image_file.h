@@ -36,6 +36,12 @@ bool is_png_path(const std::filesystem::path& path);
 /// missing or not writable, the path is a folder, or its ending is none of `extensions` (empty: any).
 void check_output_path(const std::filesystem::path& path, std::span<const std::string_view> extensions = {});
 
+/// The colours of an RGBA picture. What a PNG shows of a rendered one: what is seen, the background included.
+Image without_alpha(const Image& image);
+
+/// Throws Error where the size, the channels and the number of values do not go together.
+void check_image(const Image& image);
+
 /// An 8-bit PNG: sRGB-encoded, colour divided by alpha (PNG's convention), clamped to 0..1, NaN as 0.
 /// 1 to 4 channels: Y, YA, RGB, RGBA. Throws Error.
 std::string encode_png(const Image& image, const ImageMetadata& metadata);

@@ -1,12 +1,10 @@
 #include "engine/overlay_canvas.h"
 
-#include <OpenImageIO/imagebuf.h>
-#include <OpenImageIO/imagebufalgo.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/picture_library_internal.h"
 
 namespace edgesplat {
 namespace {
@@ -14,20 +12,20 @@ namespace {
 constexpr const char* kFont = "DejaVuSans";
 constexpr float kRimOpacity = 0.85F;
 
-OIIO::ROI text_box(std::string_view text, int height) {
-    const OIIO::ROI box = OIIO::ImageBufAlgo::text_size(std::string(text), height, kFont);
-    if (!box.defined())
+/// What there is of a text where there is a font for it.
+template <typename Found>
+Found found(std::optional<Found> of_text) {
+    if (!of_text)
         fail(
             "overlays: the font DejaVu Sans cannot be found (Debian: fonts-dejavu-core), or OpenImageIO draws no text");
-    return box;
+    return std::move(*of_text);
 }
 
 }  // namespace
 
 glm::ivec2 text_size(std::string_view text, int height) {
     if (text.empty()) return {0, 0};
-    const OIIO::ROI box = text_box(text, height);
-    return {box.width(), box.height()};
+    return found(picture_library().text_size(std::string(text), height, kFont));
 }
 
 Canvas::Canvas(const PixelBox& box, int rim)
@@ -69,17 +67,12 @@ void Canvas::rectangle(const glm::dvec2& low, const glm::dvec2& high, const glm:
 
 void Canvas::text(std::string_view text, const glm::dvec2& center, int height, const glm::dvec3& color) {
     if (text.empty()) return;
-    const OIIO::ROI box = text_box(text, height);
-    OIIO::ImageBuf mask(OIIO::ImageSpec(box.width() + 2, box.height() + 2, 1, OIIO::TypeDesc::FLOAT));
-    OIIO::ImageBufAlgo::zero(mask);
-    const float white = 1;
-    if (!OIIO::ImageBufAlgo::render_text(mask, 1 - box.xbegin, 1 - box.ybegin, std::string(text), height, kFont,
-                                         {&white, 1}))
-        fail("overlays: '{}' cannot be drawn: {}", text, mask.geterror());
-    const glm::ivec2 corner(glm::round(center - glm::dvec2(box.width() + 2, box.height() + 2) / 2.0));
-    for (int y = 0; y < box.height() + 2; ++y)
-        for (int x = 0; x < box.width() + 2; ++x)
-            cover(corner.x + x, corner.y + y, static_cast<double>(mask.getchannel(x, y, 0, 0)), color);
+    const TextMask mask = found(picture_library().text(std::string(text), height, kFont));
+    const glm::ivec2 corner(glm::round(center - glm::dvec2(mask.width, mask.height) / 2.0));
+    std::size_t pixel = 0;
+    for (int y = 0; y < mask.height; ++y)
+        for (int x = 0; x < mask.width; ++x)
+            cover(corner.x + x, corner.y + y, static_cast<double>(mask.coverage[pixel++]), color);
 }
 
 void Canvas::lay_over(Image& image) const {

@@ -144,7 +144,7 @@ std::array<MarkerAxis, 3> marker_axes(const Volume& volume, const Camera& camera
 
 std::optional<ScaleBar> scale_bar(const Volume& volume, const Camera& camera, int height, double most) {
     const CameraFrame frame = camera_frame(camera);
-    const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 center = volume.geometry.center();
     const double depth = glm::dot(center - frame.eye, frame.forward);
     if (!(depth > 0)) return {};
     return scale_bar(2 * depth * frame.tan_half_y / height, most);

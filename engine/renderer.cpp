@@ -52,7 +52,7 @@ bool uses_table(const Settings& settings) {
     return settings.warp == WarpFamily::Edge && draws_warped(settings) && asks_for_table(settings);
 }
 
-RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice) {
+RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice), opened_as(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
     targets.drawn = gpu::Buffer(device, 4 * sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
@@ -167,6 +167,12 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
                       volume_resources.box_low, volume_resources.box_high,
                       draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
     if (offset != glm::dvec2(0)) shift_rays(plan, offset);
+    if (opened_as.check_numbers) check_splats();
+    draw_planned();
+    if (opened_as.check_numbers) check_picture();
+}
+
+void RendererState::draw_planned() {
     provide_targets(plan);
     if (!plan.variant.tiles) {
         run_frame(commands, plan, targets);
@@ -184,13 +190,7 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
               draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how, between));
 }
 
-Renderer::Renderer(const DeviceChoice& choice) {
-    try {
-        state_ = std::make_unique<RendererState>(choice);
-    } catch (const vk::SystemError& error) {
-        fail("Vulkan: {}", error.what());
-    }
-}
+Renderer::Renderer(const DeviceChoice& choice) : state_(open_state(choice, 2)) {}
 
 Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
@@ -201,7 +201,7 @@ const DeviceInfo& Renderer::device() const {
 }
 
 std::uint64_t Renderer::validation_messages() const {
-    return state_->device.validation_messages();
+    return state_->messages_before + state_->device.validation_messages();
 }
 
 void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
@@ -229,71 +229,72 @@ void Renderer::set_memory_budget(std::uint64_t bytes) {
 
 RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
                               const AovRequest& aovs) {
-    auto& self = *state_;
-    if (!self.original) fail("render: no volume has been set");
+    if (!state_->original) fail("render: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384) {
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     }
     validate(scene);
     validate(wanted);
-    const Settings settings = drawn_as(wanted, scene);
-    if (self.exchange && settings.sheet_format != SheetFormat::Tiles)
+    if (state_->exchange && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
         fail("sheets that are drawn in parts need --sheet-format tiles");
+    return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });
+}
+
+RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, const Settings& wanted, int width,
+                                   int height, const AovRequest& aovs) {
+    auto& self = *state_;
+    const Settings settings = drawn_as(wanted, scene);
     const glm::ivec2 size(width, height);
     RenderResult result;
-    try {
-        self.release_unused(settings);
-        self.device.forget_peaks();
-        const gpu::PipelineCreation made = self.pipelines.creation();
-        self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
-        if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
+    self.release_unused(settings);
+    self.device.forget_peaks();
+    const gpu::PipelineCreation made = self.pipelines.creation();
+    self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
+    if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
 
-        const auto pixels = [&] {
-            return std::span<const float>(self.targets.output.mapped<float>(static_cast<std::size_t>(width) *
-                                                                            static_cast<std::size_t>(height) * 4));
-        };
-        const auto start = Clock::now();
-        std::vector<PassTime> times;
-        SampleMean mean(size);
-        self.share = {};
-        for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
-            self.heed_interruption();
-            self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
-            add_times(times, self.draw_times);
-            self.add_counts(result.stats);
-            if (scene.effects.samples > 1) mean.add(pixels());
-        }
-        result.stats.frame_milliseconds = milliseconds_since(start);
-        if (self.exchange) result.stats.share = self.share;
-        result.stats.passes.insert(result.stats.passes.end(), times.begin(), times.end());
-        result.stats.splats_drawn = self.targets.drawn.mapped<std::uint32_t>(1)[0];
-        result.stats.sheets = self.plan.params.sheet_count;
-        result.stats.sheet_groups = self.plan.params.group_count;
-        result.color = scene.effects.samples > 1 ? mean.image() : take(pixels(), size, 0, 4);
-
-        const auto draw_output = [&](const char* name, std::uint32_t payload) {
-            self.draw(scene, camera, settings, size, payload);
-            for (const PassTime& pass : self.draw_times)
-                result.stats.passes.push_back({std::string(name) + ": " + pass.name, pass.milliseconds});
-        };
-        if (aovs.tau) {
-            draw_output("tau", shader::PAYLOAD_TAU);
-            result.tau = take(pixels(), size, 3, 1);
-        }
-        if (aovs.depth || aovs.distance) {
-            draw_output("depth, distance", shader::PAYLOAD_DEPTH_DISTANCE);
-            if (aovs.depth) result.depth = take(pixels(), size, 0, 1);
-            if (aovs.distance) result.distance = take(pixels(), size, 1, 1);
-        }
-        if (aovs.normal) {
-            draw_output("normal", shader::PAYLOAD_NORMAL);
-            result.normal = take(pixels(), size, 0, 3);
-        }
-        result.stats.pipelines_made = self.pipelines.creation().count - made.count;
-        result.stats.pipeline_milliseconds = self.pipelines.creation().milliseconds - made.milliseconds;
-    } catch (const vk::SystemError& error) {
-        fail("Vulkan: {}", error.what());
+    const auto pixels = [&] {
+        return std::span<const float>(
+            self.targets.output.mapped<float>(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * 4));
+    };
+    const auto start = Clock::now();
+    std::vector<PassTime> times;
+    SampleMean mean(size);
+    self.share = {};
+    for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
+        self.heed_interruption();
+        self.draw(scene, camera, settings, size, shader::PAYLOAD_COLOR, offset);
+        add_times(times, self.draw_times);
+        self.add_counts(result.stats);
+        if (scene.effects.samples > 1) mean.add(pixels());
     }
+    result.stats.frame_milliseconds = milliseconds_since(start);
+    if (self.exchange) result.stats.share = self.share;
+    result.stats.passes.insert(result.stats.passes.end(), times.begin(), times.end());
+    result.stats.splats_drawn = self.targets.drawn.mapped<std::uint32_t>(1)[0];
+    result.stats.sheets = self.plan.params.sheet_count;
+    result.stats.sheet_groups = self.plan.params.group_count;
+    result.color = scene.effects.samples > 1 ? mean.image() : take(pixels(), size, 0, 4);
+
+    const auto draw_output = [&](const char* name, std::uint32_t payload) {
+        self.draw(scene, camera, settings, size, payload);
+        for (const PassTime& pass : self.draw_times)
+            result.stats.passes.push_back({std::string(name) + ": " + pass.name, pass.milliseconds});
+    };
+    if (aovs.tau) {
+        draw_output("tau", shader::PAYLOAD_TAU);
+        result.tau = take(pixels(), size, 3, 1);
+    }
+    if (aovs.depth || aovs.distance) {
+        draw_output("depth, distance", shader::PAYLOAD_DEPTH_DISTANCE);
+        if (aovs.depth) result.depth = take(pixels(), size, 0, 1);
+        if (aovs.distance) result.distance = take(pixels(), size, 1, 1);
+    }
+    if (aovs.normal) {
+        draw_output("normal", shader::PAYLOAD_NORMAL);
+        result.normal = take(pixels(), size, 0, 3);
+    }
+    result.stats.pipelines_made = self.pipelines.creation().count - made.count;
+    result.stats.pipeline_milliseconds = self.pipelines.creation().milliseconds - made.milliseconds;
     if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
     result.stats.device = self.device.info();
     result.stats.voxels = self.volume->geometry.voxel_count();
@@ -302,7 +303,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     result.stats.device_bytes = self.device.allocated_bytes();
     for (const auto& [name, allocation] : self.device.allocations())
         if (!name.empty()) result.stats.memory.push_back({name, allocation.peak});
-    result.stats.validation_messages = self.device.validation_messages();
+    result.stats.validation_messages = validation_messages();
     return result;
 }
 

@@ -29,6 +29,9 @@ struct DeviceInfo {
 struct DeviceChoice {
     std::string device;       ///< empty: the best usable one; else an index or a part of a name
     bool validation = false;  ///< Khronos validation and synchronization validation; messages are counted
+    /// Pictures are looked through for numbers that are not finite: render() then throws Error, naming the first pass
+    /// and splat that came to one. For finding faults; without it nothing is read back or run for it.
+    bool check_numbers = false;
 };
 
 /// Every device of this machine, best first. Empty where there is no Vulkan loader or driver.
@@ -114,10 +117,17 @@ class Interrupted : public Error {
     Interrupted() : Error("render: interrupted") {}
 };
 
+/// The device was lost (VK_ERROR_DEVICE_LOST), and again after it had been opened anew: there is no picture.
+class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
+
 /// What a Renderer owns (engine/renderer_state.h); of no use to those who embed it.
 struct RendererState;
 
-/// Owns the device and everything on it. Not thread-safe; one per thread. Every member throws Error.
+/// Owns the device and everything on it. Not thread-safe; one per thread. Every member throws Error. A device that is
+/// lost under a picture is opened anew, which stderr hears of, and the picture is made again, once; it is the same.
 class Renderer {
   public:
     explicit Renderer(const DeviceChoice& choice = {});
@@ -169,10 +179,19 @@ class Renderer {
     /// What a resource takes of this device, as the device rounds it up.
     std::uint64_t required_bytes(const PlannedResource& resource) const;
 
+    /// The next picture finds its device lost, to see what becomes of it.
+    void lose_device();
+
     /// Validation messages so far; 0 when validation was not asked for.
     std::uint64_t validation_messages() const;
 
   private:
+    RenderResult render_once(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
+                             const AovRequest& aovs);
+    RenderResult raycast_once(const Scene& scene, const Camera& camera, const Settings& wanted,
+                              const RaycastSettings& raycast, int width, int height);
+    /// Calls `draw`, a second time on a new device where that was lost.
+    RenderResult draw_again_if_lost(const std::function<RenderResult()>& draw);
     std::unique_ptr<RendererState> state_;
 };
 

@@ -213,7 +213,7 @@ void RendererState::begin_blocks(const CollectionPlan& wanted) {
     collected = wanted;
 }
 
-std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request) const {
+std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request) {
     const ViewVolume view(volume->geometry, request.camera, request.size);
     const double reach = farthest_reach(drawn_settings(request));
     std::vector<std::size_t> shown;
@@ -221,6 +221,18 @@ std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request
         const CollectionBlock& block = residence->blocks[i];
         if (needs_everything(request.scene) || view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
     }
+    // Light comes from all splats.
+    if (!divides_blocks || needs_everything(request.scene)) return shown;
+    const auto& geometry = volume->geometry;
+    const double thickness = sheet_thickness(geometry, request.camera, drawn_settings(request));
+    std::vector<CollectionBlock> blocks;
+    for (const std::size_t i : shown)
+        blocks.push_back(residence->blocks[i]);
+    slab = slab_of_part(geometry, request.camera, thickness, blocks, exchange->part());
+    std::erase_if(shown, [&](std::size_t i) {
+        const glm::ivec2 sheets = sheets_of_block(geometry, request.camera, thickness, reach, residence->blocks[i]);
+        return sheets.y <= slab->x || sheets.x >= slab->y;
+    });
     return shown;
 }
 
@@ -299,11 +311,42 @@ Gathered RendererState::collect_in_blocks(const FrameRequest& request, double wa
     return gathered;
 }
 
+bool RendererState::agree_on_level(int& finest) {
+    slab.reset();
+    divides_blocks = exchange && exchange->largest(in_blocks ? 0 : 1) == 0;
+    const int coarsest = exchange ? exchange->largest(level) : level;
+    if (!exchange || -exchange->largest(-level) == coarsest) return true;
+    finest = coarsest;
+    return false;
+}
+
+bool RendererState::too_many_somewhere(Gathered gathered) {
+    const bool here = gathered == Gathered::TooMany;
+    if (!exchange) return here;
+    if (exchange->largest(here ? 1 : 0) > 0) return true;
+    if (!divides_blocks) return false;
+    // Sheets and what the device rounds are counted from the box of the splats.
+    glm::ivec3 &low = volume_resources.box_low, &high = volume_resources.box_high;
+    const bool none = volume_resources.splat_count == 0;
+    const glm::ivec3 last = volume->geometry.dims - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = -exchange->largest(none ? -last[axis] : -low[axis]);
+        high[axis] = exchange->largest(none ? 0 : high[axis]);
+    }
+    if (glm::any(glm::greaterThan(low, high))) {
+        low = glm::ivec3(0);
+        high = last;
+    }
+    return false;
+}
+
 Gathered RendererState::provide_level(FrameRequest request, int finest, double wait, RenderStats& stats) {
     const Settings settings = drawn_settings(request);
     const int count = level_count(*original);
     for (int at = finest;; ++at) {
         settle(request, at, std::isfinite(patience));
+        while (!agree_on_level(at))
+            settle(request, at, std::isfinite(patience));
         provide_footprints(settings);
         Gathered gathered = Gathered::All;
         if (in_blocks) {
@@ -312,7 +355,7 @@ Gathered RendererState::provide_level(FrameRequest request, int finest, double w
             provide_volume();
             stats.setup_milliseconds += collect(request.scene, settings, keeps_buried(request));
         }
-        if (gathered != Gathered::TooMany) return gathered;
+        if (!too_many_somewhere(gathered)) return gathered;
         const auto need = volume->values.empty() ? std::nullopt : beyond_memory(request);
         if (need) refuse_memory(device, request, *need, memory_budget);
         if (at + 1 == count) {

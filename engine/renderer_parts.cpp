@@ -59,10 +59,11 @@ void RendererState::draw_part(passes::TileDraw how) {
     std::uint32_t chunks = 0;
     {
         const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
-        const Chunks planned = sort_frame(commands, plan, targets, exchange->part());
+        const Chunks planned = sort_frame(commands, plan, targets, {exchange->part(), slab});
         draw_times = commands.span_times();
         share.first_sheet = planned.sheets.x;
         share.end_sheet = planned.sheets.y;
+        share.splats = plan.params.splat_count;
         share.pairs += planned.pairs;
         provide_chunks(planned);
         chunks = static_cast<std::uint32_t>(planned.parts.size());

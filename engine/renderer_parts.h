@@ -26,6 +26,8 @@ class PartExchange {
     virtual SheetPart part() const = 0;
 
     virtual void wait() = 0;
+    /// The largest of the parts' values.
+    virtual int largest(int value) = 0;
     /// In: what each pixel of this part lets through. Out: what the parts in front let through; of part 0 undefined.
     virtual void pass_back(std::span<float> transmittance) = 0;
     /// The parts' pixels folded with `over` in their order, left with part 0.
@@ -37,6 +39,7 @@ class PartExchange {
 /// Which sheets of a picture were drawn here, and the time of all its samples.
 struct SheetShare {
     std::uint32_t first_sheet = 0, end_sheet = 0;  ///< half open
+    std::uint64_t splats = 0;                      ///< that were looked at; more than are in the sheets
     std::uint64_t pairs = 0;            ///< of a splat and a tile that it touches: what sheets are divided by
     double draw_milliseconds = 0;       ///< selection, sort and drawing
     double redraw_milliseconds = 0;     ///< drawing again the pixels that what is in front closes

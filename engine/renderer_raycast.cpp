@@ -15,12 +15,7 @@ void validate(const RaycastSettings& settings) {
 
 RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const Settings& wanted,
                                const RaycastSettings& raycast, int width, int height) {
-    using Clock = std::chrono::steady_clock;
-    const auto milliseconds_since = [](Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    };
-    auto& self = *state_;
-    if (!self.original) fail("raycast: no volume has been set");
+    if (!state_->original) fail("raycast: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     validate(scene);
@@ -28,44 +23,50 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
         fail("raycast: {} cannot be shown, expected a scene without", beyond);
     validate(wanted);
     validate(raycast);
+    return draw_again_if_lost([&] { return raycast_once(scene, camera, wanted, raycast, width, height); });
+}
+
+RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, const Settings& wanted,
+                                    const RaycastSettings& raycast, int width, int height) {
+    using Clock = std::chrono::steady_clock;
+    const auto milliseconds_since = [](Clock::time_point start) {
+        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+    };
+    auto& self = *state_;
     const Settings settings = drawn_as(wanted);
     RenderResult result;
     auto& stats = result.stats;
-    try {
-        self.show_whole();
-        self.provide_volume();
-        const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
-        const auto add_times = [&](const std::vector<PassTime>& times) {
-            stats.passes.insert(stats.passes.end(), times.begin(), times.end());
-        };
-        if (raycast.warped && draws_warped(settings)) {
-            stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
-            if (stats.setup_milliseconds > 0) add_times(self.collection_times);
-        }
-        auto start = Clock::now();
-        if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
-        auto& rays = *self.raycast;
-        const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
-                                       plan_collection(*self.volume, scene, settings, keep_buried), {width, height});
-        rays.prepare(self.device, plan, self.volume_resources);
-        if (rays.classify(self.device, self.commands, plan)) {
-            stats.setup_milliseconds += milliseconds_since(start);
-            add_times(self.commands.span_times());
-        }
-        start = Clock::now();
-        rays.cast(self.commands, plan);
-        stats.frame_milliseconds = milliseconds_since(start);
-        add_times(self.commands.span_times());
-        result.color = Image(width, height, 4);
-        std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
-        if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
-    } catch (const vk::SystemError& error) {
-        fail("Vulkan: {}", error.what());
+    self.show_whole();
+    self.provide_volume();
+    const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
+    const auto add_times = [&](const std::vector<PassTime>& times) {
+        stats.passes.insert(stats.passes.end(), times.begin(), times.end());
+    };
+    if (raycast.warped && draws_warped(settings)) {
+        stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
+        if (stats.setup_milliseconds > 0) add_times(self.collection_times);
     }
+    auto start = Clock::now();
+    if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
+    auto& rays = *self.raycast;
+    const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
+                                   plan_collection(*self.volume, scene, settings, keep_buried), {width, height});
+    rays.prepare(self.device, plan, self.volume_resources);
+    if (rays.classify(self.device, self.commands, plan)) {
+        stats.setup_milliseconds += milliseconds_since(start);
+        add_times(self.commands.span_times());
+    }
+    start = Clock::now();
+    rays.cast(self.commands, plan);
+    stats.frame_milliseconds = milliseconds_since(start);
+    add_times(self.commands.span_times());
+    result.color = Image(width, height, 4);
+    std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
+    if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
     stats.device = self.device.info();
     stats.voxels = self.volume->geometry.voxel_count();
     stats.device_bytes = self.device.allocated_bytes();
-    stats.validation_messages = self.device.validation_messages();
+    stats.validation_messages = validation_messages();
     return result;
 }
 

@@ -66,8 +66,12 @@ struct RendererState : DeviceState, SplatSet {
                             double patience);
     /// Makes the list anew for a plan: empty, with what may come into it.
     void begin_blocks(const CollectionPlan& wanted);
-    /// The blocks of a picture by number.
-    std::vector<std::size_t> blocks_shown(const FrameRequest& request) const;
+    /// The blocks of a picture by number; of one that is drawn in parts, those of this part's slab.
+    std::vector<std::size_t> blocks_shown(const FrameRequest& request);
+    /// Whether all that draw parts of a picture have the volume at the same level; else `finest` is where they may.
+    bool agree_on_level(int& finest);
+    /// Whether a part of the picture has too many splats; if none has, the box becomes that of all parts' splats.
+    bool too_many_somewhere(Gathered gathered);
     std::vector<float> read_block(const std::vector<std::size_t>& missing, std::size_t number);
     /// Goes to the other set, which holds a coarser level while a finer one is on its way.
     void exchange_sets() { std::swap(static_cast<SplatSet&>(*this), other); }
@@ -120,6 +124,12 @@ struct RendererState : DeviceState, SplatSet {
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0});
 
+    /// The same as `plan` says.
+    void draw_planned();
+    /// Throws Error naming the pass and the splat where something is no finite number: in the list, in the picture.
+    void check_splats();
+    void check_picture();
+
     /// Of a tiled picture, the part that the exchange says; with the first part, the whole is left in targets.output.
     void draw_part(passes::TileDraw how);
 
@@ -148,12 +158,20 @@ struct RendererState : DeviceState, SplatSet {
     std::vector<PassTime> collection_times;
     std::vector<PassTime> draw_times;                            ///< of the last draw
     PartExchange* exchange = nullptr;                            ///< see Renderer::divide_sheets
+    bool divides_blocks = false;                                 ///< all of them hold the volume block by block
+    std::optional<glm::ivec2> slab;                              ///< then this part's sheets, from the eye on
     SheetShare share;                                            ///< of the picture being drawn
     bool counting = false;                                       ///< see Renderer::count_fragments
     std::uint64_t memory_budget = 0;                             ///< bytes; 0: what the device has
     std::vector<std::pair<std::string, std::uint64_t>> checked;  ///< resources that were last asked for
     std::optional<MemoryNeed> checked_need;                      ///< what beyond_memory found of them
+    DeviceChoice opened_as;                                      ///< to open it anew; whether numbers are checked
+    bool lose = false;                                           ///< see Renderer::lose_device
+    std::uint64_t messages_before = 0;                           ///< of validation, on devices that were lost
 };
+
+/// Opens the device; where it is lost meanwhile, up to so many times. Throws Error, DeviceLost in the end.
+std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attempts);
 
 /// Whether footprints are looked up, and how large the table is.
 bool uses_table(const Settings& settings);

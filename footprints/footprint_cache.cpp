@@ -1,16 +1,17 @@
 #include "footprints/footprint_cache.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <string_view>
 #include <system_error>
+
+#include "footprints/temporary_file.h"
 
 namespace edgesplat {
 namespace {
@@ -60,55 +61,27 @@ Header header_of(const EdgeBand& band, const FootprintTableSize& size) {
     return header;
 }
 
-// The table in `file`, or nothing and `problem` set; a missing file is no problem.
-std::optional<FootprintTable> read(const fs::path& file, const EdgeBand& band, const FootprintTableSize& size,
-                                   std::string& problem) {
-    std::ifstream in(file, std::ios::binary);
-    if (!in) {
-        std::error_code ignored;
-        if (fs::exists(file, ignored)) problem = fmt::format("{}: cannot be read; rebuilt", file.string());
-        return std::nullopt;
-    }
-    Header header;
-    in.read(reinterpret_cast<char*>(&header), sizeof header);
-    Header expected = header_of(band, size);
-    expected.checksum = header.checksum;
-    if (!in || !(header == expected)) {
-        problem = fmt::format("{}: not a footprint table of this version and these parameters; rebuilt", file.string());
-        return std::nullopt;
-    }
-    std::vector<std::uint16_t> texels(size.texels());
-    const auto bytes = static_cast<std::streamsize>(texels.size() * sizeof texels[0]);
-    in.read(reinterpret_cast<char*>(texels.data()), bytes);
-    if (in.gcount() != bytes || in.peek() != std::ifstream::traits_type::eof() ||
-        checksum_of(texels) != header.checksum) {
-        problem = fmt::format("{}: damaged (wrong length or checksum); rebuilt", file.string());
-        return std::nullopt;
-    }
-    return FootprintTable(band, size, std::move(texels));
-}
-
 // Writes beside the file and renames: readers see the old file, the new one or none. Returns what went wrong, or
 // nothing.
 std::string write(const fs::path& file, const FootprintTable& table) {
     std::error_code error;
     fs::create_directories(file.parent_path(), error);
     if (error) return fmt::format("{}: {}; footprints are not cached", file.parent_path().string(), error.message());
-    static std::atomic<unsigned> counter{0};  // several threads of one process
-    const fs::path temporary = fmt::format("{}.{}.{}.tmp", file.string(), ::getpid(), counter++);
-
     Header header = header_of(table.band(), table.size());
     header.checksum = checksum_of(table.texels());
-    std::ofstream out(temporary, std::ios::binary);
-    out.write(reinterpret_cast<const char*>(&header), sizeof header);
-    out.write(reinterpret_cast<const char*>(table.texels().data()),
-              static_cast<std::streamsize>(table.texels().size_bytes()));
-    out.close();
-    if (out) fs::rename(temporary, file, error);
-    if (out && !error) return {};
-    const std::string reason = out ? error.message() : "cannot be written";
-    fs::remove(temporary, error);
-    return fmt::format("{}: {}; footprints are not cached", file.string(), reason);
+    const auto bytes = [](const void* data, std::size_t count) {
+        return std::string_view(static_cast<const char*>(data), count);
+    };
+    const DeferSignals defer;
+    try {
+        TemporaryFile out(file);
+        out.write(bytes(&header, sizeof header));
+        out.write(bytes(table.texels().data(), table.texels().size_bytes()));
+        out.rename_to_target();
+    } catch (const std::system_error& problem) {
+        return fmt::format("{}: {}; footprints are not cached", file.string(), problem.code().message());
+    }
+    return {};
 }
 
 }  // namespace
@@ -130,6 +103,36 @@ fs::path footprint_cache_file(const fs::path& folder, const EdgeBand& band, cons
                                 size.width, size.height, size.distances, size.directions);
 }
 
+std::optional<FootprintTable> read_footprint_table(const fs::path& file, const EdgeBand& band,
+                                                   const FootprintTableSize& size, std::string& problem) {
+    std::error_code ignored;
+    if (!fs::exists(file, ignored)) return std::nullopt;
+    // Opening a FIFO would wait for ever, so the kind of file comes first.
+    std::ifstream in;
+    if (fs::is_regular_file(file, ignored)) in.open(file, std::ios::binary);
+    if (!in.is_open()) {
+        problem = fmt::format("{}: cannot be read; rebuilt", file.string());
+        return std::nullopt;
+    }
+    Header header;
+    in.read(reinterpret_cast<char*>(&header), sizeof header);
+    Header expected = header_of(band, size);
+    expected.checksum = header.checksum;
+    if (!in || !(header == expected)) {
+        problem = fmt::format("{}: not a footprint table of this version and these parameters; rebuilt", file.string());
+        return std::nullopt;
+    }
+    std::vector<std::uint16_t> texels(size.texels());
+    const auto bytes = static_cast<std::streamsize>(texels.size() * sizeof texels[0]);
+    in.read(reinterpret_cast<char*>(texels.data()), bytes);
+    if (in.gcount() != bytes || in.peek() != std::ifstream::traits_type::eof() ||
+        checksum_of(texels) != header.checksum) {
+        problem = fmt::format("{}: damaged (wrong length or checksum); rebuilt", file.string());
+        return std::nullopt;
+    }
+    return FootprintTable(band, size, std::move(texels));
+}
+
 LoadedFootprintTable load_footprint_table(const EdgeBand& band, const FootprintTableSize& size,
                                           const fs::path& folder) {
     validate(band, size);
@@ -137,7 +140,7 @@ LoadedFootprintTable load_footprint_table(const EdgeBand& band, const FootprintT
         return {FootprintTable::build(band, size), false, "no cache folder is set; footprints are not cached"};
     const fs::path file = footprint_cache_file(folder, band, size);
     std::string warning;
-    if (auto cached = read(file, band, size, warning)) return {std::move(*cached), true, {}};
+    if (auto cached = read_footprint_table(file, band, size, warning)) return {std::move(*cached), true, {}};
     FootprintTable table = FootprintTable::build(band, size);
     // What keeps it from being written matters more than what was wrong with the old one.
     if (std::string problem = write(file, table); !problem.empty()) warning = std::move(problem);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "footprints/footprint_table.h"
@@ -21,6 +22,11 @@ std::filesystem::path footprint_cache_folder();
 /// The cache file of a table in `folder`: named by its parameters and the format's version.
 std::filesystem::path footprint_cache_file(const std::filesystem::path& folder, const EdgeBand& band,
                                            const FootprintTableSize& size);
+
+/// The table in a cache file; nothing, and `problem` set, where the file is damaged, truncated, too long, of other
+/// parameters, or not an ordinary file. A missing file is no problem. Takes no more memory than the table.
+std::optional<FootprintTable> read_footprint_table(const std::filesystem::path& file, const EdgeBand& band,
+                                                   const FootprintTableSize& size, std::string& problem);
 
 /// The table from the cache, or built and then cached (written beside and renamed: safe for several processes at once).
 /// A damaged, truncated or foreign file is rebuilt; a folder that cannot be written gives a warning. Empty folder: no

@@ -38,9 +38,9 @@ double exact_footprint(const Ray& ray, const Edge& edge);
 double exact_footprint(const Ray& ray, const PaperEdge& edge);
 
 /// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per
-/// half band (edge) or per piece of the profile (paper) within. A curved edge's half bands meet the ray in up to two
-/// pieces each.
-double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 10, const Slice& slice = {});
+/// half band (edge) or per piece of the profile (paper) within. The rule of 8 crowds towards the face of a half band.
+/// A curved edge's half bands meet the ray in up to two pieces each.
+double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 8, const Slice& slice = {});
 double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 10, const Slice& slice = {});
 
 /// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the

@@ -18,7 +18,8 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kNodes = 24;  // per half band; the table's own error is far above this rule's
+constexpr std::size_t kNodesInAll = 48;  // on both sides of the edge
+constexpr int kNodes = 24;               // per half band; the table's own error is far above this rule's
 
 // One column of a layer: every y at one X. The nodes of the integral do not depend on y, only K's argument does, so the
 // displacement is worked out once a column.
@@ -29,7 +30,8 @@ void integrate_column(const EdgeBand& band, double d, double c, double X, double
     const double x = table_x_of(X, d, c, band);
     const double pn = x * s, R = kKernelRadius, a = band.half_width;
 
-    std::array<double, 2 * kNodes> r2{}, weight{};
+    std::array<double, kNodesInAll> r2{};
+    std::array<double, kNodesInAll> weight{};
     // The ray's pieces on either side of the edge, within the band, the kernel (w in [-R, R]) and the cylinder around
     // n.
     const double s2 = std::max(s * s, 1e-6);
@@ -49,7 +51,7 @@ void integrate_column(const EdgeBand& band, double d, double c, double X, double
     for (int j = 0; j < height; ++j) {
         const double y = extent_y * j / (height - 1), y2 = y * y, rho2 = x * x + y2;
         double sum = 0;
-        for (std::size_t i = 0; i < 2 * kNodes; ++i)
+        for (std::size_t i = 0; i < r2.size(); ++i)
             sum += weight[i] * kernel(r2[i] + y2);
         sum += kernel_footprint(rho2) - kernel_chord(rho2, (d + a - pn) / c) + kernel_chord(rho2, (d - a - pn) / c);
         column[static_cast<std::size_t>(j) * stride] =

@@ -28,4 +28,14 @@ QuadratureRule gauss_legendre(int n) {
     return rule;
 }
 
+QuadratureRule crowded(const QuadratureRule& rule) {
+    QuadratureRule nearer;
+    for (std::size_t i = 0; i < rule.size(); ++i) {
+        const double away = 2 - rule.nodes[i];
+        nearer.nodes.push_back(rule.nodes[i] / away);
+        nearer.weights.push_back(rule.weights[i] * 2 / (away * away));
+    }
+    return nearer;
+}
+
 }  // namespace edgesplat

@@ -24,13 +24,14 @@ constexpr double kernel_line_factor(int n) {
     return factor;
 }
 
-/// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
-inline constexpr KernelCoefficients kFootprintCoefficients = [] {
+constexpr KernelCoefficients footprint_coefficients(const KernelCoefficients& kernel) {
     KernelCoefficients c{};
     for (std::size_t i = 0; i < c.size(); ++i)
-        c[i] = kKernelCoefficients[i] * kernel_line_factor(static_cast<int>(i) + 2);
+        c[i] = kernel[i] * kernel_line_factor(static_cast<int>(i) + 2);
     return c;
-}();
+}
+/// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
+inline constexpr KernelCoefficients kFootprintCoefficients = footprint_coefficients(kKernelCoefficients);
 
 /// K at a squared distance r2 >= 0 from its centre. 0 from R on.
 inline double kernel(double r2, const KernelCoefficients& c = kKernelCoefficients) {

@@ -16,8 +16,9 @@ namespace {
 const QuadratureRule& rule_of(int nodes) {
     static const std::map<int, QuadratureRule> rules = [] {
         std::map<int, QuadratureRule> all;
-        for (int n : {4, 6, 8, 10, 12, 16})
+        for (int n : {4, 6, 10, 12, 16})
             all.emplace(n, gauss_legendre(n));
+        all.emplace(8, crowded(gauss_legendre(8)));
         return all;
     }();
     const auto found = rules.find(nodes);
@@ -43,14 +44,16 @@ struct Chord {
     double z_of(double t) const { return (t - pn) / un; }
 };
 
-// Integral of the warped kernel over the part of the ray with t in [first, last], where `warp` gives w(t).
+// Integral of the warped kernel over the part of the ray with t in [first, last], where `warp` gives w(t). The rule's
+// nodes are counted from its first end on or, `from_last`, from its last.
 template <typename Warp>
-double piece(const Chord& chord, double first, double last, const QuadratureRule& rule, const Warp& warp) {
+double piece(const Chord& chord, double first, double last, const QuadratureRule& rule, const Warp& warp,
+             bool from_last = false) {
     const double start = std::max(chord.z_of(first), chord.low);
     const double length = std::max(0.0, std::min(chord.z_of(last), chord.high) - start);
     double sum = 0;
     for (std::size_t i = 0; i < rule.size(); ++i) {
-        const double z = start + length * rule.nodes[i];
+        const double z = start + length * (from_last ? 1 - rule.nodes[i] : rule.nodes[i]);
         const double t = chord.pn + z * chord.un;
         const double w = warp(t);
         sum += rule.weights[i] * kernel(chord.rho2 + z * z + (w - t) * (w + t));
@@ -76,7 +79,7 @@ double band_change(const Chord& chord, double face, const EdgeBand& band, const 
     const double first = std::max(face - band.half_width, face + edge_warp_inverse(-kKernelRadius - face, band));
     const double last = std::min(face + band.half_width, face + edge_warp_inverse(kKernelRadius - face, band));
     const auto warp = [&](double t) { return face + edge_warp(t - face, band); };
-    return piece(chord, first, face, rule, warp) + piece(chord, face, last, rule, warp) -
+    return piece(chord, first, face, rule, warp, true) + piece(chord, face, last, rule, warp) -
            plain(chord, face - band.half_width, face + band.half_width);
 }
 
@@ -154,6 +157,8 @@ double sliced_kernel_footprint(double rho2, const Slice& slice) {
 double procedural_footprint(const Ray& ray, const Edge& edge, int nodes, const Slice& slice) {
     const QuadratureRule& rule = rule_of(nodes);
     if (edge.curvature != 0) return curved_footprint(ray, edge, rule, slice);
+    // Walls under a voxel are left as they are (wall_edge).
+    if (edge.band.strength == 1) return sliced_kernel_footprint(ray.rho2, slice);
     const Chord chord(ray, slice);
     double sum = whole_plain(chord);
     sum += band_change(chord, edge.distance, edge.band, rule);

@@ -87,6 +87,14 @@ Hit walk(vec3 x, vec3 q, float value, float low, float high) {
     return hit;
 }
 
+// From voxel p along q to where the volume ends, half a voxel beyond its outermost samples.
+float way_out(ivec3 p, vec3 q) {
+    vec3 x = vec3(params.scene.block_origin + p) + 0.5;
+    vec3 room = mix(x, vec3(params.scene.volume_dims) - x, greaterThan(q, vec3(0.0)));
+    vec3 t = room / max(abs(q), vec3(1e-6));
+    return min(t.x, min(t.y, t.z));
+}
+
 Edge march(ivec3 p, float value, float low, float high) {
     Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
     vec3 x = vec3(p), axis = change_axis(p);
@@ -110,7 +118,7 @@ Edge march(ivec3 p, float value, float low, float high) {
             n = alignment < 0.0 ? -n : n;
             alignment = abs(alignment);
             if (steepness >= GRADIENT_MIN && alignment >= 0.5) {
-                float other = hits[1 - side].t;
+                float other = min(hits[1 - side].t, way_out(p, -q));
                 e = Edge(n, hit.t * alignment, other <= EDGE_REACH ? other * abs(dot(axis, n)) : 1e9,
                          hit.upper ? EDGE_UPPER : EDGE_LOWER);
             }

@@ -13,11 +13,12 @@ layout(push_constant) uniform Push { uint group; };
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
-    if (any(greaterThanEqual(pixel, size))) return;
+    bool inside = all(lessThan(pixel, size));
     ivec4 rect = GroupsRef(params.frame.groups).at[group].rect;
     bool touched = all(greaterThanEqual(pixel, rect.xy)) && all(lessThan(pixel, rect.zw));
     int first = int(group * params.frame.sheets_per_group);
-    int count = min(int(params.frame.sheets_per_group), int(params.frame.sheet_count) - first);
+    // An end that differs from pixel to pixel: lavapipe makes and keeps a shader anew for loops that a uniform ends.
+    int count = inside ? min(int(params.frame.sheets_per_group), int(params.frame.sheet_count) - first) : 0;
     float tau = texelFetch(accumulated, pixel, 0).a;
     for (int i = 0; i < count; ++i) {
         // Beyond the group's rectangle its sheets hold what was there before.

@@ -17,7 +17,7 @@ layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_NODES) const uint NODES = 10u;
+layout(constant_id = SPEC_NODES) const uint NODES = 8u;
 layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;

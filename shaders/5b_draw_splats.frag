@@ -8,7 +8,7 @@ layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_NODES) const uint NODES = 10u;
+layout(constant_id = SPEC_NODES) const uint NODES = 8u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;

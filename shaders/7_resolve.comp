@@ -29,8 +29,9 @@ void main() {
     }
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) sum.rgb = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
     if (PAYLOAD == PAYLOAD_NORMAL) {
-        float norm = length(sum.rgb);
-        sum.rgb = norm > 0.0 ? sum.rgb / norm : vec3(0.0);
+        // Scaled first: the squares of what a pixel hardly shows would vanish.
+        float largest = max(abs(sum.r), max(abs(sum.g), abs(sum.b)));
+        sum.rgb = largest > 0.0 ? normalize(sum.rgb / largest) : vec3(0.0);
     }
     picture.at[pixel.y * size.x + pixel.x] = sum;
 }

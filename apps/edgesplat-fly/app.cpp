@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/image_file.h"
 #include "engine/scene/nearest_name.h"
+#include "engine/srgb.h"
 #include "engine/viewer/keeping.h"
 
 namespace {
@@ -30,13 +31,9 @@ constexpr double kWaitMoving = 0.004, kWaitBusy = 0.03, kWaitIdle = 0.5;
 edgesplat::Image as_image(const viewer::ScreenPicture& picture) {
     edgesplat::Image image(picture.width, picture.height, 3);
     // encode_png turns linear light into sRGB; this undoes it beforehand, so that bytes stay what they are.
-    const auto linear = [](std::uint8_t byte) {
-        const double s = byte / 255.0;
-        return static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-    };
     for (std::size_t i = 0; i < image.pixels.size() / 3; ++i)
         for (std::size_t c = 0; c < 3; ++c)
-            image.pixels[3 * i + c] = linear(picture.pixels[4 * i + c]);
+            image.pixels[3 * i + c] = static_cast<float>(edgesplat::to_linear(picture.pixels[4 * i + c] / 255.0));
     return image;
 }
 
@@ -123,6 +120,7 @@ void App::open_gui() {
     for (const std::string& candidate : candidates) {
         try {
             open({.device = candidate, .validation = state_.device.validation});
+            // cppcheck-suppress nullPointer; open() has made it, or thrown
             canvas_ = std::make_unique<Canvas>(*device_);
             return;
         } catch (const edgesplat::Error& error) {
@@ -147,6 +145,7 @@ void App::close_gui() {
 }
 
 void App::make_drawer() {
+    if (state_.drawer) messages_ += state_.drawer->validation_messages();
     state_.drawer.reset();
     state_.drawer = std::make_unique<viewer::Drawer>(viewer::Drawer::Options{.device = state_.device,
                                                                              .memory_budget = options_.memory_budget,
@@ -302,9 +301,7 @@ void App::frame(const Input& input) {
     const viewer::Controls controls = controls_.apply(state_, input, over_picture, io.WantTextInput);
     state_.session.step(controls, input.seconds);
     if (auto request = state_.session.next_request(state_.picture_size())) state_.drawer->ask(std::move(*request));
-    take_pictures(state_);
-    if (state_.shown && state_.fresh) times_.add(*state_.shown);
-    state_.fresh = false;
+    if (take_pictures(state_) && player_) times_.add(*state_.shown);
     state_.pictures.clear();
     place_pictures(state_);
     show_panels();

@@ -55,7 +55,6 @@ struct AppState {
     std::optional<edgesplat::viewer::DrawnPicture> shown;  ///< without its pixels once they are on the canvas
     edgesplat::Image last_edges, last_plain;               ///< its pixels
     bool sharpening_due = false;                           ///< not made of them yet
-    bool fresh = false;                                    ///< `shown` came with this frame
     CanvasPicture edges, plain, sharpening;
     std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
 

@@ -19,10 +19,6 @@ glm::dvec3 towards_eye(const AppState& state) {
     return -edgesplat::unit(state.session.motion().camera().direction);
 }
 
-glm::dvec3 center(const edgesplat::VolumeGeometry& geometry) {
-    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
-}
-
 /// The world axis that is nearest, either way.
 glm::dvec3 along_axis(const glm::dvec3& direction) {
     const glm::dvec3 size = glm::abs(direction);
@@ -37,7 +33,7 @@ void one_plane(AppState& state, std::size_t i) {
     auto& session = state.session;
     const auto& geometry = session.volume().geometry;
     const Plane plane = session.document().effects.clip.keep[i];
-    const glm::dvec3 normal = edgesplat::unit(plane.normal), middle = center(geometry);
+    const glm::dvec3 normal = edgesplat::unit(plane.normal), middle = geometry.center();
     const double length = glm::length(viewer::volume_box(geometry).high - viewer::volume_box(geometry).low) / 2;
     slide(state, "mm from the centre", glm::dot(plane.point - middle, normal), {-length, length, "%.2f"},
           [&](SceneDocument& d, double v) { d.effects.clip.keep.at(i).point = middle + v * normal; });
@@ -112,7 +108,7 @@ void clip_panel(AppState& state) {
     ImGui::BeginDisabled(clip.keep.size() >= most);
     if (button(state, "add a plane"))
         session.edit([&](SceneDocument& d) {
-            const glm::dvec3 at = session.point().value_or(center(session.volume().geometry));
+            const glm::dvec3 at = session.point().value_or(session.volume().geometry.center());
             d.effects.clip.keep.push_back({at, along_axis(towards_eye(state))});
         });
     ImGui::EndDisabled();

@@ -29,17 +29,6 @@ void toggle_mode(AppState& s) {
     s.session.say(fly ? "fly: W A S D to move, mouse to look" : "orbit: drag to turn, wheel to come nearer");
 }
 
-void toggle_recording(AppState& s) {
-    auto& recorder = s.session.recorder();
-    if (recorder.recording()) {
-        recorder.stop();
-        s.session.say(fmt::format("recorded {:.1f} s; a saved scene brings it along", recorder.seconds()));
-    } else {
-        recorder.start();
-        s.session.say("recording the flight");
-    }
-}
-
 constexpr std::array<Shortcut, 39> kShortcuts{{
     {"F1", "this help", [](AppState& s) { s.help = !s.help; }},
     {"Tab", "panels on and off", [](AppState& s) { s.panels = !s.panels; }},
@@ -65,13 +54,7 @@ constexpr std::array<Shortcut, 39> kShortcuts{{
     {"Delete", "forget the picks", [](AppState& s) { s.session.clear_picks(); }},
     {"G", "guided path: click its two ends",
      [](AppState& s) { s.tool = s.tool == Tool::PathStart || s.tool == Tool::PathEnd ? Tool::Move : Tool::PathStart; }},
-    {"Enter", "travel along the path, stop",
-     [](AppState& s) {
-         auto& tour = s.session.tour();
-         if (!tour.line()) return;
-         if (!tour.playing && tour.position() >= tour.line()->length) tour.set_position(0);
-         tour.playing = !tour.playing;
-     }},
+    {"Enter", "travel along the path, stop", [](AppState& s) { s.session.tour().toggle(); }},
     {"L", "slices through the last pick", [](AppState& s) { s.slices = !s.slices; }},
     {"O", "scale bar, orientation and picks", [](AppState& s) { s.overlays = !s.overlays; }},
     {"Ctrl+Z", "undo", [](AppState& s) { s.session.undo(); }},
@@ -119,6 +102,17 @@ double axis(const Input& input, std::string_view less, std::string_view more) {
 }
 
 }  // namespace
+
+void toggle_recording(AppState& s) {
+    auto& recorder = s.session.recorder();
+    if (recorder.recording()) {
+        recorder.stop();
+        s.session.say(fmt::format("recorded {:.1f} s; a saved scene brings it along", recorder.seconds()));
+    } else {
+        recorder.start();
+        s.session.say("recording the flight");
+    }
+}
 
 std::span<const Shortcut> shortcuts() {
     return kShortcuts;

@@ -15,6 +15,9 @@ struct Shortcut {
 };
 std::span<const Shortcut> shortcuts();
 
+/// Begins to record the flight, or ends it, and says so.
+void toggle_recording(AppState& state);
+
 /// Mouse, keys and gamepad of one frame.
 class PictureControls {
   public:

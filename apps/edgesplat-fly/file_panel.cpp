@@ -2,6 +2,7 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include "apps/edgesplat-fly/controls.h"
 #include "apps/edgesplat-fly/panels.h"
 #include "engine/viewer/keeping.h"
 #include "engine/volume/analytic_volumes.h"
@@ -49,9 +50,8 @@ void file_panel(AppState& state) {
     }
     if (!state.session.is_open()) return;
     saving(state);
-    auto& recorder = state.session.recorder();
-    if (ImGui::Button(recorder.recording() ? "stop recording" : "record the flight"))
-        recorder.recording() ? recorder.stop() : recorder.start();
+    const auto& recorder = state.session.recorder();
+    if (ImGui::Button(recorder.recording() ? "stop recording" : "record the flight")) toggle_recording(state);
     if (recorder.recording() || !recorder.empty()) {
         ImGui::SameLine();
         ImGui::Text("%.1f s", recorder.seconds());

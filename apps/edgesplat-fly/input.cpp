@@ -8,6 +8,12 @@
 
 namespace {
 
+/// For each key the code of GLFW's key tokens; modifiers stand for both of their keys.
+struct KeyName {
+    std::string_view name;
+    int code;
+};
+
 constexpr std::array<KeyName, 36> kNamed{{{"Space", GLFW_KEY_SPACE},
                                           {"Enter", GLFW_KEY_ENTER},
                                           {"Enter", GLFW_KEY_KP_ENTER},

@@ -39,11 +39,6 @@ struct Input {
     bool ctrl() const { return holds("Ctrl"); }
 };
 
-/// All names, and for each the key code of GLFW's key tokens; modifiers stand for both of their keys.
-struct KeyName {
-    std::string_view name;
-    int code;
-};
 /// Whether a key of that name is known.
 bool is_key(std::string_view name);
 /// The name of a GLFW key code; empty: none.

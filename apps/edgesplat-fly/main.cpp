@@ -4,15 +4,10 @@
 #include <CLI/CLI.hpp>
 #include <exception>
 
+#include "apps/device_options.h"
 #include "apps/edgesplat-fly/app.h"
 
 namespace {
-
-void print_devices() {
-    for (const edgesplat::DeviceInfo& d : edgesplat::list_devices())
-        fmt::print("{}: {} ({}){}\n", d.index, d.name, d.type,
-                   d.rejections.empty() ? "" : " cannot be used: " + d.rejections.front());
-}
 
 void print_script_help() {
     for (const auto& verb : edgesplat::viewer::script_verbs())
@@ -25,17 +20,7 @@ void print_script_help() {
 void add_options(CLI::App& app, AppOptions& options) {
     app.add_option("SOURCE", options.source,
                    "A volume file, a folder of slices, builtin:NAME or a scene file (default: a builtin scene)");
-    app.add_option("--device", options.device.device,
-                   "A Vulkan device: its number in --list-devices, or a part of its name");
-    app.add_flag_callback(
-        "--list-devices",
-        [] {
-            print_devices();
-            throw CLI::Success();
-        },
-        "Print the Vulkan devices and leave");
-    app.add_flag("--validation", options.device.validation,
-                 "Check every Vulkan call; any message makes the program fail");
+    add_device_options(app, options.device);
     app.add_option_function<std::string>(
            "--size",
            [&options](const std::string& text) {

@@ -28,10 +28,7 @@ void path_panel(AppState& state) {
         tour.set_position(static_cast<double>(at));
         session.motion().jump(tour.camera(session.motion().camera().up));
     }
-    if (ImGui::Button(tour.playing ? "stop" : "travel")) {
-        if (!tour.playing && tour.position() >= tour.line()->length) tour.set_position(0);
-        tour.playing = !tour.playing;
-    }
+    if (ImGui::Button(tour.playing ? "stop" : "travel")) tour.toggle();
     ImGui::SameLine();
     if (ImGui::Button("look ahead")) tour.look = glm::dvec2(0);
     ImGui::SameLine();

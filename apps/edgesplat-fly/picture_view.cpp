@@ -97,7 +97,6 @@ void draw_orientation(const AppState& state, const Pen& pen) {
     }
 }
 
-/// How far the picture on the canvas is behind the camera is not shown: its own camera is what it was drawn with.
 Placed whole(CanvasPicture& picture, const glm::ivec4& at) {
     return {&picture, {0, 0, 1, 1}, at};
 }
@@ -111,11 +110,11 @@ void make_sharpening(AppState& state) {
     state.sharpening_due = false;
 }
 
-void take_newest(AppState& state) {
-    if (!state.drawer) return;
+bool take_newest(AppState& state) {
+    if (!state.drawer) return false;
     if (std::string error = state.drawer->take_error(); !error.empty()) state.error = std::move(error);
     auto picture = state.drawer->take();
-    if (!picture) return;
+    if (!picture) return false;
     state.edges.set(edgesplat::viewer::screen_picture(picture->color));
     if (picture->plain) {
         state.plain.set(edgesplat::viewer::screen_picture(*picture->plain));
@@ -125,7 +124,7 @@ void take_newest(AppState& state) {
     state.sharpening_due = true;
     picture->plain.reset();
     state.shown = std::move(*picture);
-    state.fresh = true;
+    return true;
 }
 
 }  // namespace
@@ -139,9 +138,10 @@ void world_line(const AppState& state, const Pen& pen, const glm::dvec3& a, cons
     if (from && to && glm::length(*from) < most && glm::length(*to) < most) pen.line(*from, *to, color, width);
 }
 
-void take_pictures(AppState& state) {
-    take_newest(state);
+bool take_pictures(AppState& state) {
+    const bool taken = take_newest(state);
     make_sharpening(state);
+    return taken;
 }
 
 void place_pictures(AppState& state) {

@@ -3,8 +3,9 @@
 
 #include "apps/edgesplat-fly/app_state.h"
 
-/// Takes what the drawer has finished and brings it to the canvas.
-void take_pictures(AppState& state);
+/// Takes what the drawer has finished and brings it to the canvas. Whether there was something: it is in
+/// `state.shown`.
+bool take_pictures(AppState& state);
 
 /// Places the pictures in state.area, lowest first.
 void place_pictures(AppState& state);

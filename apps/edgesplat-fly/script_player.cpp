@@ -59,6 +59,7 @@ std::optional<Input> ScriptPlayer::next() {
         if (at_ == commands_.size()) return std::nullopt;
         begin(commands_[at_++]);
     }
+    // cppcheck-suppress containerOutOfBounds; begin() above adds to what is pending
     const Change change = std::move(pending_.front());
     pending_.pop_front();
     if (change) change(input_);
@@ -136,7 +137,7 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
     }
     if (c.verb == "type") frame([text = decoded(c.words[0])](Input& in) { in.text = text; });
     if (c.verb == "drop") frame([path = c.words[0]](Input& in) { in.dropped = {path}; });
-    if (c.verb == "wander") wander(c.number(0), static_cast<unsigned>(c.number(1)));
+    if (c.verb == "wander") wander(c.number(0), static_cast<unsigned>(static_cast<int>(c.number(1))));
     if (c.verb == "screenshot") host_.screenshot(c.words[0]);
     if (c.verb == "picture") host_.picture(c.words[0]);
     if (c.verb == "save") host_.save(c.words[0]);

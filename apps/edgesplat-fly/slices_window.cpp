@@ -20,10 +20,6 @@ using viewer::Slice;
 constexpr ImU32 kGround = IM_COL32(13, 13, 16, 255), kFrame = IM_COL32(70, 72, 84, 255);
 constexpr ImU32 kCross = IM_COL32(255, 210, 60, 190), kEye = IM_COL32(90, 220, 255, 255);
 
-glm::dvec3 center(const edgesplat::VolumeGeometry& geometry) {
-    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
-}
-
 bool inside(const edgesplat::VolumeGeometry& geometry, const glm::dvec3& world) {
     const glm::dvec3 voxel = geometry.to_index(world);
     return glm::all(glm::greaterThanEqual(voxel, glm::dvec3(-0.5))) &&
@@ -36,7 +32,7 @@ glm::dvec3 linked_point(const AppState& state) {
     if (session.point()) return *session.point();
     const auto& geometry = session.volume().geometry;
     const glm::dvec3& eye = session.motion().camera().eye;
-    return inside(geometry, eye) ? eye : center(geometry);
+    return inside(geometry, eye) ? eye : geometry.center();
 }
 
 viewer::ScreenPicture grey_picture(const Slice& slice) {
@@ -52,9 +48,9 @@ void update(AppState& state, int axis, const glm::dvec3& voxel) {
     const auto& volume = state.session.volume();
     const SliceView& view = state.slice_view;
     const int depth = std::clamp(static_cast<int>(std::lround(voxel[axis])), 0, volume.geometry.dims[axis] - 1);
-    if (shown.slice && shown.volume == &volume && shown.depth == depth && shown.low == view.low &&
-        shown.high == view.high) {
-        shown.slice->cross = viewer::pixel_at(*shown.slice, voxel);
+    // What could not be read is not tried again until something else is wanted.
+    if (shown.volume == &volume && shown.depth == depth && shown.low == view.low && shown.high == view.high) {
+        if (shown.slice) shown.slice->cross = viewer::pixel_at(*shown.slice, voxel);
         return;
     }
     // Of a file slices are read once the eye stands: they must not hold up the flight.

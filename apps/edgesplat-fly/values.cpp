@@ -111,5 +111,6 @@ std::string App::value(const std::string& name) {
         return text(edgesplat::number_at(state_.session.document(), name.substr(kScene.size())));
     const auto found = values().find(name);
     if (found == values().end()) edgesplat::fail("'{}' is no value; there are {}", name, value_names());
+    // cppcheck-suppress derefInvalidIteratorRedundantCheck; fail() does not return
     return found->second(state_);
 }

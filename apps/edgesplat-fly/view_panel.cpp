@@ -55,8 +55,7 @@ void named_views(AppState& state) {
         const edgesplat::ViewRequest request{&session.volume(), &session.scene(), session.motion().camera().fov_y,
                                              size.x, size.y};
         const auto& geometry = session.volume().geometry;
-        session.motion().fly_to(edgesplat::named_view(name, request),
-                                geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0), 0.8);
+        session.motion().fly_to(edgesplat::named_view(name, request), geometry.center(), 0.8);
     }
 }
 

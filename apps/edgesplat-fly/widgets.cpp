@@ -6,15 +6,12 @@
 #include <array>
 #include <cmath>
 
+#include "engine/srgb.h"
+
 namespace {
 
-double to_srgb(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
-double to_linear(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
+using edgesplat::to_linear;
+using edgesplat::to_srgb;
 
 std::string name_of(std::string label) {
     const auto hidden = label.find("##");

@@ -94,7 +94,7 @@ void run_resolution(const AccuracyCommand& command, const ReportInput& input, co
                                                          .program = input.program,
                                                          .command = input.command};
     edgesplat::Renderer renderer(command.device);
-    const StopRequest stop;
+    const StopRequest stop("stopped; nothing was written");
     edgesplat::accuracy::ResolutionReport report;
     {
         ProgressBar bar(command.quiet);
@@ -122,7 +122,7 @@ void run(const AccuracyCommand& command, const std::string& command_line) {
 
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(input.volume);
-    const StopRequest stop;
+    const StopRequest stop("stopped; the same command goes on from the measurements that are there");
     edgesplat::accuracy::Measured measured;
     {
         ProgressBar bar(command.quiet);

@@ -46,7 +46,7 @@ void run(const BenchCommand& command, const std::string& command_line) {
     if (command.rounds) options.rounds = static_cast<int>(*command.rounds);
     bench::BenchRun result;
     {
-        const StopRequest stop;
+        const StopRequest stop("stopped; nothing was written");
         ProgressBar bar(command.quiet);
         result = bench::run_suite(suite, options, [&](const edgesplat::accuracy::Progress& p) {
             bar.update(p.done, p.seconds_left, p.what);

@@ -1,13 +1,15 @@
 #include "apps/edgesplat/info_command.h"
 
+#include <fmt/format.h>
+
 #include <cmath>
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "apps/edgesplat/volume_options.h"
-#include "engine/error.h"
+#include "engine/accuracy/json_text.h"
+#include "engine/image_file.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 
@@ -143,11 +145,10 @@ void run(const InfoOptions& options) {
     if (options.json.empty()) {
         print(json);
     } else if (options.json == "-") {
-        std::cout << json.dump(2) << '\n';
+        std::cout << edgesplat::json_text(json, 2) << '\n';
     } else {
-        std::ofstream file(options.json);
-        file << json.dump(2) << '\n';
-        if (!file.flush()) edgesplat::fail("{}: cannot be written", options.json);
+        const edgesplat::FileContent file{options.json, edgesplat::json_text(json, 2) + "\n"};
+        edgesplat::write_files({&file, 1});
     }
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <exception>
@@ -12,19 +13,8 @@
 #include <thread>
 #include <vector>
 
-#include "apps/edgesplat/accuracy_command.h"
-#include "apps/edgesplat/bench_command.h"
-#include "apps/edgesplat/compare_command.h"
-#include "apps/edgesplat/effects_command.h"
-#include "apps/edgesplat/footprints_command.h"
-#include "apps/edgesplat/help_formatter.h"
-#include "apps/edgesplat/info_command.h"
-#include "apps/edgesplat/movie_command.h"
+#include "apps/edgesplat/commands.h"
 #include "apps/edgesplat/mpi_ranks.h"
-#include "apps/edgesplat/pack_command.h"
-#include "apps/edgesplat/render_command.h"
-#include "apps/edgesplat/rerun_command.h"
-#include "apps/edgesplat/scene_command.h"
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
 
@@ -51,7 +41,7 @@ std::string shell_line(int argc, char** argv) {
 
 /// The option or command of `app` that is spelled most like an unexpected argument; empty if none is near.
 std::string nearest_name(const CLI::App& app, std::string argument) {
-    argument = argument.substr(0, argument.find('='));
+    argument.resize(std::min(argument.find('='), argument.size()));
     std::vector<std::string> names;
     for (const CLI::Option* option : app.get_options())
         for (const std::string& name : option->get_lnames())
@@ -102,34 +92,7 @@ int run(int argc, char** argv) {
     int exit_status = 0;
     CLI::App app("Volume splatting with edge preservation", "edgesplat");
     try {
-        app.set_version_flag("--version", "edgesplat " EDGESPLAT_VERSION);
-        app.formatter(std::make_shared<HelpFormatter>());
-        app.require_subcommand(1);
-        app.add_flag_callback(
-            "--list-devices",
-            [] {
-                print_devices();
-                throw CLI::Success();
-            },
-            "Print the Vulkan devices and leave");
-        add_render_command(app, shell_line(argc, argv));
-        add_rerun_command(app, shell_line(argc, argv));
-        add_scene_command(app, exit_status);
-        add_movie_command(app, exit_status);
-        add_info_command(app);
-        add_pack_command(app, exit_status);
-        add_compare_command(app, exit_status);
-        add_footprints_command(app);
-        add_effects_command(app);
-        add_accuracy_command(app, shell_line(argc, argv), exit_status);
-        add_bench_command(app, shell_line(argc, argv), exit_status);
-        app.footer(
-            "Examples:\n"
-            "  edgesplat render builtin:sphere -o sphere.png --compare plain\n"
-            "  edgesplat info head.nrrd\n"
-            "  edgesplat render head.nrrd --iso -400 -o head.png\n"
-            "  edgesplat compare new.png old.png --max-diff 0.01\n"
-            "Each command has a --help of its own.");
+        add_commands(app, shell_line(argc, argv), exit_status);
         ranks::join();
         for (CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
             command->preparse_callback([command](std::size_t) { refuse_ranks(*command); });

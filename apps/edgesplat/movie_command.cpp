@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "apps/device_options.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/movie_encoder.h"
 #include "apps/edgesplat/movie_folder.h"
@@ -195,13 +196,13 @@ Missing missing_frames(const Film& film, const fs::path& folder, const FramePatt
 
 /// Renders frames; false where it was stopped.
 bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path& folder, const FramePattern& pattern,
-                 const Missing& to_make, bool quiet) {
+                 const Missing& to_make, const StopRequest& stop, bool quiet) {
     const auto& [there, missing] = to_make;
     const std::size_t all = there + missing.size();
     using Clock = std::chrono::steady_clock;
     ProgressBar bar(quiet);
-    const StopRequest stop;
     const auto start = Clock::now();
+    renderer.set_interruption([&] { return stop.asked(); });
     for (std::size_t done = 0; done < missing.size(); ++done) {
         if (stop.asked()) return false;
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
@@ -209,24 +210,40 @@ bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path
             done == 0 ? 0 : seconds / static_cast<double>(done) * static_cast<double>(missing.size() - done);
         bar.update(static_cast<double>(there + done) / static_cast<double>(all), left,
                    fmt::format("frame {} of {}", there + done + 1, all));
-        make_frame(film, renderer, missing[done], folder / pattern.name(missing[done]));
+        try {
+            make_frame(film, renderer, missing[done], folder / pattern.name(missing[done]));
+        } catch (const edgesplat::Interrupted&) {
+            return false;
+        }
     }
+    renderer.set_interruption({});
     return true;
 }
 
-/// Once all frames are there.
-void finish(const MovieCommand& command, const Film& film, const Places& places, MovieFolder& folder) {
+/// Once all frames are there; false where it was stopped.
+bool finish(const MovieCommand& command, const Film& film, const Places& places, MovieFolder& folder,
+            const StopRequest& stop) {
     const int count = film.range.last - film.range.first + 1;
     for (int frame = film.range.first; frame <= film.range.last; ++frame)
         if (!folder.has(frame))
             fail("{}: is not there; all ranks must see one folder", folder.frame_path(frame).string());
     if (places.film) {
-        encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output});
+        if (!encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output},
+                    [&] { return stop.asked(); }))
+            return false;
         if (!command.keep_frames) folder.remove();
     }
     if (!command.quiet)
         fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / film.fps,
                    film.fps);
+    return true;
+}
+
+void stopped(const fs::path& folder, int& exit_status) {
+    exit_status = kStoppedStatus;
+    if (ranks::first())
+        fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
+                   folder.string());
 }
 
 void run(const MovieCommand& command, int& exit_status) {
@@ -246,18 +263,16 @@ void run(const MovieCommand& command, int& exit_status) {
                         command.quiet);
     ranks::share(std::span(&film.settings, 1));
     const Missing missing = missing_frames(film, path, pattern, command.quiet);
-    if (ranks::any(!make_frames(film, renderer, path, pattern, missing, command.quiet))) {
-        if (ranks::first())
-            fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
-                       path.string());
-        exit_status = kStoppedStatus;
+    const StopRequest stop("stopped; the same command goes on from the frames that are there");
+    if (ranks::any(!make_frames(film, renderer, path, pattern, missing, stop, command.quiet))) {
+        stopped(path, exit_status);
         return;
     }
     if (renderer.validation_messages() > 0)
         fail("the frames are written, but Vulkan validation had {} messages", renderer.validation_messages());
     ranks::wait();
     if (!ranks::first()) return;
-    finish(command, film, places, *folder);
+    if (!finish(command, film, places, *folder, stop)) stopped(path, exit_status);
 }
 
 FrameRange parse_range(const std::string& text) {

@@ -2,21 +2,29 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstdlib>
-#include <fstream>
+#include <optional>
 #include <sstream>
+#include <system_error>
+#include <thread>
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/memory_file.h"
 
 namespace fs = std::filesystem;
 using edgesplat::fail;
 
 namespace {
+
+constexpr int kNotStarted = 127;  ///< what a shell says of a program that is not there
 
 /// A path as ffmpeg's image patterns read it: a percent sign is written twice.
 std::string escaped(const std::string& path) {
@@ -45,8 +53,8 @@ std::vector<std::string> arguments_for(const Encoding& encoding, const fs::path&
     return arguments;
 }
 
-std::string last_lines(const fs::path& log) {
-    std::ifstream file(log);
+std::string last_lines(const std::string& said) {
+    std::istringstream file(said);
     std::vector<std::string> lines;
     for (std::string line; std::getline(file, line);)
         if (!line.empty()) lines.push_back(line);
@@ -54,6 +62,37 @@ std::string last_lines(const fs::path& log) {
     for (std::size_t i = lines.size() > 4 ? lines.size() - 4 : 0; i < lines.size(); ++i)
         text += (text.empty() ? "" : "; ") + lines[i];
     return text.empty() ? "it said nothing" : text;
+}
+
+/// Starts ffmpeg, which dies with this process: else a movie that was killed, and goes on, would be encoded twice.
+pid_t start(std::vector<std::string>& arguments, int said) {
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments)
+        pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    const pid_t parent = ::getpid(), child = ::fork();
+    if (child == 0) {  // nothing here but what a signal handler may call
+        ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+        if (::getppid() == parent && ::dup2(said, STDOUT_FILENO) >= 0 && ::dup2(said, STDERR_FILENO) >= 0)
+            ::execvp("ffmpeg", pointers.data());
+        ::_exit(kNotStarted);
+    }
+    if (child < 0) fail("ffmpeg cannot be started: {}", std::generic_category().message(errno));
+    return child;
+}
+
+/// The exit status as waitpid has it; nothing where the film is to be left off.
+std::optional<int> wait_for(pid_t child, const std::function<bool()>& stop) {
+    int status = 0;
+    bool stopped = false;
+    while (::waitpid(child, &status, WNOHANG) == 0) {
+        stopped |= stop();
+        if (stopped) ::kill(child, SIGKILL);
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+    // A terminal's Ctrl-C ends ffmpeg, too.
+    if (stopped || (status != 0 && stop())) return std::nullopt;
+    return status;
 }
 
 }  // namespace
@@ -68,30 +107,32 @@ void check_encoder() {
         "-o FOLDER/frame_%04d.png");
 }
 
-void encode(const Encoding& encoding) {
+bool encode(const Encoding& encoding, const std::function<bool()>& stop) {
     const fs::path film = encoding.folder / ("unfinished" + encoding.output.extension().string());
-    const fs::path log = encoding.folder / "encoder.log";
     std::vector<std::string> arguments = arguments_for(encoding, film);
-    std::vector<char*> pointers;
-    for (std::string& argument : arguments)
-        pointers.push_back(argument.data());
-    pointers.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
-    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-    pid_t child = 0;
-    const int problem = ::posix_spawnp(&child, "ffmpeg", &files, nullptr, pointers.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (problem != 0) fail("ffmpeg cannot be started: {}", std::generic_category().message(problem));
-    int status = 0;
-    while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-    }
+    const edgesplat::MemoryFile said;
+    const std::optional<int> status = wait_for(start(arguments, said.descriptor()), stop);
     std::error_code error;
-    if (status != 0 || !fs::exists(film, error))
-        fail("ffmpeg could not make {} (status {}): {}. All it said is in {}, the frames are beside it",
-             encoding.output.string(), status, last_lines(log), log.string());
-    fs::rename(film, encoding.output, error);
-    if (error) fail("{}: {}", encoding.output.string(), error.message());
-    fs::remove(log, error);
+    if (!status) {
+        fs::remove(film, error);
+        return false;
+    }
+    try {
+        if (WIFEXITED(*status) && WEXITSTATUS(*status) == kNotStarted) fail("ffmpeg cannot be started");
+        if (*status != 0 || !fs::exists(film, error))
+            fail("ffmpeg could not make {} (status {}): {}. The frames are in {}", encoding.output.string(),
+                 WIFEXITED(*status) ? WEXITSTATUS(*status) : *status, last_lines(said.text()),
+                 encoding.folder.string());
+        const int written = ::open(film.c_str(), O_RDONLY | O_CLOEXEC);
+        const bool synced = written >= 0 && ::fsync(written) == 0;
+        const int problem = errno;
+        if (written >= 0) ::close(written);
+        if (!synced) fail("{}: {}", encoding.output.string(), std::generic_category().message(problem));
+        fs::rename(film, encoding.output, error);
+        if (error) fail("{}: {}", encoding.output.string(), error.message());
+    } catch (...) {
+        fs::remove(film, error);
+        throw;
+    }
+    return true;
 }

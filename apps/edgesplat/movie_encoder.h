@@ -2,11 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 
 /// What is to be encoded.
 struct Encoding {
-    std::filesystem::path folder;  ///< of the frames; takes what the encoder says (encoder.log) and the unfinished film
+    std::filesystem::path folder;  ///< of the frames; takes the unfinished film
     std::string pattern;           ///< of the frames' names, such as frame_%05d.png
     int first = 0, count = 0;      ///< frames
     double fps = 25;
@@ -16,5 +17,6 @@ struct Encoding {
 /// Refuses, before anything is rendered, where there is no ffmpeg. Throws edgesplat::Error naming the package.
 void check_encoder();
 
-/// Runs ffmpeg. Throws edgesplat::Error with the last thing it said.
-void encode(const Encoding& encoding);
+/// Runs ffmpeg until it is done or `stop` says so, which is asked all the time; false where it was stopped: then as if
+/// it had not been called. Throws edgesplat::Error with the last thing ffmpeg said.
+bool encode(const Encoding& encoding, const std::function<bool()>& stop);

@@ -11,8 +11,10 @@
 #include <fstream>
 #include <vector>
 
+#include "engine/accuracy/json_text.h"
 #include "engine/error.h"
 #include "engine/image_file.h"
+#include "footprints/temporary_file.h"
 
 namespace fs = std::filesystem;
 using edgesplat::fail;
@@ -28,13 +30,6 @@ std::string hash_of(const std::string& text) {
     for (const char c : text)
         hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
     return fmt::format("{:016x}", hash);
-}
-
-/// The file that one of write_files' temporary files, .NAME.PID-COUNT.tmp, was to become: a killed program left it.
-std::string written_as(const std::string& name) {
-    if (!name.starts_with('.') || !name.ends_with(".tmp")) return "";
-    const std::string inner = name.substr(1, name.size() - 5);
-    return inner.substr(0, inner.rfind('.'));
 }
 
 /// The names under which two notes differ.
@@ -83,12 +78,10 @@ MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, co
     fs::create_directories(folder_, error);
     if (error) fail("{}: cannot be made: {}", folder_.string(), error.message());
     lock();
+    edgesplat::remove_stale_temporaries(folder_);
     bool frames = false;
-    for (const auto& entry : fs::directory_iterator(folder_)) {
-        const std::string name = entry.path().filename().string();
-        frames |= pattern_.matches(name);
-        if (pattern_.matches(written_as(name))) fs::remove(entry.path(), error);
-    }
+    for (const auto& entry : fs::directory_iterator(folder_))
+        frames |= pattern_.matches(entry.path().filename().string());
     if (restart) {
         remove_frames();
     } else if (frames || fs::exists(folder_ / kNote)) {
@@ -97,14 +90,14 @@ MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, co
         if (note.is_discarded() || !note.contains("decided_by"))
             fail("{}: frames lie there that nothing is known of; --restart removes them and begins anew",
                  folder_.string());
-        const auto changed = differences(note["decided_by"], decided_by);
+        const auto changed = differences(note["decided_by"], ordered_json::parse(edgesplat::json_text(decided_by)));
         if (!changed.empty())
             fail("{}: its frames were made with other values of: {}; give the same again, or --restart to begin anew",
                  folder_.string(), fmt::join(changed, ", "));
         return;
     }
-    const ordered_json note{{"hash", hash_of(decided_by.dump())}, {"decided_by", decided_by}};
-    const edgesplat::FileContent content{folder_ / kNote, note.dump(2) + "\n"};
+    const ordered_json note{{"hash", hash_of(edgesplat::json_text(decided_by))}, {"decided_by", decided_by}};
+    const edgesplat::FileContent content{folder_ / kNote, edgesplat::json_text(note, 2) + "\n"};
     edgesplat::write_files({&content, 1});
 }
 

@@ -48,6 +48,11 @@ void MpiExchange::wait() {
     MPI_Barrier(MPI_COMM_WORLD);
 }
 
+int MpiExchange::largest(int value) {
+    MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    return value;
+}
+
 void MpiExchange::pass_back(std::span<float> transmittance) {
     MPI_Exscan(MPI_IN_PLACE, transmittance.data(), mpi_count(transmittance.size()), MPI_FLOAT, MPI_PROD,
                MPI_COMM_WORLD);

@@ -20,6 +20,7 @@ class MpiExchange : public edgesplat::PartExchange {
 
     edgesplat::SheetPart part() const override { return part_; }
     void wait() override;
+    int largest(int value) override;
     void pass_back(std::span<float> transmittance) override;
     void fold(std::span<glm::vec4> pixels) override;
     void add(std::span<glm::vec4> pixels) override;

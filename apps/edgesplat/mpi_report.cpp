@@ -44,6 +44,7 @@ nlohmann::ordered_json to_json(const std::vector<RankReport>& reports) {
         const edgesplat::SheetShare& share = report.share;
         json.push_back({{"first_sheet", share.first_sheet},
                         {"end_sheet", share.end_sheet},
+                        {"splats", share.splats},
                         {"pairs", share.pairs},
                         {"setup_ms", report.setup_milliseconds},
                         {"draw_ms", share.draw_milliseconds},

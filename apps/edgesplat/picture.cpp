@@ -11,6 +11,7 @@
 #include "apps/edgesplat/mpi_ranks.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/volume_options.h"
+#include "engine/accuracy/json_text.h"
 #include "engine/error.h"
 #include "engine/overlays.h"
 #include "engine/scene/scene_file.h"
@@ -170,7 +171,7 @@ void make_picture(const PictureRequest& request) {
     std::vector<edgesplat::FileContent> files = picture_files(output.file, frames, metadata);
     if (!request.json.empty()) {
         add_renderer_statistics(json, output, measurements);
-        files.push_back({request.json, json.dump(2) + "\n"});
+        files.push_back({request.json, edgesplat::json_text(json, 2) + "\n"});
     }
     edgesplat::write_files(files);
 

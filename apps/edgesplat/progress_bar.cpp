@@ -6,16 +6,32 @@
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 
 #include "engine/accuracy/work_list.h"
+#include "footprints/temporary_file.h"
 
 namespace {
 
 volatile std::sig_atomic_t stop_asked = 0;
 
+const char* words_of_the_impatient = nullptr;
+
+// What may be called here is in signal-safety(7).
 void note_stop(int signal) {
     stop_asked = 1;
     std::signal(signal, SIG_DFL);
+    if (words_of_the_impatient != nullptr) alarm(1);
+}
+
+void end_now(int) {
+    if (edgesplat::DeferSignals::any()) {
+        alarm(1);
+        return;
+    }
+    for (const char* text : {"edgesplat: ", words_of_the_impatient, "\n"})
+        if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
+    _exit(kStoppedStatus);
 }
 
 std::string duration_text(double seconds) {
@@ -54,8 +70,10 @@ void ProgressBar::update(double done, double seconds_left, const std::string& wh
     std::fflush(stderr);
 }
 
-StopRequest::StopRequest() {
+StopRequest::StopRequest(const char* last_words) {
     stop_asked = 0;
+    words_of_the_impatient = last_words;
+    std::signal(SIGALRM, end_now);
     std::signal(SIGINT, note_stop);
     std::signal(SIGTERM, note_stop);
 }
@@ -63,6 +81,8 @@ StopRequest::StopRequest() {
 StopRequest::~StopRequest() {
     std::signal(SIGINT, SIG_DFL);
     std::signal(SIGTERM, SIG_DFL);
+    alarm(0);
+    std::signal(SIGALRM, SIG_DFL);
 }
 
 bool StopRequest::asked() const {

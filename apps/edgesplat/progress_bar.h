@@ -25,10 +25,14 @@ class ProgressBar {
     std::chrono::steady_clock::time_point last_;
 };
 
-/// While it lives, the first SIGINT or SIGTERM is only noted; a second one ends the program at once.
+/// While it lives, the first SIGINT or SIGTERM is only noted; a second one ends the program at once. With `last_words`
+/// the program ends with them and kStoppedStatus where a second has passed and this still lives: for work of which
+/// nothing is lost by that, and which may be busy for long with something that cannot be left off. A file that is being
+/// written is written first.
 class StopRequest {
   public:
-    StopRequest();
+    /// `last_words`: outlive this; no end of line.
+    explicit StopRequest(const char* last_words = nullptr);
     ~StopRequest();
     StopRequest(const StopRequest&) = delete;
     StopRequest& operator=(const StopRequest&) = delete;

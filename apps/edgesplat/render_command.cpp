@@ -5,6 +5,7 @@
 #include <array>
 #include <memory>
 
+#include "apps/device_options.h"
 #include "apps/edgesplat/camera_options.h"
 #include "apps/edgesplat/effects_options.h"
 #include "apps/edgesplat/explain_option.h"
@@ -115,25 +116,6 @@ void add_set_option(CLI::App& app, DocumentEdits& edits) {
 
 }  // namespace
 
-void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
-    constexpr const char* kGroup = "Device";
-    command
-        .add_option("--device", choice.device, "A Vulkan device: its number in --list-devices, or a part of its name")
-        ->type_name("DEVICE")
-        ->group(kGroup);
-    command
-        .add_flag_callback(
-            "--list-devices",
-            [] {
-                print_devices();
-                throw CLI::Success();
-            },
-            "Print the Vulkan devices and leave")
-        ->group(kGroup);
-    command.add_flag("--validation", choice.validation, "Check every Vulkan call; any message makes the command fail")
-        ->group(kGroup);
-}
-
 void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& volume) {
     add_camera_options(app, edits);
     add_scene_options(app, edits);
@@ -152,18 +134,6 @@ void read_source(const std::string& source, SceneDocument& document, std::vector
     } else {
         document.volume.path = source;
         folders = edgesplat::volume_folders({});
-    }
-}
-
-void print_devices() {
-    const std::vector<edgesplat::DeviceInfo> devices = edgesplat::list_devices();
-    if (devices.empty())
-        fmt::print("no Vulkan device; the package mesa-vulkan-drivers brings one that runs on the processor\n");
-    for (const edgesplat::DeviceInfo& d : devices) {
-        fmt::print("{}: {} ({}), {} {}, Vulkan {}\n", d.index, d.name, d.type, d.driver, d.driver_version,
-                   d.api_version);
-        for (const std::string& reason : d.rejections)
-            fmt::print("   cannot be used: {}\n", reason);
     }
 }
 

@@ -13,9 +13,6 @@
 /// Adds the command. `command_line` is recorded in what it writes. Its callback throws edgesplat::Error.
 void add_render_command(CLI::App& app, const std::string& command_line);
 
-/// Adds --device, --list-devices and --validation.
-void add_device_options(CLI::App& app, edgesplat::DeviceChoice& choice);
-
 /// Adds everything that a command line can say about a scene: volume, camera, matter, effects, renderer, quality, and
 /// --set, which has the last word.
 void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& volume);
@@ -24,6 +21,3 @@ void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& vo
 /// edgesplat::Error.
 void read_source(const std::string& source, edgesplat::SceneDocument& document,
                  std::vector<std::filesystem::path>& folders);
-
-/// Prints every Vulkan device and why it cannot be used, if so.
-void print_devices();

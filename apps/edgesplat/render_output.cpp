@@ -96,16 +96,6 @@ edgesplat::Image side_by_side(const edgesplat::Image& left, const edgesplat::Ima
     return out;
 }
 
-/// A PNG shows what is seen, the background included, so it has no alpha.
-edgesplat::Image without_alpha(const edgesplat::Image& image) {
-    edgesplat::Image out(image.width, image.height, 3);
-    for (int y = 0; y < out.height; ++y)
-        for (int x = 0; x < out.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                out.at(x, y, c) = image.at(x, y, c);
-    return out;
-}
-
 /// The extra outputs there are, each under its name and with its channels' names.
 std::vector<std::pair<std::string, edgesplat::ImageLayer>> aov_layers(const edgesplat::RenderResult& result) {
     std::vector<std::pair<std::string, edgesplat::ImageLayer>> layers;
@@ -177,7 +167,7 @@ std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& p
     const auto aovs = aov_layers(last);
     std::vector<edgesplat::FileContent> files;
     if (edgesplat::is_png_path(path)) {
-        files.push_back({path, edgesplat::encode_png(without_alpha(color), metadata)});
+        files.push_back({path, edgesplat::encode_png(edgesplat::without_alpha(color), metadata)});
         for (const auto& [name, layer] : aovs)
             files.push_back({aov_path(path, name), edgesplat::encode_exr({&layer, 1}, metadata)});
     } else {

@@ -46,11 +46,9 @@ void run_new(const NewOptions& options) {
         document.materials.push_back({.color = scene.materials[m].color, .extinction = scene.materials[m].extinction});
     // The eye as numbers, which can be changed, and what it looks at.
     const edgesplat::VolumeGeometry& geometry = volume.geometry;
-    document.camera = {.eye = camera.eye,
-                       .target = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0),
-                       .up = camera.up,
-                       .fov = camera.fov_y};
+    document.camera = {.eye = camera.eye, .target = geometry.center(), .up = camera.up, .fov = camera.fov_y};
     document.volume.path = path_in_scene(options.volume_path, fs::path(options.output).parent_path());
+    check_path_is_text(document);
     const std::string text = commented_scene_text(document);
     if (options.output.empty()) {
         fmt::print("{}", text);

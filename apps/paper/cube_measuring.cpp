@@ -68,7 +68,7 @@ CubeQuality cube_quality(Renderer& renderer, const Volume& volume, const Setting
     const auto slices = middle_slices(volume);
     renderer.set_volume(slices);
     const Scene scene = test::two_tone(0, 1);
-    const glm::dvec3 middle = slices->geometry.to_world((glm::dvec3(slices->geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 middle = slices->geometry.center();
     Camera camera;
     camera.eye = middle + glm::dvec3(0, 0, kEye);
     camera.direction = {0, 0, -1};

@@ -4,6 +4,7 @@
 
 #include "engine/accuracy/downsample.h"
 #include "engine/accuracy/heat_map.h"
+#include "engine/accuracy/json_text.h"
 #include "engine/accuracy/page_parts.h"
 #include "engine/accuracy/report_json.h"
 #include "engine/accuracy/svg_plot.h"
@@ -137,7 +138,7 @@ void write_resolution(const ResolutionReport& report, const std::filesystem::pat
     std::error_code error;
     std::filesystem::create_directories(folder, error);
     if (error) fail("cannot make the folder {}: {}", folder.string(), error.message());
-    const std::array<FileContent, 3> files{{{folder / "resolution.json", json_of(report).dump(2) + "\n"},
+    const std::array<FileContent, 3> files{{{folder / "resolution.json", json_text(json_of(report), 2) + "\n"},
                                             {folder / "resolution.csv", csv_of(report)},
                                             {folder / "resolution.html", page_of(report)}}};
     write_files(files);

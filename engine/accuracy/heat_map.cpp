@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/srgb.h"
 
 namespace edgesplat::accuracy {
 namespace {
@@ -21,10 +22,6 @@ constexpr std::array<glm::dvec3, 9> kColors{{{0.267, 0.005, 0.329},
                                              {0.369, 0.789, 0.383},
                                              {0.678, 0.864, 0.190},
                                              {0.993, 0.906, 0.144}}};
-
-double linear_light(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
 
 }  // namespace
 
@@ -47,7 +44,7 @@ Image heat_map(const Image& a, const Image& b) {
             const double share = std::log(std::max(most, kHeatLow) / kHeatLow) / std::log(kHeatHigh / kHeatLow);
             const glm::dvec3 color = heat_color(share);
             for (int c = 0; c < 3; ++c)
-                out.at(x, y, c) = static_cast<float>(linear_light(color[c]));
+                out.at(x, y, c) = static_cast<float>(to_linear(color[c]));
         }
     }
     return out;

@@ -7,9 +7,12 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <system_error>
 
+#include "engine/accuracy/json_text.h"
 #include "engine/error.h"
 #include "engine/image_file.h"
+#include "footprints/temporary_file.h"
 
 namespace edgesplat::accuracy {
 namespace {
@@ -19,11 +22,20 @@ using nlohmann::ordered_json;
 constexpr const char* kIdentityKey = "identity";
 
 std::string check_of(const std::string& key, const ordered_json& value) {
-    return checksum_of(key + "\n" + value.dump());
+    return checksum_of(key + "\n" + json_text(value));
+}
+
+void write_synced(int file, std::string_view text, const std::filesystem::path& path) {
+    try {
+        write_all(file, text);
+    } catch (const std::system_error& error) {
+        fail("cannot write {}: {}", path.string(), error.code().message());
+    }
+    if (fdatasync(file) != 0) fail("cannot write {}: {}", path.string(), std::strerror(errno));
 }
 
 std::string line_of(const std::string& key, const ordered_json& value) {
-    return ordered_json{{"key", key}, {"value", value}, {"check", check_of(key, value)}}.dump() + "\n";
+    return json_text(ordered_json{{"key", key}, {"value", value}, {"check", check_of(key, value)}}) + "\n";
 }
 
 /// "size: 192x192 there, 96x96 asked for; ..." of the keys in which two identities differ.
@@ -32,7 +44,7 @@ std::string differences(const ordered_json& there, const ordered_json& wanted) {
     for (const auto& [key, value] : wanted.items()) {
         const ordered_json other = there.contains(key) ? there.at(key) : ordered_json();
         if (other == value) continue;
-        const std::string a = other.dump(), b = value.dump();
+        const std::string a = json_text(other), b = json_text(value);
         const bool brief = a.size() + b.size() < 120;
         text += (text.empty() ? "" : "; ") + key + (brief ? fmt::format(": {} there, {} asked for", a, b) : " differs");
     }
@@ -96,13 +108,17 @@ void Journal::read(const ordered_json& identity, bool restart) {
         values_.clear();
         good = line_of(kIdentityKey, identity);
     }
-    if (good != text || restart) {
-        // In place, since the lock belongs to this file.
-        if (ftruncate(file_, 0) != 0 || pwrite(file_, good.data(), good.size(), 0) != static_cast<ssize_t>(good.size()))
+    // In place, since the lock belongs to this file; and no good line is ever written again, which a full disk or a
+    // kill would lose: what is cut off at the end goes, damaged lines before it stay and are passed over.
+    const bool prefix = known && text.starts_with(good);
+    if (!known || prefix)
+        if (ftruncate(file_, known ? static_cast<off_t>(good.size()) : 0) != 0)
             fail("cannot write {}: {}", path_.string(), std::strerror(errno));
-        fsync(file_);
-    }
     lseek(file_, 0, SEEK_END);
+    if (!known)
+        write_synced(file_, good, path_);
+    else if (!prefix && !text.ends_with('\n'))
+        write_synced(file_, "\n", path_);
 }
 
 const ordered_json* Journal::find(const std::string& key) const {
@@ -112,10 +128,9 @@ const ordered_json* Journal::find(const std::string& key) const {
 
 void Journal::add(const std::string& key, const ordered_json& value) {
     const std::string line = line_of(key, value);
-    if (write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size()) || fdatasync(file_) != 0)
-        fail("cannot write {}: {}", path_.string(), std::strerror(errno));
+    write_synced(file_, line, path_);
     // As it will be read again: what a second run computes from the journal is the same to the last digit.
-    values_[key] = ordered_json::parse(value.dump());
+    values_[key] = ordered_json::parse(json_text(value));
 }
 
 }  // namespace edgesplat::accuracy

@@ -17,7 +17,7 @@ using nlohmann::ordered_json;
 
 /// The camera turned around the volume's middle by so many degrees about its own up.
 Camera orbited(const Camera& camera, const VolumeGeometry& geometry, double degrees) {
-    const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 center = geometry.center();
     const glm::dvec3 axis = camera_frame(camera).up;
     const double angle = glm::radians(degrees);
     const auto turned = [&](const glm::dvec3& v) {

@@ -54,8 +54,8 @@ std::string page_end() {
     return "</body>\n</html>\n";
 }
 
-HtmlTable::HtmlTable(const std::vector<std::string>& head) : columns_(head.size()) {
-    html_ = "<div class=\"scroll\"><table><thead><tr>";
+HtmlTable::HtmlTable(const std::vector<std::string>& head)
+    : html_("<div class=\"scroll\"><table><thead><tr>"), columns_(head.size()) {
     for (const std::string& cell : head)
         html_ += "<th>" + escaped(cell) + "</th>";
     html_ += "</tr></thead>\n<tbody>\n";

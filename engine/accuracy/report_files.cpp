@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "engine/accuracy/json_text.h"
 #include "engine/accuracy/report_json.h"
 #include "engine/accuracy/report_page.h"
 #include "engine/accuracy/report_text.h"
@@ -24,7 +25,7 @@ void check_report_folder(const std::filesystem::path& folder) {
 
 void write_report(const Measured& measured) {
     const std::filesystem::path& folder = measured.report.options.folder;
-    const std::array<FileContent, 3> files{{{folder / "report.json", report_json(measured.report).dump(2) + "\n"},
+    const std::array<FileContent, 3> files{{{folder / "report.json", json_text(report_json(measured.report), 2) + "\n"},
                                             {folder / "steps.csv", steps_csv(measured.report)},
                                             {folder / "index.html", report_page(measured)}}};
     write_files(files);

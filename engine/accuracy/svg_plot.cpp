@@ -1,13 +1,9 @@
 #include "engine/accuracy/svg_plot.h"
 
 #include <fmt/format.h>
-#include <stdlib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <limits>
 
 #include "engine/error.h"
@@ -16,33 +12,11 @@
 namespace edgesplat::accuracy {
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr double kMost = std::numeric_limits<double>::max();
 
 bool drawable(double x, double y) {
     return x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y);
 }
-
-/// A folder that goes with its object.
-class TemporaryFolder {
-  public:
-    TemporaryFolder() {
-        std::string name = (fs::temp_directory_path() / "edgesplat-XXXXXX").string();
-        if (::mkdtemp(name.data()) == nullptr) fail("{}: no folder can be made there", name);
-        path_ = name;
-    }
-    TemporaryFolder(const TemporaryFolder&) = delete;
-    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-    ~TemporaryFolder() {
-        std::error_code ignored;
-        fs::remove_all(path_, ignored);
-    }
-    const fs::path& path() const { return path_; }
-
-  private:
-    fs::path path_;
-};
 
 /// The plot command; the data stand before it as blocks. Empty where there is nothing to draw.
 std::string script_of(const LogPlot& plot) {
@@ -122,12 +96,8 @@ std::string gnuplot_text(const std::string& text) {
 }
 
 std::string svg_file(const std::string& script) {
-    const TemporaryFolder folder;
-    const fs::path file = folder.path() / "plot.svg";
-    draw_script("set terminal svg size 900,520 dynamic font 'system-ui,sans-serif,14' background 'white'\n" + script,
-                file);
-    std::ifstream in(file);
-    return {std::istreambuf_iterator<char>(in), {}};
+    return run_gnuplot("set terminal svg size 900,520 dynamic font 'system-ui,sans-serif,14' background 'white'\n" +
+                       script);
 }
 
 std::string log_plot_file(const LogPlot& plot) {

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
 
 #include "engine/bench/run_output.h"
 #include "engine/bench/text_table.h"
 #include "engine/error.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat::bench {
 namespace {
@@ -139,9 +139,7 @@ std::string comparison_table(const Comparison& comparison) {
 }
 
 ordered_json read_run(const std::filesystem::path& path) {
-    std::ifstream in(path);
-    if (!in) fail("{}: cannot be read", path.string());
-    ordered_json run = ordered_json::parse(in, nullptr, false);
+    ordered_json run = ordered_json::parse(read_text_file(path, "a bench.json"), nullptr, false);
     if (run.is_discarded() || !run.is_object() || run.value("schema", "") != kSchema)
         fail("{}: is no bench.json of this version; expected \"schema\": \"{}\"", path.string(), kSchema);
     return run;

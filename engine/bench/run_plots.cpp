@@ -1,6 +1,7 @@
 // Plots of a measured suite, and its files.
 #include <array>
 
+#include "engine/accuracy/json_text.h"
 #include "engine/accuracy/report_files.h"
 #include "engine/accuracy/svg_plot.h"
 #include "engine/bench/run_output.h"
@@ -69,7 +70,7 @@ void check_run_folder(const std::filesystem::path& folder) {
 }
 
 std::string write_run(const BenchRun& run, const std::filesystem::path& folder) {
-    std::vector<FileContent> files{{folder / "bench.json", run_json(run).dump(2) + "\n"},
+    std::vector<FileContent> files{{folder / "bench.json", json_text(run_json(run), 2) + "\n"},
                                    {folder / "bench.csv", run_csv(run)}};
     std::string note;
     try {

@@ -3,12 +3,11 @@
 #include <fnmatch.h>
 
 #include <algorithm>
-#include <fstream>
-#include <sstream>
 
 #include "engine/bench/embedded_suites.h"
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat::bench {
 namespace {
@@ -23,13 +22,9 @@ bool like(const std::string& name, const std::string& glob) {
 
 Suite read_suite(const std::string& name_or_path) {
     const fs::path path(name_or_path);
-    if (path.extension() == ".toml") {
-        std::ifstream in(path, std::ios::binary);
-        std::ostringstream text;
-        text << in.rdbuf();
-        if (!in || !fs::is_regular_file(path)) fail("{}: no such file", name_or_path);
-        return parse_suite(text.str(), name_or_path, volume_folders(path.parent_path()));
-    }
+    if (path.extension() == ".toml")
+        return parse_suite(read_text_file(path, "a suite of benchmarks"), name_or_path,
+                           volume_folders(path.parent_path()));
     std::vector<std::string> names;
     for (const EmbeddedSuite& suite : embedded_suites()) {
         if (suite.name == name_or_path)

@@ -25,8 +25,10 @@ std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
 }
 
 Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name)
-    : device_(&device), name_(name), bytes_(std::max<std::size_t>(bytes, 16)) {
-    buffer_ = vk::raii::Buffer(device.handle(), create_info(bytes));
+    : device_(&device),
+      buffer_(device.handle(), create_info(bytes)),
+      name_(name),
+      bytes_(std::max<std::size_t>(bytes, 16)) {
     using Memory = vk::MemoryPropertyFlagBits;
     const auto requirements = buffer_.getMemoryRequirements();
     memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,

@@ -9,6 +9,8 @@ namespace {
 
 // Two per span; a frame of 10^4 sheets in groups of 8 has 2500 spans.
 constexpr std::uint32_t kMaxTimestamps = 8192;
+// Reset together when the first of them is written: validation keeps a state for every query that is ever reset.
+constexpr std::uint32_t kTimestampsAtOnce = 64;
 constexpr std::uint32_t kMaxCounted = 8192;
 constexpr std::uint64_t kTimeout = 600'000'000'000;  // ns; a software device may take minutes for a huge frame
 
@@ -21,9 +23,10 @@ Groups groups_for(std::uint64_t count, std::uint32_t local) {
 }
 
 Commands::Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet set)
-    : device_(&device), pipelines_(&pipelines), set_(set) {
-    pool_ = vk::raii::CommandPool(device.handle(),
-                                  {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()});
+    : device_(&device),
+      pipelines_(&pipelines),
+      set_(set),
+      pool_(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}) {
     buffer_ =
         std::move(vk::raii::CommandBuffers(device.handle(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
     fence_ = vk::raii::Fence(device.handle(), vk::FenceCreateInfo{});
@@ -35,13 +38,18 @@ Commands::Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet
 void Commands::run(const std::function<void()>& body) {
     span_names_.clear();
     buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
-    if (*queries_) buffer_.resetQueryPool(*queries_, 0, kMaxTimestamps);
     counted_ = 0;
     for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
         if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCounted);
     buffer_.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_->layout(), 0, set_, nullptr);
     draws_ = false;
-    body();
+    try {
+        body();
+    } catch (...) {
+        // Else the next one would begin in the middle of this.
+        (*buffer_).reset({}, *device_->handle().getDispatcher());
+        throw;
+    }
     barrier();
     buffer_.end();
     const vk::CommandBufferSubmitInfo command(*buffer_);
@@ -98,6 +106,7 @@ void Commands::write_timestamp() {
     // lavapipe writes timestamps when it next rasterises, which may be after dispatches that were recorded later.
     const bool late = device_->is_software();
     if (late) barrier();
+    if (at % kTimestampsAtOnce == 0) buffer_.resetQueryPool(*queries_, at, kTimestampsAtOnce);
     buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
     if (late) barrier();
 }

@@ -100,6 +100,10 @@ std::string lower(std::string text) {
     return text;
 }
 
+double mebibytes(std::uint64_t bytes) {
+    return static_cast<double>(bytes) / (1024.0 * 1024.0);
+}
+
 bool matches(const DeviceInfo& info, const std::string& choice) {
     if (choice.empty()) return true;
     if (std::all_of(choice.begin(), choice.end(), [](unsigned char c) { return std::isdigit(c) != 0; })) {
@@ -285,11 +289,16 @@ vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requiremen
     try {
         return {device_, info};
     } catch (const vk::OutOfDeviceMemoryError&) {
-        fail("{} needs {} MiB of device memory; {} has no more ({} MiB are in use here)", name,
-             requirements.size >> 20U, info_.name, allocated_bytes() >> 20U);
+        const std::uint32_t heap = memory_.memoryTypes[*type].heapIndex;
+        fail(
+            "{} needs {:.1f} MiB of device memory, and {} has no more: {:.1f} MiB are in use here, {:.1f} MiB are free "
+            "by its own account, of a heap of {:.1f} MiB; --memory-budget MIB keeps pictures within less, or says what "
+            "would fit, such as a smaller --size",
+            name, mebibytes(requirements.size), info_.name, mebibytes(allocated_bytes()), mebibytes(free_bytes(heap)),
+            mebibytes(memory_.memoryHeaps[heap].size));
     } catch (const vk::OutOfHostMemoryError&) {
-        fail("{} needs {} MiB of memory; this machine has no more ({} MiB are in use here)", name,
-             requirements.size >> 20U, allocated_bytes() >> 20U);
+        fail("{} needs {:.1f} MiB of memory; this machine has no more ({:.1f} MiB are in use here)", name,
+             mebibytes(requirements.size), mebibytes(allocated_bytes()));
     }
 }
 

@@ -13,30 +13,39 @@ gpu::Groups brick_groups(const EdgeRegion& region, int margin) {
 
 }  // namespace
 
-void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, const ClipCount& clip) {
+gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, const ClipCount& clip) {
+    return {{shader::SPEC_AXIS, axis},
+            {shader::SPEC_ISO_COUNT, iso_count},
+            {shader::SPEC_CLIP_KEEP, clip.keep},
+            {shader::SPEC_CLIP_REMOVE, clip.remove}};
+}
+
+void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, const ClipCount& clip) {
     const glm::uvec3 n(dims);
     const std::uint32_t lines[3] = {n.y * n.z, n.x * n.z, n.x * n.y};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-        commands.dispatch(
-            "1a_mark_buried.comp",
-            {{shader::SPEC_AXIS, axis}, {shader::SPEC_CLIP_KEEP, clip.keep}, {shader::SPEC_CLIP_REMOVE, clip.remove}},
-            0, gpu::groups_for(lines[axis], 64));
+        commands.dispatch("1a_mark_buried.comp", mark_constants(axis, iso_count, clip), 0,
+                          gpu::groups_for(lines[axis], 64));
         commands.barrier();
     }
 }
 
-gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried) {
-    return {{shader::SPEC_ESTIMATOR, static_cast<std::uint32_t>(estimator)},
-            {shader::SPEC_BURIED, skip_buried ? 1 : 0}};
+gpu::Specialization estimate_constants(const EstimateEdges& in) {
+    return {{shader::SPEC_ESTIMATOR, static_cast<std::uint32_t>(in.estimator)},
+            {shader::SPEC_BURIED, in.skip_buried ? 1 : 0},
+            {shader::SPEC_ISO_COUNT, in.iso_count}};
 }
 
-void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, EdgeEstimator estimator, bool skip_buried) {
-    commands.dispatch("1b_estimate_edges.comp", estimate_constants(estimator, skip_buried), 0,
+gpu::Specialization adopt_constants(const EstimateEdges& in) {
+    return {{shader::SPEC_BURIED, in.skip_buried ? 1 : 0}, {shader::SPEC_ISO_COUNT, in.iso_count}};
+}
+
+void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
+    commands.dispatch("1b_estimate_edges.comp", estimate_constants(in), 0,
                       brick_groups(region, shader::ESTIMATE_MARGIN));
     commands.barrier();
-    if (estimator != EdgeEstimator::March && estimator != EdgeEstimator::Cubic) return;
-    commands.dispatch("1c_adopt_edges.comp", {{shader::SPEC_BURIED, skip_buried ? 1 : 0}}, 0,
-                      brick_groups(region, shader::ADOPT_MARGIN));
+    if (!marches(in.estimator)) return;
+    commands.dispatch("1c_adopt_edges.comp", adopt_constants(in), 0, brick_groups(region, shader::ADOPT_MARGIN));
     commands.barrier();
 }
 

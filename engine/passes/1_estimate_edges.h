@@ -8,7 +8,10 @@
 namespace edgesplat::passes {
 
 /// Marks voxels that opaque ones hide from every side (three line sweeps). What `clip` cuts away is not opaque.
-void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, const ClipCount& clip = {});
+void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, const ClipCount& clip);
+
+/// Specialization of 1a_mark_buried.comp, which walks along one axis.
+gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, const ClipCount& clip);
 
 /// The voxels of an image whose edges are wanted, along each axis.
 struct EdgeRegion {
@@ -16,12 +19,19 @@ struct EdgeRegion {
     glm::ivec3 core_low{0}, core_size{0};  ///< as in SceneParams; the whole image where there is no border
 };
 
-/// Specialization of 1b_estimate_edges.comp.
-gpu::Specialization estimate_constants(EdgeEstimator estimator, bool skip_buried);
+struct EstimateEdges {
+    EdgeEstimator estimator = EdgeEstimator::March;
+    bool skip_buried = true;  ///< voxels marked by mark_buried get no edge
+    std::uint32_t iso_count = 1;
+};
+
+/// Specialization of 1b_estimate_edges.comp and of 1c_adopt_edges.comp, which follows it where edges are marched to.
+gpu::Specialization estimate_constants(const EstimateEdges& in);
+gpu::Specialization adopt_constants(const EstimateEdges& in);
 
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
-/// per voxel of the core and as far around it as its splats depend on. With `skip_buried`, voxels marked by mark_buried
-/// get none. With EdgeEstimator::Off only normals for light are written.
-void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, EdgeEstimator estimator, bool skip_buried);
+/// per voxel of the core and as far around it as its splats depend on. With EdgeEstimator::Off only normals for light
+/// are written.
+void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
 
 }  // namespace edgesplat::passes

@@ -7,7 +7,8 @@
 namespace edgesplat::passes {
 
 struct CollectSplats {
-    glm::ivec3 core_size;        ///< voxels that become splats, along each axis
+    glm::ivec3 core_size;  ///< voxels that become splats, along each axis
+    std::uint32_t iso_count = 1;
     bool edges = true;           ///< the edge field exists
     bool buried = true;          ///< the buried mask exists: `mark_buried` has run
     bool smooth = true;          ///< edge distances are smoothed along the surface (`march`, `cubic`)

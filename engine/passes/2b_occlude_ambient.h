@@ -9,12 +9,13 @@ namespace edgesplat::passes {
 
 struct OccludeAmbient {
     std::uint64_t splat_count = 0;
+    std::uint32_t iso_count = 1;
     ClipCount clip{};
     bool transfer = false;  ///< extinction by SceneParams::transfer
 };
 
 /// Specialization of 2b_occlude_ambient.comp.
-gpu::Specialization occlude_constants(const ClipCount& clip, bool transfer);
+gpu::Specialization occlude_constants(const OccludeAmbient& in);
 
 /// Reads the volume, SceneParams and the splat list, writes OcclusionParams::reach. View-independent.
 void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in);

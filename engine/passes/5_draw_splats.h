@@ -19,7 +19,7 @@ struct DrawVariant {
     bool weighted = false;      ///< kernels are normalised
     bool occlusion = false;     ///< ambient light is what 2b_occlude_ambient left of it
     std::uint32_t shadows = 0;  ///< lights with shadows
-    std::uint32_t nodes = 10;   ///< quadrature nodes of a piece of a footprint: 4, 10 or 16
+    std::uint32_t nodes = 8;    ///< quadrature nodes of a piece of a footprint: 4, 8, 10 or 16
     bool transfer = false;      ///< colour and extinction by a transfer function
     bool response = false;      ///< materials answer to light each in its own way
     bool gloss = false;         ///< some have highlights

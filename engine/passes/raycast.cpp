@@ -9,10 +9,10 @@ glm::ivec3 brick_count(const glm::ivec3& dims) {
     return (dims + (side - 1)) / side;
 }
 
-void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims) {
+void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count) {
     const glm::uvec3 groups = (glm::uvec3(brick_count(dims)) + glm::uvec3(7, 3, 1)) / glm::uvec3(8, 4, 2);
     const gpu::Groups all{groups.x, groups.y, groups.z};
-    commands.dispatch("raycast_bricks.comp", {}, 0, all);
+    commands.dispatch("raycast_bricks.comp", {{shader::SPEC_ISO_COUNT, iso_count}}, 0, all);
     commands.barrier();
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         commands.dispatch("raycast_leaps.comp", {{shader::SPEC_AXIS, axis}}, 0, all);

@@ -11,7 +11,7 @@ glm::ivec3 brick_count(const glm::ivec3& dims);
 
 /// Volume -> distance of every brick to the nearest one that is not transparent. `block` is a RaycastBlock; the ray
 /// caster's descriptor set is bound.
-void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims);
+void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count);
 
 /// Pipeline variant of the ray caster: every member is a specialization constant.
 struct RaycastVariant {

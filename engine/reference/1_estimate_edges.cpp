@@ -109,6 +109,16 @@ std::optional<Hit> walk(const Field& field, const glm::dvec3& x, const glm::dvec
     return std::nullopt;
 }
 
+/// From voxel i along q to where the volume ends, half a voxel beyond its outermost samples.
+double way_out(const Field& field, const glm::ivec3& i, const glm::dvec3& q) {
+    double t = kInfinity;
+    for (int axis = 0; axis < 3; ++axis) {
+        const double room = q[axis] > 0 ? field.dims[axis] - 0.5 - i[axis] : i[axis] + 0.5;
+        t = std::min(t, room / std::max(std::abs(q[axis]), 1e-6));
+    }
+    return t;
+}
+
 /// `march` and `cubic`: both ways along the principal axis.
 VoxelEdge march(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i) {
     const bool cubic = settings.edges == EdgeEstimator::Cubic;
@@ -139,7 +149,9 @@ VoxelEdge march(const Field& field, const ScaledScene& scene, const Settings& se
     if (!edges[0].has_edge && !edges[1].has_edge) return none;
     const int best = !edges[0].has_edge || (edges[1].has_edge && hits[1]->t < hits[0]->t) ? 1 : 0;
     VoxelEdge edge = edges[best];
-    if (hits[1 - best]) edge.D2 = hits[1 - best]->t * std::abs(glm::dot(*axis, edge.n));
+    const double border = way_out(field, i, best == 0 ? *axis : -*axis);
+    const double other = std::min(hits[1 - best] ? hits[1 - best]->t : kInfinity, border);
+    if (other <= kEdgeReach) edge.D2 = other * std::abs(glm::dot(*axis, edge.n));
     return edge;
 }
 
@@ -278,24 +290,23 @@ std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene&
 
 std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                    const std::vector<VoxelEdge>& own) {
-    const bool adopts = settings.edges == EdgeEstimator::March || settings.edges == EdgeEstimator::Cubic;
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = own[field.offset(i)];
-        if (!edge.has_edge && adopts) edge = adopted(field, scene, settings, own, i, edge);
+        if (!edge.has_edge && marches(settings.edges)) edge = adopted(field, scene, settings, own, i, edge);
         return edge;
     });
 }
 
 std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                     const std::vector<VoxelEdge>& edges) {
-    const bool marches = settings.edges == EdgeEstimator::March || settings.edges == EdgeEstimator::Cubic;
+    const bool marched = marches(settings.edges);
     const bool curved = settings.edge_shape == EdgeShape::Curved && settings.warp == WarpFamily::Edge;
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = edges[field.offset(i)];
         if (!edge.has_edge) return edge;
-        if (marches || curved) {
+        if (marched || curved) {
             const SurfaceAround around = surface_around(field, scene, edges, i);
-            if (marches) {
+            if (marched) {
                 edge.D += around.distance_correction;
                 edge.D2 -= around.distance_correction;
             }

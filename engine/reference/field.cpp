@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "engine/scene/transfer_function.h"
+#include "engine/volume/filters.h"
 
 namespace edgesplat::reference {
 
@@ -68,13 +69,9 @@ double ScaledScene::upper(int m) const {
 }
 
 ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
-    const double low = static_cast<double>(volume.min_value);
-    const double range = static_cast<double>(volume.max_value) - low;
     ScaledScene scaled;
-    for (const double iso : scene.iso_values) {
-        const double j = range > 0 ? (iso - low) / range : (iso <= low ? 0.0 : 1.0);
-        scaled.iso.push_back(static_cast<double>(static_cast<float>(j)));
-    }
+    for (const double iso : scene.iso_values)
+        scaled.iso.push_back(static_cast<double>(static_cast<float>(scaled_iso_value(volume, iso))));
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         scaled.drawn.push_back(extinctions_of(scene, m).most > 0);
     scaled.transfer = scaled_transfer(scene, volume);

@@ -34,7 +34,7 @@ struct ScaledScene {
     double upper(int m) const;            ///< J_m, +infinity above the last
 };
 
-/// The scene in F's units. In a constant volume J is 0 for iso-values <= the value and 1 for the others.
+/// The scene in F's units. Iso-values that all samples reach are -1e9, those above all of them +1e9.
 ScaledScene scale_scene(const Scene& scene, const Volume& volume);
 
 /// T(p), trilinear; with `cubic` the cubic B-spline of the coefficients (mirrored at the borders).

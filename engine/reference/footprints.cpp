@@ -77,7 +77,7 @@ double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const
     }
     if (flat) return edge.weight * warp2d_footprint(ray, faces(edge), slice);
     const Edge drawn = faces(edge);
-    return edge.weight * procedural_footprint(ray, drawn, drawn.curvature == 0 ? 10 : 16, slice);
+    return edge.weight * procedural_footprint(ray, drawn, drawn.curvature == 0 ? 8 : 16, slice);
 }
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& r) const {
@@ -85,7 +85,8 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& r) const {
     if (!near_edge(edge)) return r2 < kKernelRadius * kKernelRadius;
     const double t = glm::dot(r, edge.n), q = t - edge.D;
     const double curvature = is_wall(edge) ? 0 : edge.curvature;
-    const bool own_side = 2 * q + curvature * (q * q + r2 - t * t) < 0 && t > -edge.D2;
+    const double side = 2 * q + curvature * (q * q + r2 - t * t);
+    const bool own_side = side < 0 && t > -edge.D2;
     if (settings_.warp == WarpFamily::Paper) return own_side && r2 < (kKernelRadius + 1) * (kKernelRadius + 1);
     return own_side && at_point(edge, r) > 0;
 }

@@ -1,4 +1,4 @@
-// What resolve_scene gives materials that are left open.
+// What resolve_scene gives materials that are left open, and that written out.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,5 +15,8 @@ double default_extinction(bool highest, const VolumeGeometry& geometry);
 
 /// Everything of a material said.
 MaterialChoice choice_of(const Material& material);
+
+/// Writes out iso-values and materials as they are in a scene of the document.
+void write_out_materials(SceneDocument& document, const Scene& scene);
 
 }  // namespace edgesplat

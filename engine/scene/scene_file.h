@@ -43,7 +43,11 @@ bool is_scene_path(const std::filesystem::path& path);
 /// effect's table is made by its keys, or by "effects.fog=true", and taken away by "effects.fog=false". Throws Error.
 void set_key(SceneDocument& document, std::string_view assignment);
 
-/// The document as TOML: every key that has a value. Reading it back gives an equal document.
+/// Throws Error where the volume's path is not UTF-8: a scene file could not name it.
+void check_path_is_text(const SceneDocument& document);
+
+/// The document as TOML: every key that has a value. Reading it back gives an equal document; bytes that are not UTF-8
+/// become U+FFFD.
 std::string scene_text(const SceneDocument& document);
 
 /// The same for people: each key with what it means, those that are not given commented out with what holds then.

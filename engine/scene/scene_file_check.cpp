@@ -42,7 +42,7 @@ class Checker {
             add("volume.path", "is missing; expected a file, a folder, a pattern of slices or builtin:NAME");
         } else if (is_builtin(v.path)) {
             std::string name = v.path.substr(v.path.find(':') + 1);
-            name = name.substr(0, name.find(':'));
+            name.resize(std::min(name.find(':'), name.size()));
             const std::vector<std::string> names(analytic_scene_names().begin(), analytic_scene_names().end());
             if (std::find(names.begin(), names.end(), name) == names.end()) {
                 const std::string nearest = nearest_name(name, names);

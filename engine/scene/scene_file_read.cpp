@@ -3,7 +3,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <set>
 #include <sstream>
@@ -12,6 +11,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/scene_table.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat {
 namespace {
@@ -38,7 +38,7 @@ class Reader {
     Reader(SceneDocument& document, bool preset) : document_(document), preset_(preset) {
         for (const SceneKey& key : scene_keys())
             for (std::string path = table_of(key); !path.empty();
-                 path = path.substr(0, path.rfind('.') == std::string::npos ? 0 : path.rfind('.')))
+                 path.resize(path.rfind('.') == std::string::npos ? 0 : path.rfind('.')))
                 groups_.insert(path);
     }
 
@@ -197,23 +197,6 @@ class Reader {
     throw SceneFileError(std::move(lines));
 }
 
-/// The first byte that is not part of valid UTF-8, or npos.
-std::size_t invalid_utf8(std::string_view text) {
-    for (std::size_t i = 0; i < text.size();) {
-        const auto lead = static_cast<unsigned char>(text[i]);
-        const std::size_t length = lead < 0x80                   ? 1
-                                   : lead >= 0xC2 && lead < 0xE0 ? 2
-                                   : lead >= 0xE0 && lead < 0xF0 ? 3
-                                   : lead >= 0xF0 && lead < 0xF5 ? 4
-                                                                 : 0;
-        if (length == 0 || i + length > text.size()) return i;
-        for (std::size_t k = 1; k < length; ++k)
-            if ((static_cast<unsigned char>(text[i + k]) & 0xC0) != 0x80) return i;
-        i += length;
-    }
-    return std::string_view::npos;
-}
-
 }  // namespace
 
 SceneFileError::SceneFileError(std::vector<std::string> problems)
@@ -270,17 +253,13 @@ SceneDocument parse_scene(std::string_view text, const std::string& name, const 
 }
 
 SceneDocument read_scene_file(const fs::path& path) {
-    const auto refuse = [&](const std::string& why) { throw SceneFileError({path.string() + ": " + why}); };
-    std::error_code error;
-    const fs::file_status status = fs::status(path, error);
-    if (error && error != std::errc::no_such_file_or_directory) refuse(error.message());
-    if (!fs::exists(status)) refuse("no such file");
-    if (fs::is_directory(status)) refuse("is a folder; expected a scene file");
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    if (!in) refuse("cannot be read");
-    return parse_scene(text.str(), path.string(), {.folders = volume_folders(path.parent_path())});
+    std::string text;
+    try {
+        text = read_text_file(path, "a scene file");
+    } catch (const Error& error) {
+        throw SceneFileError({error.what()});
+    }
+    return parse_scene(text, path.string(), {.folders = volume_folders(path.parent_path())});
 }
 
 namespace {
@@ -311,6 +290,9 @@ void set_key(SceneDocument& document, std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos || equals == 0)
         fail("'{}' is not KEY=VALUE, such as effects.fog.density=0.02", assignment);
+    // A scene file is UTF-8, and every document can be written as one.
+    if (const std::size_t bad = invalid_utf8(assignment); bad != std::string_view::npos)
+        fail("{}: byte {} is no UTF-8 text", assignment.substr(0, equals), bad);
     const std::string path(assignment.substr(0, equals)), text(assignment.substr(equals + 1));
     const KeyAddress address = key_address(path);
     const SceneKey* key = find_key(address.path);

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 
+#include "engine/error.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat {
 namespace {
@@ -104,6 +106,12 @@ std::string example_of(const SceneKey& key) {
 }
 
 }  // namespace
+
+void check_path_is_text(const SceneDocument& document) {
+    if (invalid_utf8(document.volume.path) != std::string::npos)
+        fail("volume: {}: its name is not UTF-8 and cannot stand in a scene file; expected a name that is",
+             document.volume.path);
+}
 
 std::string scene_text(const SceneDocument& document) {
     std::string out;

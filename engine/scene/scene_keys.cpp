@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat {
 namespace {
@@ -214,7 +215,7 @@ std::string toml_text(const KeyValue& value, KeyType type) {
     };
     const auto quoted = [](const std::string& text) {
         std::string out = "\"";
-        for (const char c : text) {
+        for (const char c : valid_utf8(text)) {
             const auto byte = static_cast<unsigned char>(c);
             if (c == '"' || c == '\\')
                 (out += '\\') += c;

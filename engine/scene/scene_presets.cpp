@@ -33,6 +33,14 @@ ScenePreset parsed(std::string_view name, const std::string& file, std::string_v
 
 }  // namespace
 
+fs::path config_folder() {
+    const char* config = std::getenv("XDG_CONFIG_HOME");
+    const char* home = std::getenv("HOME");
+    if (config && *config != '\0') return fs::path(config) / "edgesplat";
+    if (home && *home != '\0') return fs::path(home) / ".config" / "edgesplat";
+    return {};
+}
+
 std::vector<fs::path> preset_folders() {
     std::vector<fs::path> folders;
     if (const char* text = std::getenv("EDGESPLAT_PRESETS")) {
@@ -40,12 +48,7 @@ std::vector<fs::path> preset_folders() {
         for (std::string folder; std::getline(in, folder, ':');)
             if (!folder.empty()) folders.emplace_back(folder);
     }
-    const char* config = std::getenv("XDG_CONFIG_HOME");
-    const char* home = std::getenv("HOME");
-    if (config && *config != '\0')
-        folders.push_back(fs::path(config) / "edgesplat" / "presets");
-    else if (home && *home != '\0')
-        folders.push_back(fs::path(home) / ".config" / "edgesplat" / "presets");
+    if (const fs::path config = config_folder(); !config.empty()) folders.push_back(config / "presets");
     return folders;
 }
 

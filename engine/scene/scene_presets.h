@@ -19,6 +19,9 @@ struct ScenePreset {
     bool is_transfer() const { return !content.transfer.empty(); }
 };
 
+/// $XDG_CONFIG_HOME/edgesplat (~/.config/edgesplat); empty where neither is known.
+std::filesystem::path config_folder();
+
 /// Where users' presets are looked for, first come first: the folders in EDGESPLAT_PRESETS (colons between), then
 /// $XDG_CONFIG_HOME/edgesplat/presets (~/.config/edgesplat/presets).
 std::vector<std::filesystem::path> preset_folders();

@@ -95,14 +95,20 @@ glm::dvec3 default_color(std::size_t place) {
 }
 
 double default_extinction(bool highest, const VolumeGeometry& geometry) {
-    const glm::dvec3 spacing = geometry.spacing();
-    const double voxel = (spacing.x + spacing.y + spacing.z) / 3;
-    return (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / voxel;
+    return (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / geometry.mean_spacing();
 }
 
 MaterialChoice choice_of(const Material& material) {
     const LightResponse& r = material.response;
     return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
+}
+
+void write_out_materials(SceneDocument& document, const Scene& scene) {
+    document.iso_values = scene.iso_values;
+    document.below = choice_of(scene.materials.front());
+    document.materials.clear();
+    for (std::size_t m = 1; m < scene.materials.size(); ++m)
+        document.materials.push_back(choice_of(scene.materials[m]));
 }
 
 Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
@@ -156,7 +162,7 @@ Camera resolve_camera(const SceneDocument& document, const Volume& volume, const
     const glm::dvec3 up = along(choice.up.value_or(glm::dvec3(0, 0, 1)));
     if (choice.eye) {
         const glm::dvec3 eye = point(*choice.eye);
-        const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+        const glm::dvec3 center = geometry.center();
         const glm::dvec3 direction =
             choice.direction ? along(*choice.direction) : (choice.target ? point(*choice.target) : center) - eye;
         if (!(glm::length(direction) > 0))
@@ -175,7 +181,7 @@ CameraPath resolve_camera_path(const SceneDocument& document, const Volume& volu
     const VolumeGeometry& geometry = volume.geometry;
     const auto point = [&](const glm::dvec3& p) { return movie.voxel ? geometry.to_world(p) : p; };
     const auto along = [&](const glm::dvec3& v) { return movie.voxel ? volume_axes(geometry) * v : v; };
-    const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 center = geometry.center();
     if (const auto& orbit = movie.orbit)
         return orbit_path({start, center, along(orbit->axis), orbit->degrees, orbit->seconds});
     if (const auto& flight = movie.flight) {
@@ -211,11 +217,7 @@ SceneDocument resolved(const SceneDocument& document, const Volume& volume, cons
                        const Settings& settings) {
     SceneDocument result = document;
     result.volume.checksum = fmt::format("{:016x}", volume.checksum);
-    result.iso_values = scene.iso_values;
-    result.below = choice_of(scene.materials.front());
-    result.materials.clear();
-    for (std::size_t m = 1; m < scene.materials.size(); ++m)
-        result.materials.push_back(choice_of(scene.materials[m]));
+    write_out_materials(result, scene);
     result.transfer = scene.transfer;
     result.transfer_preset.clear();
     result.ambient = scene.ambient;

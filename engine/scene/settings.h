@@ -9,6 +9,10 @@ namespace edgesplat {
 struct Scene;
 
 enum class EdgeEstimator { Off, Taylor, Quadratic, March, Cubic };
+/// Whether edges are walked to: then voxels without one adopt a neighbour's, and splats are smoothed along the surface.
+constexpr bool marches(EdgeEstimator estimator) {
+    return estimator == EdgeEstimator::March || estimator == EdgeEstimator::Cubic;
+}
 enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
 enum class WarpFamily { Edge, Paper };
 enum class EdgeShape { Plane, Curved };  ///< what an edge is within a kernel's reach: its tangent plane or a sphere

@@ -28,16 +28,13 @@ constexpr std::array<NamedDirection, 8> kViews{{
     {"oblique", {-0.6, 1, -0.5}, {0, 0, 1}},
     {"close", {0, 1, 0}, {0, 0, 1}},
 }};
-constexpr std::array<std::string_view, kViews.size()> kNames = [] {
+constexpr auto names_of_views() {
     std::array<std::string_view, kViews.size()> names{};
     for (std::size_t i = 0; i < names.size(); ++i)
         names[i] = kViews[i].name;
     return names;
-}();
-
-glm::dvec3 center_of(const VolumeGeometry& geometry) {
-    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
 }
+constexpr auto kNames = names_of_views();
 
 /// Distance along the central ray of the camera at which a material that is not transparent begins.
 std::optional<double> first_surface(const Camera& camera, const ViewRequest& request) {
@@ -46,7 +43,7 @@ std::optional<double> first_surface(const Camera& camera, const ViewRequest& req
     const glm::dvec3 spacing = geometry.spacing();
     const double step = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
     const glm::dvec3 forward = glm::normalize(camera.direction);
-    const double end = 2 * glm::length(center_of(geometry) - camera.eye);
+    const double end = 2 * glm::length(geometry.center() - camera.eye);
     const auto count = static_cast<std::int64_t>(end / step);
     for (std::int64_t i = 0; i <= count; ++i) {
         const double t = static_cast<double>(i) * step;
@@ -75,7 +72,7 @@ glm::dmat3 volume_axes(const VolumeGeometry& geometry) {
 
 Camera framing_camera(const glm::dvec3& direction, const glm::dvec3& up, const ViewRequest& request) {
     const VolumeGeometry& geometry = request.volume->geometry;
-    const glm::dvec3 center = center_of(geometry);
+    const glm::dvec3 center = geometry.center();
     Camera camera{center, direction, up, request.fov_y};
     const CameraFrame frame = camera_frame(camera);
     const double tan_y = frame.tan_half_y / kMargin;
@@ -104,7 +101,7 @@ Camera named_view(std::string_view name, const ViewRequest& request) {
     const double tan_y = std::tan(glm::radians(request.fov_y) / 2);
     const double near = voxel * request.height / (2 * tan_y * kClosePixelsPerVoxel);
     const double surface =
-        first_surface(camera, request).value_or(glm::length(center_of(request.volume->geometry) - camera.eye));
+        first_surface(camera, request).value_or(glm::length(request.volume->geometry.center() - camera.eye));
     camera.eye += (surface - near) * glm::normalize(camera.direction);
     return camera;
 }

@@ -5,23 +5,20 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/srgb.h"
 
 namespace edgesplat::viewer {
 namespace {
 
 constexpr int kSteps = 4096;  // of the curve's table: finer than an 8-bit step everywhere but in the darkest two
 
-double srgb(double linear) {
-    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 /// The curve over the square root of the value, where it is nearly straight.
 const std::array<std::uint8_t, kSteps + 1>& curve() {
     static const auto table = [] {
         std::array<std::uint8_t, kSteps + 1> out{};
-        for (int i = 0; i <= kSteps; ++i) {
+        for (std::size_t i = 0; i < out.size(); ++i) {
             const double root = static_cast<double>(i) / kSteps;
-            out[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::lround(255 * srgb(root * root)));
+            out[i] = static_cast<std::uint8_t>(std::lround(255 * to_srgb(root * root)));
         }
         return out;
     }();

@@ -158,17 +158,14 @@ std::optional<DrawnPicture> Drawer::draw_next() {
     std::optional<DrawnPicture> picture;
     try {
         plan(*job);
-        if (lose_.exchange(false)) fail("Vulkan: ErrorDeviceLost, as it was asked for");
         picture = draw(*job);
         if (picture->stats.complete) job->stages.pop_back();  // else more of its blocks come with the next one
         picture->finished = job->stages.empty();
-        lost_ = 0;
     } catch (const Interrupted&) {
         job->stages.clear();
     } catch (const std::exception& error) {
         failed(error.what());
-        // A device that was lost is opened anew, once.
-        if (lost_ != 1) job->stages.clear();
+        job->stages.clear();
     }
     const std::lock_guard lock(mutex_);
     drawing_ = false;
@@ -179,13 +176,8 @@ std::optional<DrawnPicture> Drawer::draw_next() {
 }
 
 void Drawer::failed(const std::string& what) {
-    lost_ = what.find("DeviceLost") != std::string::npos ? lost_ + 1 : 0;
-    {
-        const std::lock_guard lock(renderers_mutex_);
-        renderers_.clear();
-    }
+    drop([](const Key&) { return true; });
     coarse_.reset();
-    if (lost_ == 1) return;
     const std::lock_guard lock(mutex_);
     error_ = what;
 }
@@ -221,8 +213,7 @@ void Drawer::plan(Job& job) {
     if (job.planned) return;
     job.planned = true;
     if (volume_ != job.request.volume) {
-        const std::lock_guard lock(renderers_mutex_);
-        renderers_.clear();
+        drop([](const Key&) { return true; });
         levels_.clear();
         still_times_.clear();
         coarse_.reset();
@@ -253,13 +244,20 @@ void Drawer::plan(Job& job) {
     if (rays || time(kHalfScale) > kSoon) job.stages.push_back(quick);
 }
 
-void Drawer::forget_unused(const Job& job) {
+template <typename Unused>
+void Drawer::drop(const Unused& unused) {
     const std::lock_guard lock(renderers_mutex_);
     std::erase_if(renderers_, [&](const auto& entry) {
-        const bool unused = (entry.first.kind == Kind::Plain && !job.request.plain) ||
-                            (entry.first.kind == Kind::Best && !job.request.best && !job.request.moving);
-        if (unused) messages_before_ += entry.second.renderer->validation_messages();
-        return unused;
+        if (!unused(entry.first)) return false;
+        if (entry.second.renderer) messages_before_ += entry.second.renderer->validation_messages();
+        return true;
+    });
+}
+
+void Drawer::forget_unused(const Job& job) {
+    drop([&](const Key& key) {
+        return (key.kind == Kind::Plain && !job.request.plain) ||
+               (key.kind == Kind::Best && !job.request.best && !job.request.moving);
     });
 }
 
@@ -303,6 +301,7 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     }
     if (kind == Kind::Plain) settings = without_edges(settings);
     const glm::ivec2 size = scaled(request.size, rung.scale);
+    if (lose_.exchange(false)) renderer.lose_device();
     RenderResult result = rung.rays ? renderer.raycast(scene, request.camera, settings, {}, size.x, size.y)
                                     : renderer.render(scene, request.camera, settings, size.x, size.y);
     out.setup += result.stats.setup_milliseconds + result.stats.pipeline_milliseconds;
@@ -324,7 +323,6 @@ DrawnPicture Drawer::draw(const Job& job) {
     DrawnPicture out;
     out.number = job.number;
     out.rung = stage.rung;
-    out.size = job.request.size;
     out.moving = job.request.moving;
     out.best = stage.best;
     const auto start = Clock::now();
@@ -340,7 +338,7 @@ DrawnPicture Drawer::draw(const Job& job) {
     }
     if (stage.rung.level == 0 && !stage.rung.rays && !stage.best)
         still_times_[stage.rung.scale] = out.milliseconds - out.setup;
-    if (hurried && (!coarse_ || coarse_->number != job.number)) coarse_ = out;
+    if (hurried && !job.request.moving && (!coarse_ || coarse_->number != job.number)) coarse_ = out;
     if (!hurried && coarse_ && coarse_->number == job.number) {
         out.coarse_error = rms_when_spread(coarse_->color, out.color);
         out.coarse_rung = coarse_->rung;

@@ -35,7 +35,6 @@ struct DrawnPicture {
     Image color;               ///< of the rung's size
     std::optional<Image> plain;
     Rung rung;
-    glm::ivec2 size{0};  ///< of the window's picture
     bool moving = false;
     bool finished = false;    ///< nothing better follows
     bool best = false;        ///< of the request's best settings
@@ -111,6 +110,9 @@ class Drawer {
     Pace& pace_of(bool rays) { return rays ? *ray_pace_ : *pace_; }
     Renderer& renderer_for(const Key& key, const Job& job);
     std::shared_ptr<const Volume> level_of(const std::shared_ptr<const Volume>& volume, int level);
+    /// Lets go of the renderers that `unused` says; what validation told of them stays counted.
+    template <typename Unused>
+    void drop(const Unused& unused);
     void forget_unused(const Job& job);
     bool is_software();
     void plan(Job& job);
@@ -139,7 +141,6 @@ class Drawer {
     std::optional<DrawnPicture> coarse_;    ///< the last one drawn in haste
     std::map<double, double> still_times_;  ///< milliseconds by scale, level 0
     std::uint64_t messages_before_ = 0;     ///< of renderers that are gone
-    int lost_ = 0;                          ///< devices in a row
     std::jthread thread_;                   ///< last: ends before anything else goes
 };
 

@@ -45,7 +45,7 @@ void move_side(ClipBox& box, const VolumeGeometry& geometry, const Handle& handl
 
 std::vector<Handle> clip_handles(const SceneDocument& document, const VolumeGeometry& geometry) {
     std::vector<Handle> handles;
-    const glm::dvec3 center = geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
+    const glm::dvec3 center = geometry.center();
     const auto& planes = document.effects.clip.keep;
     for (std::size_t i = 0; i < planes.size(); ++i) {
         const glm::dvec3 normal = unit(planes[i].normal);

@@ -106,12 +106,4 @@ std::size_t take_material(SceneDocument& document, const Volume& volume, std::si
     return move_iso_value(document, volume, material - 1, value) + 1;
 }
 
-void write_out_materials(SceneDocument& document, const Scene& scene) {
-    document.iso_values = scene.iso_values;
-    document.below = choice_of(scene.materials.front());
-    document.materials.clear();
-    for (std::size_t m = 1; m < scene.materials.size(); ++m)
-        document.materials.push_back(choice_of(scene.materials[m]));
-}
-
 }  // namespace edgesplat::viewer

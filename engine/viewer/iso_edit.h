@@ -32,7 +32,4 @@ MaterialChoice& material_choice(SceneDocument& document, std::size_t material);
 std::size_t take_material(SceneDocument& document, const Volume& volume, std::size_t material,
                           const ScenePreset& preset);
 
-/// Writes out iso-values and materials as they are in a scene of the document.
-void write_out_materials(SceneDocument& document, const Scene& scene);
-
 }  // namespace edgesplat::viewer

@@ -8,20 +8,7 @@
 #include "engine/volume/analytic_volumes.h"
 
 namespace edgesplat::viewer {
-namespace {
-
 namespace fs = std::filesystem;
-
-/// A PNG shows what is seen, the background included, so it has no alpha.
-Image without_alpha(const Image& image) {
-    Image out(image.width, image.height, 3);
-    for (std::size_t i = 0; i < out.pixels.size() / 3; ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-            out.pixels[3 * i + c] = image.pixels[4 * i + c];
-    return out;
-}
-
-}  // namespace
 
 void save_scene(SceneDocument document, const Volume& volume, const fs::path& path) {
     constexpr std::array<std::string_view, 1> kExtensions{".toml"};
@@ -32,6 +19,7 @@ void save_scene(SceneDocument document, const Volume& volume, const fs::path& pa
         const fs::path folder = fs::absolute(path, error).parent_path();
         if (fs::exists(volume.name, error)) source = fs::proximate(fs::absolute(volume.name), folder).string();
     }
+    check_path_is_text(document);
     document.output.file.clear();
     const FileContent content{path, scene_text(document)};
     write_files({&content, 1});

@@ -324,8 +324,7 @@ void Motion::shift(const glm::dvec3& way) {
         }
     }
     // Nobody gets lost in empty space.
-    const glm::dvec3 middle =
-        walls_ ? walls_->geometry().to_world(glm::dvec3(walls_->geometry().dims - 1) / 2.0) : home_center_;
+    const glm::dvec3 middle = walls_ ? walls_->geometry().center() : home_center_;
     const glm::dvec3 next = camera_.eye + done - middle;
     const double far = std::max(kReach * extent(), glm::length(camera_.eye - middle)), length = glm::length(next);
     if ((walls_ || has_home_) && length > far) done += next * (far / length - 1);

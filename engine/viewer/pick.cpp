@@ -64,8 +64,7 @@ class March {
   public:
     March(const Samples& samples, const Scene& scene, const IndexRay& ray, double opacity)
         : samples_(samples), scene_(scene), ray_(ray) {
-        const glm::dvec3 spacing = samples.volume().geometry.spacing();
-        solid_from_ = std::log(2.0) * 3 / (spacing.x + spacing.y + spacing.z);
+        solid_from_ = std::log(2.0) / samples.volume().geometry.mean_spacing();
         targets_ = {-std::log1p(-opacity / 2), -std::log1p(-opacity), -std::log((1 - opacity) / 2)};
         cuts_ = scene.iso_values;
         for (const TransferPoint& point : scene.transfer)

@@ -3,10 +3,11 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <sstream>
 
 #include "engine/image_file.h"
+#include "engine/scene/scene_presets.h"
+#include "engine/scene/text_file.h"
 #include "engine/volume/analytic_volumes.h"
 
 namespace edgesplat::viewer {
@@ -20,28 +21,25 @@ void read(const toml::table& table, const char* key, double& out, double low, do
 }
 
 void read(const toml::table& table, const char* key, int& out, int low, int high) {
-    const std::int64_t value = table[key].value<std::int64_t>().value_or(out);
+    // A whole number written as a fraction (8e1) is not taken: toml++ casts doubles beyond the range of an integer.
+    const toml::value<std::int64_t>* integer = table[key].as_integer();
+    const std::int64_t value = integer ? integer->get() : out;
     if (value >= low && value <= high) out = static_cast<int>(value);
 }
 
 }  // namespace
 
 fs::path preferences_path() {
-    const auto folder = [](const char* variable) {
-        const char* text = std::getenv(variable);
-        return fs::path(text == nullptr ? "" : text);
-    };
-    if (const fs::path config = folder("XDG_CONFIG_HOME"); !config.empty()) return config / "edgesplat" / "fly.toml";
-    if (const fs::path home = folder("HOME"); !home.empty()) return home / ".config" / "edgesplat" / "fly.toml";
-    return {};
+    const fs::path folder = config_folder();
+    return folder.empty() ? folder : folder / "fly.toml";
 }
 
 Preferences read_preferences(const fs::path& path) {
     Preferences out;
     toml::table table;
     try {
-        table = toml::parse_file(path.string());
-    } catch (const toml::parse_error&) {
+        table = toml::parse(read_text_file(path, "preferences"));
+    } catch (const std::exception&) {
         return out;
     }
     if (const toml::array* recent = table["recent"].as_array())

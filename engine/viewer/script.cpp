@@ -4,13 +4,12 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <utility>
 
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
+#include "engine/scene/text_file.h"
 
 namespace edgesplat::viewer {
 namespace {
@@ -78,7 +77,10 @@ void check_word(const ScriptCommand& command, char kind, const std::string& word
     const auto refuse = [&](const char* expected) {
         fail("{}: {}: '{}', expected {}", command.where, command.verb, word, expected);
     };
+    // Pixels, frames and seconds: all are counted in 32 bits somewhere.
+    constexpr double kMost = 1e9;
     if (kind == 'n' && !number_in(word)) refuse("a number");
+    if (kind == 'n' && std::abs(*number_in(word)) > kMost) refuse("a number from -1e9 to 1e9");
     if (kind == 'c' && !is_comparison(word)) refuse("==, !=, <, <=, >, >= or has");
     if (kind == 'b' && word != "left" && word != "right" && word != "middle") refuse("left, right or middle");
     if (kind != 'k') return;
@@ -115,6 +117,7 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
             fail("{}: '{}' is no command{}", command.where, command.verb,
                  nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
         }
+        // cppcheck-suppress derefInvalidIteratorRedundantCheck; fail() does not return
         for (const char kind : verb->words) {
             const std::string word(kind == 't' ? trimmed(std::exchange(rest, {})) : take_word(rest));
             if (word.empty()) fail("{}: {}: expected {} words", command.where, command.verb, verb->words.size());
@@ -131,11 +134,7 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
 
 std::vector<ScriptCommand> read_script(const std::filesystem::path& path,
                                        const std::function<bool(std::string_view)>& is_key) {
-    std::ifstream in(path, std::ios::binary);
-    std::ostringstream text;
-    if (!in || std::filesystem::is_directory(path) || !(text << in.rdbuf()))
-        fail("{}: cannot be read, expected a script", path.string());
-    return parse_script(text.str(), path.string(), is_key);
+    return parse_script(read_text_file(path, "a script"), path.string(), is_key);
 }
 
 bool holds(std::string_view left, std::string_view comparison, std::string_view right) {

@@ -20,12 +20,13 @@ constexpr double kPixelsPerVoxel = 12;
 
 constexpr double kFlightSeconds = 0.8;
 
-glm::dvec3 center_of(const VolumeGeometry& geometry) {
-    return geometry.to_world((glm::dvec3(geometry.dims) - 1.0) / 2.0);
-}
-
 bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.direction == b.direction && a.up == b.up && a.fov_y == b.fov_y;
+}
+
+/// What is solid before anything is cut away.
+bool same_matter(const Scene& a, const Scene& b) {
+    return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer;
 }
 
 }  // namespace
@@ -45,23 +46,27 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     opened_ = std::move(opened);
     history_.emplace(std::move(document));
     motion_ = Motion();
-    motion_.set_home(camera, center_of(opened_.volume->geometry));
+    motion_.set_home(camera, opened_.volume->geometry.center());
     motion_.jump(camera);
-    motion_.set_center(center_of(opened_.volume->geometry));
+    motion_.set_center(opened_.volume->geometry.center());
     tour_.clear();
     recorder_ = {};
     clear_picks();
     walls_.reset();
     message_.clear();
-    apply();
+    apply(resolved_now());
     const glm::dvec3 index = opened_.volume->geometry.to_index(camera.eye);
     const bool inside = glm::all(glm::greaterThan(index, glm::dvec3(0))) &&
                         glm::all(glm::lessThan(index, glm::dvec3(opened_.volume->geometry.dims - 1)));
     motion_.set_mode(inside ? MotionMode::Fly : MotionMode::Orbit);
 }
 
-void Session::apply() {
-    scene_ = resolve_scene(document(), *opened_.volume);
+Scene Session::resolved_now() const {
+    return resolve_scene(document(), *opened_.volume);
+}
+
+void Session::apply(Scene scene) {
+    scene_ = std::move(scene);
     ++scene_number_;
     quiet_ = 0;
     changed_ = true;
@@ -70,17 +75,18 @@ void Session::apply() {
 
 void Session::edit(const std::function<void(SceneDocument&)>& change, bool finished) {
     SceneDocument document = history_->now();
+    Scene scene;
     try {
         change(document);
         validate(document.quality.settings);
-        resolve_scene(document, *opened_.volume);
+        scene = resolve_scene(document, *opened_.volume);
     } catch (const Error& error) {
         message_ = error.what();
         return;
     }
     const bool same_scene = document == history_->now();
     history_->change(std::move(document), finished);
-    if (!same_scene) apply();
+    if (!same_scene) apply(std::move(scene));
 }
 
 void Session::finish_edit() {
@@ -90,13 +96,13 @@ void Session::finish_edit() {
 void Session::undo() {
     if (!can_undo()) return;
     history_->undo();
-    apply();
+    apply(resolved_now());
 }
 
 void Session::redo() {
     if (!can_redo()) return;
     history_->redo();
-    apply();
+    apply(resolved_now());
 }
 
 void Session::set_show(Show show) {
@@ -116,8 +122,16 @@ void Session::set_best_when_still(bool on) {
 }
 
 void Session::find_walls() {
-    if (!walls_outdated_ || quiet_ < kQuiet || walls_to_come_.valid()) return;
+    if (!walls_outdated_ || walls_to_come_.valid()) return;
+    if (walls_ && same_matter(walls_scene_, scene_)) {
+        walls_outdated_ = false;
+        walls_ = std::make_shared<const Walls>(*walls_, scene_.effects.clip);
+        motion_.set_walls(walls_);
+        return;
+    }
+    if (quiet_ < kQuiet) return;
     walls_outdated_ = false;
+    walls_scene_ = scene_;
     walls_volume_ = opened_.volume;
     walls_to_come_ = std::async(std::launch::async, [volume = opened_.volume, scene = scene_] {
         return std::make_shared<const Walls>(volume, scene);
@@ -135,6 +149,7 @@ void Session::poll() {
                 motion_.set_walls(walls_);
             }
         } catch (const Error& error) {
+            walls_.reset();
             message_ = error.what();
         }
         walls_volume_.reset();

@@ -100,7 +100,9 @@ class Session {
     void say(std::string text) { message_ = std::move(text); }
 
   private:
-    void apply();
+    /// `scene`: what the document says, resolved.
+    void apply(Scene scene);
+    Scene resolved_now() const;
     void find_walls();
     void poll();
 
@@ -115,6 +117,7 @@ class Session {
     std::shared_ptr<const Walls> walls_;
     std::future<std::shared_ptr<const Walls>> walls_to_come_;
     std::shared_ptr<const Volume> walls_volume_;  ///< whose they are
+    Scene walls_scene_;                           ///< of which they were, or are being, found
     bool walls_outdated_ = false;
     std::vector<Pick> picks_;
     std::optional<glm::dvec3> point_;

@@ -37,6 +37,12 @@ void Tour::set_position(double millimetres) {
     position_ = line_ ? std::clamp(millimetres, 0.0, line_->length) : 0;
 }
 
+void Tour::toggle() {
+    if (!line_) return;
+    if (!playing && position_ >= line_->length) set_position(0);
+    playing = !playing;
+}
+
 void Tour::step(double seconds) {
     if (!playing || !line_) return;
     set_position(position_ + speed * seconds);

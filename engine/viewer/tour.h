@@ -33,6 +33,8 @@ class Tour {
     double position() const { return position_; }
     void set_position(double millimetres);
     void step(double seconds);
+    /// Plays, from the beginning where the end was reached, or stops. Does nothing without a line.
+    void toggle();
     /// Throws Error without a line.
     Camera camera(const glm::dvec3& up) const;
     /// The whole way at its speed, for a movie. Throws Error without a line.

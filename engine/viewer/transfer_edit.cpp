@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/default_materials.h"
 #include "engine/scene/transfer_function.h"
-#include "engine/viewer/iso_edit.h"
 
 namespace edgesplat::viewer {
 
@@ -79,8 +79,7 @@ void use_materials(SceneDocument& document, const Volume& volume) {
 }
 
 ExtinctionScale ExtinctionScale::of(const VolumeGeometry& geometry) {
-    const glm::dvec3 spacing = geometry.spacing();
-    const double voxel = (spacing.x + spacing.y + spacing.z) / 3;
+    const double voxel = geometry.mean_spacing();
     return {1e-3 / voxel, 1e3 / voxel};
 }
 

@@ -31,10 +31,6 @@ std::shared_ptr<const Volume> of_bounded_size(std::shared_ptr<const Volume> volu
     return volume;
 }
 
-double mean(const glm::dvec3& v) {
-    return (v.x + v.y + v.z) / 3;
-}
-
 Clip with_unit_normals(Clip clip) {
     for (auto* planes : {&clip.keep, &clip.remove})
         for (Plane& plane : *planes)
@@ -58,7 +54,7 @@ struct Walls::Matter {
     Matter(const std::shared_ptr<const Volume>& given, const Scene& scene)
         : volume(of_bounded_size(given)),
           geometry(volume->geometry),
-          values(solid_values(scene, mean(given->geometry.spacing()))),
+          values(solid_values(scene, given->geometry.mean_spacing())),
           field(*volume) {
         const glm::dvec3 spacing = geometry.spacing();
         const glm::dmat3 rows = glm::transpose(field.to_index);
@@ -119,7 +115,8 @@ Walls::Walls(const Walls& walls, const Clip& clip) : matter_(walls.matter_), cli
 /// Signed distance, mm, of what the clip planes keep: above 0 beyond it.
 double Walls::cut(const glm::dvec3& world) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
-    double beyond = -infinity, within = -infinity;
+    double beyond = -infinity;
+    double within = beyond;
     for (const Plane& plane : clip_.keep)
         beyond = std::max(beyond, glm::dot(plane.normal, world - plane.point));
     for (const Plane& plane : clip_.remove)
@@ -180,8 +177,7 @@ double Walls::free_way(const glm::dvec3& world, const glm::dvec3& direction, dou
     const glm::dvec3 way = unit(direction);
     const VolumeGeometry& g = matter_->geometry;
     // Beyond this every ray has left the volume.
-    const double end = glm::length(world - g.to_world(glm::dvec3(g.dims - 1) / 2.0)) +
-                       glm::length(g.index_to_world_axes * glm::dvec3(g.dims));
+    const double end = glm::length(world - g.center()) + glm::length(g.index_to_world_axes * glm::dvec3(g.dims));
     const double shortest = 0.1 * voxel();
     double t = 0, d = distance(world), before = 0;
     if (d <= 0) return 0;

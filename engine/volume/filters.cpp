@@ -119,6 +119,13 @@ double scaled_value(const Volume& volume, double value) {
     return range > 0 ? (value - low) / range : 0.0;
 }
 
+double scaled_iso_value(const Volume& volume, double iso_value) {
+    constexpr double kOutsideTheData = 1e9;
+    if (iso_value <= static_cast<double>(volume.min_value)) return -kOutsideTheData;
+    if (iso_value > static_cast<double>(volume.max_value)) return kOutsideTheData;
+    return scaled_value(volume, iso_value);
+}
+
 Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
     need_samples(volume, "cropping");
     const glm::ivec3 dims = volume.geometry.dims;

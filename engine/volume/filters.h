@@ -22,8 +22,13 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
 /// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, kept as float; all 0 where
 /// the volume is constant. Same order as `Volume::values`.
 std::vector<float> scaled_field(const Volume& volume);
-/// The same scaling for one value, e.g. an iso-value; may lie outside [0, 1]. 0 where the volume is constant.
+/// The same scaling for one value, e.g. a point of a transfer function; may lie outside [0, 1]. 0 where the volume is
+/// constant.
 double scaled_value(const Volume& volume, double value);
+
+/// The same for an iso-value; one that no sample lies on the other side of is +-1e9, where no estimator of edges
+/// extrapolates to it.
+double scaled_iso_value(const Volume& volume, double iso_value);
 
 /// Coefficients of the cubic B-spline that goes through `field` (x fastest, mirrored at the borders): what the `cubic`
 /// edge estimator interpolates. Same size and order as `field`. Throws Error when dims and field disagree.

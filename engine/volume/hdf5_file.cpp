@@ -1,7 +1,12 @@
+#include <fcntl.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <charconv>
+#include <system_error>
 
+#include "engine/memory_file.h"
 #include "engine/volume/hdf5_internal.h"
 
 namespace edgesplat::detail {
@@ -36,6 +41,13 @@ std::string reason() {
         return 0;
     };
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
+    // Of what the system said, its words: the rest are times, offsets and addresses.
+    constexpr std::string_view kNumber = "errno = ";
+    if (const std::size_t at = text.find(kNumber); at != std::string::npos) {
+        int number = 0;
+        std::from_chars(text.data() + at + kNumber.size(), text.data() + text.size(), number);
+        if (number != 0) return std::generic_category().message(number);
+    }
     return text.empty() ? "no reason given" : text;
 }
 
@@ -127,6 +139,15 @@ Hdf5Id selection(hid_t dataset, const Hdf5Extent& low, const Hdf5Extent& size) {
     return file_space;
 }
 
+/// Locks fail on read-only and some network file systems; a file that is written is locked by who made its name.
+Hdf5Id without_locks() {
+    Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+#if H5_VERSION_GE(1, 10, 7)
+    H5Pset_file_locking(access.get(), false, true);
+#endif
+    return access;
+}
+
 }  // namespace
 
 std::recursive_mutex& hdf5_mutex() {
@@ -154,12 +175,14 @@ void Hdf5Dataset::write(const Hdf5Extent& low, const Hdf5Extent& size, SampleTyp
         fail("{}: {}: cannot be written: {}", file_, name_, reason());
 }
 
+void Hdf5Dataset::finish() const {
+    const Quiet quiet;
+    if (H5Dflush(id_.get()) < 0) fail("{}: {}: cannot be written: {}", file_, name_, reason());
+}
+
 Hdf5File Hdf5File::open(const std::string& path) {
     const Quiet quiet;
-    const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-#if H5_VERSION_GE(1, 10, 7)
-    H5Pset_file_locking(access.get(), false, true);  // locks fail on read-only and some network file systems
-#endif
+    const Hdf5Id access = without_locks();
     if (H5Fis_hdf5(path.c_str()) <= 0) fail("{}: not an HDF5 file, or one cut off in its first bytes", path);
     Hdf5File file;
     file.path_ = path;
@@ -172,15 +195,28 @@ Hdf5File Hdf5File::create(const std::string& path, const std::string& shown_path
     const Quiet quiet;
     Hdf5File file;
     file.path_ = shown_path;
-    file.id_ = Hdf5Id(H5Fcreate(path.c_str(), H5F_ACC_EXCL, H5P_DEFAULT, H5P_DEFAULT), H5Fclose);
+    const Hdf5Id access = without_locks();
+    file.id_ = Hdf5Id(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose);
     if (!file.id_) fail("{}: cannot be written: {}", shown_path, reason());
     return file;
+}
+
+void Hdf5File::abandon() noexcept {
+    try {
+        const Quiet quiet;
+        void* descriptor = nullptr;
+        if (H5Fget_vfd_handle(id_.get(), H5P_DEFAULT, &descriptor) < 0) return;
+        const MemoryFile nowhere;
+        dup3(nowhere.descriptor(), *static_cast<int*>(descriptor), O_CLOEXEC);
+    } catch (const std::system_error&) {  // NOLINT(bugprone-empty-catch): the disk may have room by now
+    }
 }
 
 void Hdf5File::close() {
     const Quiet quiet;
     const bool flushed = H5Fflush(id_.get(), H5F_SCOPE_GLOBAL) >= 0;
     const std::string why = flushed ? "" : reason();
+    if (!flushed) abandon();
     if (!id_.close() || !flushed) fail("{}: cannot be written: {}", path_, why);
 }
 
@@ -209,6 +245,7 @@ std::string Hdf5File::text(const std::string& name) const {
         char* text = nullptr;
         if (H5Aread(id.get(), memory.get(), static_cast<void*>(&text)) < 0 || text == nullptr)
             fail("{}: attribute {}: cannot be read: {}", path_, name, reason());
+        // cppcheck-suppress nullPointerRedundantCheck; fail() does not return
         std::string result(text);
         H5free_memory(text);
         return result;
@@ -305,6 +342,7 @@ Hdf5Dataset Hdf5File::create_dataset(const std::string& path, const Hdf5Layout& 
     const Quiet quiet;
     const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
+    H5Pset_obj_track_times(creation.get(), false);  // the same volume is the same file
     if (layout.chunk > 0) {
         std::vector<hsize_t> sides;  // not beyond the dataset's, which HDF5 refuses
         for (const auto side : layout.extent)

@@ -51,6 +51,8 @@ class Hdf5Dataset {
     /// Boxes: `low` and `size` have as many axes as the dataset. Converted from and to the type in memory.
     void read(const Hdf5Extent& low, const Hdf5Extent& size, SampleType memory_type, void* out) const;
     void write(const Hdf5Extent& low, const Hdf5Extent& size, SampleType memory_type, const void* data) const;
+    /// After the last `write`: that there was no room for what HDF5 kept till now is said here and nowhere else.
+    void finish() const;
 
   private:
     friend class Hdf5File;
@@ -72,8 +74,11 @@ class Hdf5File {
   public:
     /// For reading. Whether it is HDF5 at all is said first.
     static Hdf5File open(const std::string& path);
-    /// New and empty; messages name it `shown_path`.
+    /// Made empty, whatever is there; messages name it `shown_path`.
     static Hdf5File create(const std::string& path, const std::string& shown_path);
+    /// What is still to be written goes nowhere. To be called where writing failed, before anything else is given back:
+    /// HDF5 keeps what it cannot write on a full disk, and ends the program when it tries again at its end.
+    void abandon() noexcept;
     /// Everything to disk; a file that is written must be closed by this, which fails where the disk is full.
     void close();
 

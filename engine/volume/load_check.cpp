@@ -163,7 +163,9 @@ void check_netcdf_is_whole(const std::string& path) {
     bytes.skip(4);
     try {
         bytes.skip(4);
-        std::vector<std::uint64_t> dims(bytes.number(4, true));
+        const auto axes = bytes.number(4, true);
+        if (axes > bytes.left() / 8) bytes.truncated();  // each takes a name and a length
+        std::vector<std::uint64_t> dims(axes);
         for (auto& dim : dims) {
             bytes.skip(padded(bytes.number(4, true)));
             dim = bytes.number(4, true);
@@ -177,10 +179,11 @@ void check_netcdf_is_whole(const std::string& path) {
             for (auto left = bytes.number(4, true); left > 0; --left) {
                 const auto id = bytes.number(4, true);
                 if (id >= dims.size()) throw NotUnderstood{};
-                items *= dims[id];
+                if (__builtin_mul_overflow(items, dims[id], &items)) bytes.truncated();
             }
             skip_attributes(bytes);
-            const auto size = items * netcdf_type_size(bytes.number(4, true));
+            std::uint64_t size = 0;
+            if (__builtin_mul_overflow(items, netcdf_type_size(bytes.number(4, true)), &size)) bytes.truncated();
             bytes.skip(4);
             const auto begin = bytes.number(wide ? 8 : 4, true);
             if (begin > bytes.size() || size > bytes.size() - begin) bytes.truncated();

@@ -1,54 +1,21 @@
 // Stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
-#include <OpenImageIO/imageio.h>
-
 #include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
 
+#include "engine/picture_library_internal.h"
 #include "engine/volume/load_internal.h"
 
 namespace edgesplat::detail {
 namespace {
 
-SampleType sample_type_of(const std::string& path, const OIIO::TypeDesc& format) {
-    switch (format.basetype) {
-        case OIIO::TypeDesc::INT8:
-            return SampleType::Int8;
-        case OIIO::TypeDesc::UINT8:
-            return SampleType::UInt8;
-        case OIIO::TypeDesc::INT16:
-            return SampleType::Int16;
-        case OIIO::TypeDesc::UINT16:
-            return SampleType::UInt16;
-        case OIIO::TypeDesc::INT32:
-            return SampleType::Int32;
-        case OIIO::TypeDesc::UINT32:
-            return SampleType::UInt32;
-        case OIIO::TypeDesc::INT64:
-            return SampleType::Int64;
-        case OIIO::TypeDesc::UINT64:
-            return SampleType::UInt64;
-        case OIIO::TypeDesc::FLOAT:
-            return SampleType::Float32;
-        case OIIO::TypeDesc::DOUBLE:
-            return SampleType::Float64;
-        case OIIO::TypeDesc::HALF:
-            return SampleType::Float32;  // asked for as float
-        default:
-            fail("{}: pixels of type {} cannot be read", path, format.c_str());
-    }
-}
-
-std::unique_ptr<OIIO::ImageInput> opened(const std::string& path) {
-    OIIO::ImageSpec config;
-    config["oiio:UnassociatedAlpha"] = 1;  // colours as stored, not multiplied by alpha
+std::unique_ptr<PictureReader> opened(const std::string& path) {
     std::string reason;
-    std::unique_ptr<OIIO::ImageInput> input;
+    std::unique_ptr<PictureReader> input;
     {
         OutputCapture capture;
-        input = OIIO::ImageInput::open(path, &config);
-        if (!input) reason = OIIO::geterror();
+        input = picture_library().open(path, reason);
     }
     if (!input) fail("{}: cannot be read as an image: {}", path, tidy(reason));
     return input;
@@ -77,9 +44,8 @@ NumberedName numbered(const std::string& file) {
 
 bool is_image_file(const std::string& path) {
     OutputCapture capture;
-    const auto input = OIIO::ImageInput::open(path);
-    (void)OIIO::geterror();
-    return input != nullptr;
+    std::string ignored;
+    return picture_library().open(path, ignored) != nullptr;
 }
 
 std::vector<std::string> ordered_slices(const std::string& name, std::vector<std::string> files,
@@ -126,13 +92,13 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
         int pages = 1;
         if (stack) {
             OutputCapture capture;
-            while (input->seek_subimage(pages, 0))
+            while (input->seek(pages))
                 ++pages;
-            (void)input->geterror();
+            (void)input->take_error();
         } else {
             OutputCapture capture;
-            if (input->seek_subimage(1, 0)) pages = 2;
-            (void)input->geterror();
+            if (input->seek(1)) pages = 2;
+            (void)input->take_error();
         }
         if (!stack && pages > 1)
             fail("{}: {} holds several images: a stack can only be read by itself", name, files[i]);
@@ -143,38 +109,42 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
             bool read = false;
             {
                 OutputCapture capture;
-                input->seek_subimage(page, 0);
+                input->seek(page);
             }
-            const auto spec = input->spec();
+            const PicturePage spec = input->page();
             const auto here = stack ? fmt::format("page {} of {}", page, files[i]) : files[i];
             if (spec.depth > 1) fail("{}: a tiled 3-D image, which cannot be read; save it as a stack of pages", here);
-            const auto here_type = sample_type_of(files[i], spec.format);
+            if (!spec.type) fail("{}: pixels of type {} cannot be read", files[i], spec.type_name);
+            const SampleType here_type = *spec.type;
             if (!type) {
                 type = here_type;
                 width = spec.width;
                 height = spec.height;
-                channels = spec.nchannels;
+                channels = spec.channels;
                 component = chosen_component(name, options, static_cast<std::size_t>(channels));
                 checked_bytes(name, {static_cast<std::size_t>(width), static_cast<std::size_t>(height), slices},
                               sizeof(float));
+                // One page is unpacked at a time, with all its channels.
+                const std::size_t page_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
+                                               static_cast<std::size_t>(channels) * size_of(here_type);
+                check_memory(name, fmt::format("pages of {} x {} pixels, {} channels", width, height, channels),
+                             page_bytes);
+                check_stored_size(name, page_bytes, std::filesystem::file_size(files[i]), kBestPictureRatio);
                 volume.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * slices);
-                const int bits = spec.get_int_attribute("oiio:BitsPerSample", 8);
-                if (bits % 8 != 0)
-                    volume.notes.push_back(
-                        fmt::format("Samples of {} bits are scaled up to the next whole byte by OpenImageIO.", bits));
+                if (spec.bits % 8 != 0)
+                    volume.notes.push_back(fmt::format(
+                        "Samples of {} bits are scaled up to the next whole byte by OpenImageIO.", spec.bits));
             }
-            if (spec.width != width || spec.height != height || spec.nchannels != channels || here_type != *type)
+            if (spec.width != width || spec.height != height || spec.channels != channels || here_type != *type)
                 fail("{}: {} has {} x {} pixels, {} channels, {}; the slices before it {} x {}, {}, {}", name, here,
-                     spec.width, spec.height, spec.nchannels, name_of(here_type), width, height, channels,
+                     spec.width, spec.height, spec.channels, name_of(here_type), width, height, channels,
                      name_of(*type));
             const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
             buffer.resize(pixels * static_cast<std::size_t>(channels) * size_of(*type));
             {
                 OutputCapture capture;
-                const auto format = spec.format.basetype == OIIO::TypeDesc::HALF ? OIIO::TypeDesc(OIIO::TypeDesc::FLOAT)
-                                                                                 : OIIO::TypeDesc(spec.format);
-                read = input->read_image(page, 0, 0, channels, format, buffer.data());
-                reason = input->geterror();
+                read = input->read(page, *type, buffer.data());
+                reason = input->take_error();
             }
             if (!read) fail("{}: truncated or damaged: {}", here, tidy(reason));
             convert_samples(*type, buffer.data(), component, static_cast<std::size_t>(channels), pixels,

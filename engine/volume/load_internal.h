@@ -10,13 +10,10 @@
 
 #include "engine/error.h"
 #include "engine/volume/load_volume.h"
+#include "engine/volume/sample_type_internal.h"
 
 namespace edgesplat::detail {
 
-enum class SampleType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
-
-std::string_view name_of(SampleType type);
-std::size_t size_of(SampleType type);
 /// The type of a name such as "uint8"; false when there is none.
 bool sample_type_named(std::string_view name, SampleType& type);
 /// target[i] = source[first + i * stride] for i < count, in host byte order.
@@ -26,8 +23,14 @@ void convert_samples(SampleType type, const void* source, std::size_t first, std
 /// Fails when the volume, or all that must be read to get at it, is beyond the limits of load_volume.h. `dims` as the
 /// file says, any number of axes; `bytes` of one voxel with all its components. Returns the bytes of all of it.
 std::size_t checked_bytes(const std::string& path, const std::vector<std::size_t>& dims, std::size_t bytes);
-/// Fails when `needed` bytes cannot come out of `stored` bytes even by the best ratio deflate can reach.
-void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored);
+/// Fails when `bytes` are more than reading one volume may take (load_volume.h); `what` of the file says so.
+void check_memory(const std::string& path, std::string_view what, std::size_t bytes);
+/// Of what is not compressed ("1 " may be a double), of deflate at its best, and more than compression of pictures is
+/// seen to do.
+inline constexpr std::size_t kPlainRatio = 8, kBestDeflateRatio = 1040, kBestPictureRatio = std::size_t{1} << 16;
+/// Fails when `needed` bytes cannot come out of `stored` bytes even by that ratio, 4 kB of which are given.
+void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored,
+                       std::size_t ratio = kBestDeflateRatio);
 
 /// Fail with "truncated" when the structure of the file goes on after its end; files they do not understand pass.
 void check_dicom_is_whole(const std::string& path);
@@ -77,10 +80,11 @@ enum class ItkFormat { Nrrd, Meta, Nifti, Vtk, Minc, Gipl };
 /// How a file is handed to ITK and what is said of it.
 struct ItkRequest {
     ItkFormat format = ItkFormat::Nrrd;
-    std::string path;              ///< what the user gave: the name in messages
-    std::string read_path;         ///< what ITK opens; empty: `path`
-    std::string stored_type;       ///< empty: as ITK says
-    std::size_t stored_bytes = 0;  ///< size of the data on disk; 0: not to be checked
+    std::string path;                              ///< what the user gave: the name in messages
+    std::string read_path;                         ///< what ITK opens; empty: `path`
+    std::string stored_type;                       ///< empty: as ITK says
+    std::size_t stored_bytes = 0;                  ///< size of the data on disk; 0: not to be checked
+    std::size_t stored_ratio = kBestDeflateRatio;  ///< see check_stored_size
     /// Called with the bytes and samples that will be read, before they are; may throw.
     std::function<void(std::size_t bytes, std::size_t samples)> check_data;
     bool bits_are_floats = false;     ///< integers are the bit patterns of floats (see load_nifti.cpp)

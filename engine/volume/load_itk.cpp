@@ -13,6 +13,7 @@
 
 #include "engine/volume/load_internal.h"
 #include "engine/volume/load_itk.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -187,6 +188,13 @@ std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume
     while (dims.size() > 3 && dims.back() == 1)
         dims.pop_back();
     if (dims.size() != 3 || io->GetNumberOfComponents() != 1) return std::nullopt;
+    std::size_t voxels = 1;
+    for (const std::size_t n : dims) {
+        if (n < 1 || n > kMaxPackedVoxelsPerAxis || n > kMaxPackedVoxels / voxels)
+            fail("{}: dims {}: expected 1 to {} along each axis, and at most 2^40 in all", request.path,
+                 fmt::join(dims, " x "), kMaxPackedVoxelsPerAxis);
+        voxels *= n;
+    }
     const SampleType type = sample_type_of(*io, request.path);
     description.name = request.path;
     description.stored_type = name_of(type);
@@ -210,7 +218,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
     volume.stored_type = request.stored_type.empty() ? std::string(name_of(type)) : request.stored_type;
     const std::size_t components = io->GetNumberOfComponents();
     const std::size_t needed = checked_bytes(path, dims, components * size_of(type));
-    if (request.stored_bytes > 0) check_stored_size(path, needed, request.stored_bytes);
+    if (request.stored_bytes > 0) check_stored_size(path, needed, request.stored_bytes, request.stored_ratio);
     if (request.check_data) request.check_data(needed, needed / size_of(type));
     const std::size_t component = chosen_component(path, options, components);
     std::size_t frames = 1;

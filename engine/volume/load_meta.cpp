@@ -21,21 +21,45 @@ std::string trimmed(const std::string& text) {
     return first == std::string::npos ? "" : text.substr(first, last - first + 1);
 }
 
-// MetaIO gives the pattern to printf as it is, and reads fewer files than there are slices without a word.
-void check_several(const std::string& path, const std::string& value, std::size_t listed, std::size_t slices) {
-    std::size_t files = listed;
+// Data files after "LIST", without blank lines at the end.
+struct ListedFiles {
+    std::size_t count = 0;
+    std::size_t first_bad = std::string::npos, bad_length = 0;  // the first line that is blank or too long
+
+    void add(std::size_t line, std::size_t length) {
+        if (length > 0) count = line + 1;
+        if (first_bad != std::string::npos || (length > 0 && length <= 1000)) return;
+        first_bad = line;
+        bad_length = length;
+    }
+};
+
+// MetaIO copies each word into 80 bytes and counts words by blanks, a line of a list into 1024 bytes; it gives the
+// pattern to printf as it is, and reads fewer files than there are slices without a word.
+void check_several(const std::string& path, const std::string& value, const ListedFiles& listed, std::size_t slices) {
+    std::istringstream fits(value);
+    for (std::string word; fits >> word;)
+        if (word.size() > 79)
+            fail("{}: ElementDataFile: a word of {} characters, expected at most 79", path, word.size());
+    if (value.find("  ") != std::string::npos)
+        fail("{}: ElementDataFile '{}': expected single blanks between its words", path, value);
+    std::size_t files = listed.count;
+    if (listed.first_bad < std::min(files, slices))
+        fail("{}: ElementDataFile: line {} of the list has {} characters, expected 1 to 1000", path,
+             listed.first_bad + 1, listed.bad_length);
     if (value.rfind("LIST", 0) != 0) {
         std::istringstream words(value);
         std::string pattern;
-        long long first = 0, last = 0, step = 1;
-        words >> pattern >> first >> last;
-        if (!(words >> step)) step = 1;
+        long long first = 0, last = 0, step = 0;
+        // MetaIO takes a step that is no number, or none, for 0 and divides by it.
+        const bool numbers = static_cast<bool>(words >> pattern >> first >> last >> step);
         const auto percent = pattern.find('%');
         auto end = percent + 1;
         while (end < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[end])) != 0)
             ++end;
         if (end >= pattern.size() || end - percent > 4 || (pattern[end] != 'd' && pattern[end] != 'u') ||
-            pattern.find('%', end) != std::string::npos || step < 1 || last < first || last - first > 1'000'000)
+            pattern.find('%', end) != std::string::npos || !numbers || !(words >> std::ws).eof() || step < 1 ||
+            last < first || last - first > 1'000'000)
             fail("{}: ElementDataFile '{}': expected a name with one number like %03d, then first, last and step", path,
                  value);
         files = static_cast<std::size_t>((last - first) / step + 1);
@@ -49,16 +73,28 @@ struct MetaHeader {
     std::size_t axes = 0, spacings = 0, channels = 1;
     bool compressed = false, in_patient = false;
     std::string data_file;
-    std::size_t listed = 0;       // data files after "LIST"
+    ListedFiles listed;
     std::size_t data_offset = 0;  // of data in the header's own file
     bool big_endian = false;
     bool plain = true;  // nothing said that makes voxels more than bytes one after the other from there
 };
 
+// MetaIO copies keys and values into buffers of its own and does not look how long they are.
+void check_line(const std::string& path, int number, const std::string& line) {
+    const auto equals = line.find('=');
+    const bool blank = line.find_first_not_of(" \t\r") == std::string::npos;
+    const bool text = std::ranges::all_of(
+        line, [](char c) { return static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\r'; });
+    if (!text || (!blank && (equals > 80 || line.size() - equals > 4000)))
+        fail("{}: not a MetaImage header: line {} is no 'key = value' of at most 80 and 4000 characters", path, number);
+}
+
 MetaHeader parse(const std::string& path) {
     MetaHeader header;
     std::ifstream file(path, std::ios::binary);
+    int number = 0;
     for (std::string line; std::getline(file, line) && line.size() < 65536 && header.lines.size() < 10000;) {
+        check_line(path, ++number, line);
         const auto equals = line.find('=');
         const auto key = trimmed(line.substr(0, equals));
         const auto value = equals == std::string::npos ? "" : trimmed(line.substr(equals + 1));
@@ -67,8 +103,8 @@ MetaHeader parse(const std::string& path) {
             header.data_file = value;
             header.data_offset = file.good() ? static_cast<std::size_t>(file.tellg()) : 0;
             if (value.rfind("LIST", 0) == 0)
-                while (std::getline(file, line))
-                    header.listed += trimmed(line).empty() ? 0 : 1;
+                for (std::size_t i = 0; std::getline(file, line); ++i)
+                    header.listed.add(i, trimmed(line).size());
             return header;
         }
         if (key == "NDims") words >> header.axes;
@@ -136,10 +172,19 @@ bool has_several_files(const MetaHeader& header) {
     return header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
 }
 
+// Said twice, or not as often as there are axes: MetaIO goes on with what memory held. It has room for ten axes.
+void check_axes(const std::string& path, const MetaHeader& header) {
+    if (header.axes < 1 || header.axes > 10) fail("{}: NDims = {}, expected 1 to 10", path, header.axes);
+    if (header.dims.size() != header.axes)
+        fail("{}: NDims = {} and DimSize with {} numbers, expected as many", path, header.axes, header.dims.size());
+    checked_bytes(path, header.dims, 1);
+}
+
 }  // namespace
 
 std::optional<FileLayout> meta_layout(const std::string& path, Volume& description) {
     const auto header = parse(path);
+    check_axes(path, header);
     const bool plain = header.plain && !header.compressed && !has_several_files(header) && header.dims.size() == 3 &&
                        (header.spacings == 0 || header.spacings == header.axes);
     if (!plain) return std::nullopt;
@@ -156,24 +201,26 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
     const bool local = is_local(header), several = has_several_files(header);
     const auto data = local ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
     ItkRequest request{.format = ItkFormat::Meta, .path = path};
-    if (several && header.dims.size() == 3) {
-        // "LIST 3" and the like say how many axes a file has; without it each holds one slice.
-        std::size_t axes = 2;
+    check_axes(path, header);
+    if (several) {
+        // "LIST 3" and the like say how many axes a file has; without it each holds all but the last.
+        std::size_t axes = header.axes - 1, slices = 1;
         if (header.data_file.rfind("LIST", 0) == 0) std::istringstream(header.data_file.substr(4)) >> axes;
-        if (axes < 2) axes = 2;
-        checked_bytes(path, header.dims, 1);
-        check_several(path, header.data_file, header.listed, axes == 2 ? header.dims[2] : 1);
+        for (std::size_t axis = std::max<std::size_t>(axes, 2); axis < header.axes; ++axis)
+            slices *= header.dims[axis];
+        check_several(path, header.data_file, header.listed, slices);
     }
     if (!several) {
         std::error_code error;
         if (!fs::is_regular_file(data, error))
             fail("{}: its data file {} {}", path, data.string(), error ? error.message() : "is not a file");
         request.stored_bytes = fs::file_size(data);
+        if (!header.compressed) request.stored_ratio = kPlainRatio;
     }
     std::optional<TemporaryFolder> folder;
     if (header.compressed && !several) {
         const auto limit = checked_bytes(path, header.dims, 8 * std::clamp<std::size_t>(header.channels, 1, 64));
-        check_stored_size(path, limit / 64, request.stored_bytes);
+        check_stored_size(path, checked_bytes(path, header.dims, 1), request.stored_bytes);  // a byte each, at least
         folder.emplace();
         inflate_file(path, data, local ? header.data_offset : 0, limit, folder->path() / "data.raw", options);
         const auto patched = folder->path() / "header.mhd";

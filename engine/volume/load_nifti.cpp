@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <fstream>
 
@@ -21,12 +22,12 @@ namespace fs = std::filesystem;
 
 // Where the fields lie; the same names as in nifti1.h and nifti2.h.
 struct Layout {
-    std::size_t header_size, dim, dim_size, intent_code, intent_size, datatype, bitpix, vox_offset, scl_slope,
-        scl_inter;
-    bool wide;  // 64-bit offset and scale (NIfTI-2)
+    std::size_t header_size, dim, dim_size, intent_code, intent_size, datatype, vox_offset, scl_slope, scl_inter,
+        pixdim, qform_code, quatern_b, srow_x;
+    bool wide;  // 64-bit offset, scale and places, 32-bit codes (NIfTI-2)
 };
-constexpr Layout kNifti1{348, 40, 2, 68, 2, 70, 72, 108, 112, 116, false};
-constexpr Layout kNifti2{540, 16, 8, 504, 4, 12, 14, 168, 176, 184, true};
+constexpr Layout kNifti1{348, 40, 2, 68, 2, 70, 108, 112, 116, 76, 252, 256, 280, false};
+constexpr Layout kNifti2{540, 16, 8, 504, 4, 12, 168, 176, 184, 104, 344, 352, 400, true};
 
 struct Header {
     std::vector<unsigned char> bytes;
@@ -35,7 +36,7 @@ struct Header {
     bool analyze = false;
     bool single_file = false;
     std::array<long long, 8> dim{};
-    int datatype = 0, bitpix = 0;
+    int datatype = 0;
     double slope = 1, intercept = 0;
     std::size_t offset = 0;
 
@@ -103,6 +104,27 @@ class Stream {
     gzFile file_;
 };
 
+// ITK's linear algebra ends the program where a number is not finite as a float.
+void check_place(const std::string& path, const Header& header) {
+    const Layout& at = *header.layout;
+    const auto check = [&](const char* field, std::size_t first, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i) {
+            const double value =
+                at.wide ? header.get<double>(first + 8 * i) : static_cast<double>(header.get<float>(first + 4 * i));
+            if (!(std::abs(value) < 1e15))
+                fail("{}: {} in its header: {}, expected a length in mm", path, field, value);
+        }
+    };
+    const auto code = [&](std::size_t which) {
+        return at.wide ? header.get<std::int32_t>(at.qform_code + 4 * which)
+                       : header.get<std::int16_t>(at.qform_code + 2 * which);
+    };
+    check("pixdim", at.pixdim, 4);
+    if (header.analyze) return;
+    if (code(0) != 0) check("quatern and qoffset", at.quatern_b, 6);
+    if (code(1) != 0) check("srow", at.srow_x, 12);
+}
+
 Header parse(const std::string& path, const std::string& header_file) {
     Header header;
     header.bytes.resize(kNifti2.header_size);
@@ -128,7 +150,6 @@ Header parse(const std::string& path, const std::string& header_file) {
         header.dim[axis] =
             at.wide ? header.get<std::int64_t>(at.dim + axis * 8) : header.get<std::int16_t>(at.dim + axis * 2);
     header.datatype = header.get<std::int16_t>(at.datatype);
-    header.bitpix = header.get<std::int16_t>(at.bitpix);
     if (!header.analyze) {
         header.slope =
             at.wide ? header.get<double>(at.scl_slope) : static_cast<double>(header.get<float>(at.scl_slope));
@@ -148,38 +169,32 @@ Header parse(const std::string& path, const std::string& header_file) {
             fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
         if (header.dim[axis] < 1) fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
     }
+    check_place(path, header);
     return header;
 }
 
-std::string type_name(int datatype) {
-    switch (datatype) {
-        case 2:
-            return "uint8";
-        case 4:
-            return "int16";
-        case 8:
-            return "int32";
-        case 16:
-            return "float32";
-        case 32:
-            return "complex64";
-        case 64:
-            return "float64";
-        case 128:
-            return "rgb24";
-        case 256:
-            return "int8";
-        case 512:
-            return "uint16";
-        case 768:
-            return "uint32";
-        case 1024:
-            return "int64";
-        case 1280:
-            return "uint64";
-        default:
-            return "";
-    }
+struct VoxelType {
+    int code;
+    const char* name;
+    std::size_t bytes;
+};
+constexpr std::array<VoxelType, 12> kVoxelTypes{{{2, "uint8", 1},
+                                                 {4, "int16", 2},
+                                                 {8, "int32", 4},
+                                                 {16, "float32", 4},
+                                                 {32, "complex64", 8},
+                                                 {64, "float64", 8},
+                                                 {128, "rgb24", 3},
+                                                 {256, "int8", 1},
+                                                 {512, "uint16", 2},
+                                                 {768, "uint32", 4},
+                                                 {1024, "int64", 8},
+                                                 {1280, "uint64", 8}}};
+
+const VoxelType& voxel_type(const std::string& path, int datatype) {
+    for (const VoxelType& type : kVoxelTypes)
+        if (type.code == datatype) return type;
+    fail("{}: voxels of NIfTI type {} cannot be read", path, datatype);
 }
 
 // "x.hdr.gz", ".hdr" -> "x.img.gz", ".img": the one of the pair that exists.
@@ -208,19 +223,18 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
 
     // Axis 5 holds components, all other axes beyond the third frames.
     const std::vector<std::size_t> block{unsigned_dim(1), unsigned_dim(2), unsigned_dim(3)};
-    if (header.bitpix < 8) fail("{}: voxels of {} bits cannot be read", path, header.bitpix);
-    const std::size_t item = static_cast<std::size_t>(header.bitpix) / 8;
-    const std::size_t bytes = checked_bytes(path, block, item);
+    // As the NIfTI library does it, which does not look at bitpix.
+    const VoxelType& type = voxel_type(path, header.datatype);
+    const std::size_t bytes = checked_bytes(path, block, type.bytes);
     const std::size_t stored = fs::file_size(data_file);
     check_stored_size(path, bytes, stored);
-    const bool more_axes = dim[4] * dim[5] * dim[6] * dim[7] > 1;
+    const bool more_axes = std::max({dim[4], dim[5], dim[6], dim[7]}) > 1;
     const bool floats = header.datatype == 16 || header.datatype == 64;
     ItkRequest request{.format = ItkFormat::Nifti,
                        .path = path,
                        .read_path = header_file,
-                       .stored_type = type_name(header.datatype),
+                       .stored_type = type.name,
                        .stored_bytes = stored};
-    if (request.stored_type.empty()) fail("{}: voxels of NIfTI type {} cannot be read", path, header.datatype);
 
     LoadOptions rest = options;
     std::size_t index = 0;
@@ -254,8 +268,8 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
         else
             header.set<std::int16_t>(at.intent_code, 0);
     }
-    if (floats) {
-        header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
+    // The standard has no scale for colours, and ITK reads beyond its buffers where it is told one.
+    if (floats || header.datatype == 128) {
         if (!header.analyze && at.wide) {
             header.set<double>(at.scl_slope, 0);
             header.set<double>(at.scl_inter, 0);
@@ -263,6 +277,9 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
             header.set<float>(at.scl_slope, 0);
             header.set<float>(at.scl_inter, 0);
         }
+    }
+    if (floats) {
+        header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
         request.bits_are_floats = true;
         const bool scaled = std::isfinite(header.slope) && header.slope != 0 && std::isfinite(header.intercept);
         request.slope = scaled ? header.slope : 1;

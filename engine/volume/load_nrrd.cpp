@@ -107,12 +107,17 @@ std::vector<fs::path> data_files(const std::string& path, const NrrdHeader& head
     std::vector<fs::path> files;
     const auto words = words_of(value);
     if (value.rfind("LIST", 0) == 0) {
+        if (header.listed_files.empty()) fail("{}: NRRD field 'data file': LIST, and no file is listed", path);
         for (const auto& name : header.listed_files)
             files.push_back(folder / name);
     } else if (words.size() >= 4 && value.find('%') != std::string::npos) {
         const long long first = number(path, "data file", words[1]), last = number(path, "data file", words[2]),
                         step = number(path, "data file", words[3]);
-        if (step == 0 || (last - first) / step < 0 || (last - first) / step > 1'000'000)
+        // Their differences must not overflow.
+        constexpr long long kMost = 1'000'000'000;
+        const auto sane = [](long long n) { return n >= -kMost && n <= kMost; };
+        if (!sane(first) || !sane(last) || !sane(step) || step == 0 || (last - first) / step < 0 ||
+            (last - first) / step > 1'000'000)
             fail("{}: NRRD field 'data file': {} to {} in steps of {} is no range of files", path, first, last, step);
         for (long long i = first; step > 0 ? i <= last : i >= last; i += step) {
             std::vector<char> name(words[0].size() + 64);
@@ -222,20 +227,24 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
         sizes.push_back(static_cast<std::size_t>(size));
     }
     if (sizes.size() > 4) fail("{}: NRRD data with {} axes: at most 4 can be read", path, sizes.size());
+    const std::size_t item = bytes_of_type(header.value("type"));
+    if (!sizes.empty()) checked_bytes(path, sizes, item);  // ITK says as much of it, in ten lines
     check_pattern(path, header.value("datafile"));
     const auto files = data_files(path, header);
     std::size_t stored = 0;
     for (const auto& file : files)
         stored += fs::file_size(file);
-    const std::size_t item = bytes_of_type(header.value("type"));
     const auto encoding = header.value("encoding");
     const bool bzip2 = encoding == "bzip2" || encoding == "bz2";
 
     ItkRequest request{.format = ItkFormat::Nrrd, .path = path, .stored_bytes = bzip2 ? 0 : stored};
+    if (encoding != "gzip" && encoding != "gz") request.stored_ratio = kPlainRatio;
     LoadOptions rest = options;
     std::string kinds;
     std::vector<std::string> notes;
     const auto directions = words_of(header.value("spacedirections"));
+    if (!directions.empty() && directions.size() != sizes.size())
+        fail("{}: NRRD field 'space directions': {} of them for {} axes", path, directions.size(), sizes.size());
     const auto none = std::find(directions.begin(), directions.end(), "none");
     const auto list = words_of(header.value("kinds"));
     const bool colour_sized = sizes.size() == 3 && sizes[0] >= 2 && sizes[0] <= 4;

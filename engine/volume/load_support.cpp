@@ -3,9 +3,12 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iostream>
 #include <mutex>
 #include <regex>
@@ -20,7 +23,7 @@ constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int
 constexpr std::array<std::size_t, 10> kTypeSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
 /// All frames and components of a file that can only be read as a whole.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 34;
-constexpr std::size_t kBestDeflateRatio = 1040;
+constexpr const char* kMemoryVariable = "EDGESPLAT_READ_MEMORY";
 
 template <typename T>
 void convert(const void* source, std::size_t first, std::size_t stride, std::size_t count, float* target) {
@@ -113,11 +116,28 @@ std::size_t checked_bytes(const std::string& path, const std::vector<std::size_t
     if (too_long) fail("{}: dims {}: an axis may have at most {} voxels", path, text, kMaxVoxelsPerAxis);
     if (too_many) fail("{}: dims {}: a volume may have at most {} voxels", path, text, kMaxVoxels);
     if (too_big) fail("{}: dims {}: more than {} GiB to read", path, text, kMaxBytes >> 30);
+    check_memory(path, "dims " + text, total + voxels * sizeof(float));
     return total;
 }
 
-void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored) {
-    if (needed / kBestDeflateRatio > stored + 4096)
+void check_memory(const std::string& path, std::string_view what, std::size_t bytes) {
+    std::size_t limit = static_cast<std::size_t>(std::max(sysconf(_SC_PHYS_PAGES), 1L)) *
+                        static_cast<std::size_t>(std::max(sysconf(_SC_PAGESIZE), 1L));
+    if (const char* text = std::getenv(kMemoryVariable); text != nullptr && *text != '\0') {
+        std::size_t mib = 0;
+        const std::string_view digits = text;
+        const auto [end, error] = std::from_chars(digits.begin(), digits.end(), mib);
+        if (error != std::errc() || end != digits.end() || mib < 1 || mib > std::size_t{1} << 40)
+            fail("{}: '{}', expected a whole number of MiB, at least 1", kMemoryVariable, digits);
+        limit = mib << 20;
+    }
+    if (bytes > limit)
+        fail("{}: {}: reading takes {} MiB of memory, expected at most {} MiB ({})", path, what, (bytes >> 20) + 1,
+             limit >> 20, kMemoryVariable);
+}
+
+void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored, std::size_t ratio) {
+    if (needed / ratio > stored + 4096)
         fail(
             "{}: its header promises {} bytes of voxels, but there are only {} bytes of data: truncated, or the header "
             "is wrong",
@@ -151,7 +171,8 @@ std::string tidy(std::string_view message) {
     static const std::regex noise(
         R"((^|\n)[^\n]*\.(cxx|hxx|txx|h|cpp):\d+:|\b(itk::|ITK )?ERROR: |\w+ ?\(0x[0-9a-f]+\): )"
         R"(|(^|\n)(Warning|WARNING): In [^\n]*|\x1b\[[0-9;]*m|\d{4}-\d\d-\d\d [^\n|]*\| *)");
-    std::string text = std::regex_replace(std::string(message), noise, "\n");
+    // Libraries repeat what they were given, and an expression takes stack with every character.
+    std::string text = std::regex_replace(std::string(message.substr(0, 2000)), noise, "\n");
     std::string line;
     for (const char c : text) {
         const bool blank = c == '\n' || c == '\r' || c == '\t' || c == ' ';

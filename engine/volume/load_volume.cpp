@@ -2,6 +2,7 @@
 #include "engine/volume/load_volume.h"
 
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -89,6 +90,23 @@ Volume load_minc(const std::string& path, const LoadOptions& options) {
     return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)}, options);
 }
 
+// ITK's reader takes voxels that are not there for 0.
+Volume load_gipl(const std::string& path, const LoadOptions& options) {
+    constexpr std::size_t kHeader = 256;
+    const auto check_data = [&](std::size_t bytes, std::size_t) {
+        const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
+        std::vector<char> part(1 << 16);
+        std::size_t found = 0;
+        for (int count = 1; file && count > 0 && found < kHeader + bytes; found += static_cast<std::size_t>(count))
+            count = std::max(gzread(file.get(), part.data(), static_cast<unsigned>(part.size())), 0);
+        if (found < kHeader + bytes)
+            fail("{}: truncated: {} of {} bytes of voxels", path, found - std::min(found, kHeader), bytes);
+    };
+    return load_through_itk(
+        {.format = ItkFormat::Gipl, .path = path, .stored_bytes = fs::file_size(path), .check_data = check_data},
+        options);
+}
+
 bool is_hdf5(const std::string& path) {
     std::error_code error;
     return fs::is_regular_file(path, error) && first_bytes(path).starts_with("\x89HDF\r\n\x1a\n");
@@ -114,9 +132,7 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
     if (ends_with_any(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}))
         return load_nifti(path, options);
     if (ends_with_any(path, {".mha", ".mhd"})) return load_meta(path, options);
-    if (ends_with_any(path, {".gipl", ".gipl.gz"}))
-        return load_through_itk({.format = ItkFormat::Gipl, .path = path, .stored_bytes = fs::file_size(path)},
-                                options);
+    if (ends_with_any(path, {".gipl", ".gipl.gz"})) return load_gipl(path, options);
     if (is_dicom(path)) return load_dicom(path, {path}, options);
     if (ends_with_any(path, {".raw", ".dat", ".bin", ".zraw", ".den"}))
         fail(

@@ -16,6 +16,11 @@ inline constexpr std::size_t kMaxVoxels = std::size_t{1} << 31;
 /// Voxels an axis may have.
 inline constexpr std::size_t kMaxVoxelsPerAxis = 65535;
 
+// Memory: one volume takes no more than the machine has, or than the environment variable EDGESPLAT_READ_MEMORY says in
+// MiB: the samples as the file has them with all their frames and components, and 4 bytes a voxel. A file that needs
+// more is refused before any of it is allocated, and so is a header that promises more than its file can hold: bytes
+// of voxels as many as are stored, or 1040 times as many of deflated ones, the best that deflate can do.
+
 /// What the file leaves open. Every member has a value that means "not given".
 struct LoadOptions {
     std::optional<int> component;       ///< which component of a vector or colour voxel, from 0

@@ -101,6 +101,7 @@ Volume load_vti(const std::string& path, const LoadOptions& options) {
     if (array == nullptr)
         fail("{}: no values at its points ({} arrays of cells)", path, image->GetCellData()->GetNumberOfArrays());
     const std::size_t voxels = dims[0] * dims[1] * dims[2];
+    // cppcheck-suppress nullPointerRedundantCheck; fail() does not return
     if (static_cast<std::size_t>(array->GetNumberOfTuples()) != voxels)
         fail("{}: {} values for {} voxels: truncated or damaged", path, array->GetNumberOfTuples(), voxels);
     const auto components = static_cast<std::size_t>(array->GetNumberOfComponents());

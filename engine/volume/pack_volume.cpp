@@ -2,17 +2,14 @@
 // level from the one before. No step holds more than one box of samples.
 #include "engine/volume/pack_volume.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstring>
+#include <system_error>
 
 #include "engine/volume/checksum_internal.h"
 #include "engine/volume/pack_source_internal.h"
 #include "engine/volume/packed_internal.h"
+#include "footprints/temporary_file.h"
 
 namespace edgesplat {
 namespace {
@@ -23,6 +20,7 @@ using namespace detail;
 constexpr int kBrick = PackedVolume::kBrick;
 /// Samples in a row of a box: 16 MB a box of bricks at most, 32 MB the one that a box of the next level is made from.
 constexpr int kRow = 4096, kCoarseRow = 1024;
+constexpr std::size_t kFirstBytes = 4096;
 constexpr std::size_t kScanned = std::size_t{1} << 20;
 
 std::size_t voxels_of(const glm::ivec3& size) {
@@ -130,42 +128,16 @@ Coding coding_for(const Scan& scan, int bits) {
     return coding;
 }
 
-/// The file under its temporary name, removed unless it is renamed.
-class TemporaryName {
-  public:
-    explicit TemporaryName(const std::string& target) : target_(target) {
-        const fs::path path(target);
-        name_ = (path.parent_path() / fmt::format(".{}.{}-0.tmp", path.filename().string(), getpid())).string();
-    }
-    ~TemporaryName() {
-        std::error_code ignored;
-        if (!name_.empty()) fs::remove(name_, ignored);
-    }
-    TemporaryName(const TemporaryName&) = delete;
-    TemporaryName& operator=(const TemporaryName&) = delete;
-    const std::string& name() const { return name_; }
-    void rename_to_target() {
-        const int file = open(name_.c_str(), O_RDONLY | O_CLOEXEC);
-        const bool synced = file >= 0 && fsync(file) == 0;
-        const int problem = errno;
-        if (file >= 0) close(file);
-        if (!synced) fail("{}: cannot be written: {}", target_, std::strerror(problem));
-        if (std::rename(name_.c_str(), target_.c_str()) != 0)
-            fail("{}: cannot be written: {}", target_, std::strerror(errno));
-        name_.clear();
-    }
-
-  private:
-    std::string target_, name_;
-};
-
 /// Writes the bricks of a level and keeps their ranges.
 class LevelWriter {
   public:
     LevelWriter(Hdf5File& file, int level, const glm::ivec3& dims, const Coding& coding, bool compress)
-        : file_(file), level_(level), bricks_(bricks_of(dims)), coding_(coding) {
-        samples_ = file.create_dataset(level_path(level, "samples"),
-                                       {coding.type, extent_of(dims), static_cast<std::uint64_t>(kBrick), compress});
+        : file_(file),
+          level_(level),
+          bricks_(bricks_of(dims)),
+          coding_(coding),
+          samples_(file.create_dataset(level_path(level, "samples"),
+                                       {coding.type, extent_of(dims), static_cast<std::uint64_t>(kBrick), compress})) {
         low_.assign(voxels_of(bricks_), INFINITY);
         high_.assign(voxels_of(bricks_), -INFINITY);
     }
@@ -183,6 +155,7 @@ class LevelWriter {
                 }
     }
     void finish() {
+        samples_.finish();
         write_ranges("low", low_);
         write_ranges("high", high_);
     }
@@ -199,8 +172,10 @@ class LevelWriter {
         for (float& bound : stored)
             bound = coding_.value(bound);
         const Hdf5Extent extent = extent_of(bricks_);
-        file_.create_dataset(level_path(level_, name), {.type = SampleType::Float32, .extent = extent})
-            .write({0, 0, 0}, extent, SampleType::Float32, stored.data());
+        const Hdf5Dataset ranges =
+            file_.create_dataset(level_path(level_, name), {.type = SampleType::Float32, .extent = extent});
+        ranges.write({0, 0, 0}, extent, SampleType::Float32, stored.data());
+        ranges.finish();
     }
 
     Hdf5File& file_;
@@ -260,8 +235,10 @@ void write_finest(Hdf5File& file, LevelWriter& writer, const PackSource& source,
         writer.write(first, size, values);
         progress.add(values.size(), "writing bricks");
     });
-    file.create_dataset("/histogram", {.type = SampleType::UInt64, .extent = {kPackedBins}})
-        .write({0}, {kPackedBins}, SampleType::Float64, counts.data());
+    const Hdf5Dataset histogram =
+        file.create_dataset("/histogram", {.type = SampleType::UInt64, .extent = {kPackedBins}});
+    histogram.write({0}, {kPackedBins}, SampleType::Float64, counts.data());
+    histogram.finish();
 }
 
 void write_coarser(LevelWriter& writer, const Hdf5Dataset& finer, const glm::ivec3& fine_dims, const glm::ivec3& dims,
@@ -324,6 +301,16 @@ void check_space(const std::string& output, const std::vector<VolumeGeometry>& l
              output, bytes / 1e6, static_cast<double>(space.available) / 1e6);
 }
 
+/// Calls `step`, which writes `output`.
+template <typename Step>
+auto writing(const std::string& output, const Step& step) {
+    try {
+        return step();
+    } catch (const std::system_error& error) {
+        fail("{}: cannot be written: {}", output, error.code().message());
+    }
+}
+
 PackSummary pack(const PackSource& source, const std::string& output, const PackOptions& options) {
     if (options.quantise != 0 && options.quantise != 8 && options.quantise != 16)
         fail("quantise: {} bits, expected 8 or 16", options.quantise);
@@ -351,25 +338,37 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
             fmt::format("Quantised to {} bits when it was packed: samples are off by at most {:.3g}.", options.quantise,
                         found.error));
 
-    TemporaryName temporary(output);
-    auto file = Hdf5File::create(temporary.name(), output);
+    TemporaryFile temporary = writing(output, [&] {
+        TemporaryFile made(output);
+        made.write(std::string(kFirstBytes, '\0'));  // HDF5 cannot let go of a file that it cannot begin
+        made.sync();
+        return made;
+    });
+    auto file = Hdf5File::create(temporary.path().string(), output);
     {
-        std::optional<LevelWriter> finer;
-        for (std::size_t i = 0; i < levels.size(); ++i) {
-            const int level = static_cast<int>(i);
-            LevelWriter writer(file, level, levels[i].dims, coding, options.compress);
-            if (i == 0)
-                write_finest(file, writer, source, found, coding, progress);
-            else
-                write_coarser(writer, finer->samples(), levels[i - 1].dims, levels[i].dims, coding, progress);
-            writer.finish();
-            finer.emplace(std::move(writer));
+        std::optional<LevelWriter> finer, writer;
+        try {
+            for (std::size_t i = 0; i < levels.size(); ++i) {
+                writer.emplace(file, static_cast<int>(i), levels[i].dims, coding, options.compress);
+                if (i == 0)
+                    write_finest(file, *writer, source, found, coding, progress);
+                else
+                    write_coarser(*writer, finer->samples(), levels[i - 1].dims, levels[i].dims, coding, progress);
+                writer->finish();
+                finer.emplace(std::move(*writer));
+            }
+            write_attributes(file, volume, found, coding);
+        } catch (...) {
+            file.abandon();
+            throw;
         }
-        write_attributes(file, volume, found, coding);
     }
     file.close();
-    const std::uint64_t bytes = fs::file_size(temporary.name());
-    temporary.rename_to_target();
+    const std::uint64_t bytes = fs::file_size(temporary.path());
+    writing(output, [&] {
+        temporary.sync();
+        temporary.rename_to_target();
+    });
     return {volume.geometry,  static_cast<int>(levels.size()), std::string(name_of(coding.type)), found.error, bytes,
             source.streamed()};
 }

@@ -1,6 +1,7 @@
 #include "engine/volume/packed_volume.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <sstream>
@@ -113,12 +114,19 @@ Histogram read_histogram(const Hdf5File& file, const std::string& path, const Vo
 std::vector<PackedVolume::Range> read_ranges(const Hdf5File& file, const std::string& path, int level,
                                              const glm::ivec3& bricks) {
     const Hdf5Extent extent = extent_of(bricks);
-    std::vector<PackedVolume::Range> ranges(extent[0] * extent[1] * extent[2]);
+    const auto dataset_of = [&](bool low) {
+        const std::string name = level_path(level, low ? "low" : "high");
+        auto dataset = file.dataset(name);
+        check_extent(path, name, dataset.extent(), extent);
+        return dataset;
+    };
+    const std::array<Hdf5Dataset, 2> datasets{dataset_of(false), dataset_of(true)};
+    const std::size_t count = extent[0] * extent[1] * extent[2];
+    check_memory(path, fmt::format("level {} with {} bricks", level, count), 3 * count * sizeof(float));
+    std::vector<PackedVolume::Range> ranges(count);
     std::vector<float> bounds(ranges.size());
     for (const bool low : {true, false}) {
-        const std::string name = level_path(level, low ? "low" : "high");
-        const auto dataset = file.dataset(name);
-        check_extent(path, name, dataset.extent(), extent);
+        const Hdf5Dataset& dataset = datasets[low ? 1 : 0];
         dataset.read({0, 0, 0}, extent, SampleType::Float32, bounds.data());
         for (std::size_t i = 0; i < ranges.size(); ++i)
             (low ? ranges[i].low : ranges[i].high) = bounds[i];
@@ -246,6 +254,8 @@ Volume load_level(const Volume& volume, int level) {
     if (voxels > kMaxVoxels)
         fail("{}: level {}: {} x {} x {} voxels are too many to be held in memory", volume.name, level, dims.x, dims.y,
              dims.z);
+    check_memory(volume.name, fmt::format("level {} with {} x {} x {} voxels", level, dims.x, dims.y, dims.z),
+                 voxels * sizeof(float));
     result.in_patient = volume.in_patient;
     result.name = volume.name;
     result.stored_type = volume.stored_type;

@@ -46,6 +46,10 @@ void check_axes(const Volume& volume) {
         if (!std::isfinite(length) || !std::isfinite(geometry.origin[axis]))
             fail("{}: the spacing, direction or origin of axis {} is not finite", volume.name, axis);
         if (!(length > 0)) fail("{}: the spacing of axis {} is 0", volume.name, axis);
+        // Beyond, the squares of lengths leave what a float holds.
+        if (length < 1e-9 || length > 1e9)
+            fail("{}: the spacing of axis {} is {} mm, expected 1e-9 to 1e9; give --spacing in another unit",
+                 volume.name, axis, length);
     }
     const auto spacing = geometry.spacing();
     const double volume_ratio =

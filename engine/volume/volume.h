@@ -28,6 +28,12 @@ struct VolumeGeometry {
         return {glm::length(index_to_world_axes[0]), glm::length(index_to_world_axes[1]),
                 glm::length(index_to_world_axes[2])};
     }
+    double mean_spacing() const {
+        const glm::dvec3 s = spacing();
+        return (s.x + s.y + s.z) / 3;
+    }
+    /// World position of the middle of all voxels.
+    glm::dvec3 center() const { return to_world((glm::dvec3(dims) - 1.0) / 2.0); }
 };
 
 /// A scalar volume. Every sample is finite: what was not has been replaced by `min_value` and counted.

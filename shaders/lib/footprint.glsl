@@ -24,19 +24,22 @@
 #include "shaders/lib/kernel.glsl"
 #include "shaders/shared/footprint_params.h"
 
-// Gauss-Legendre on [0, 1] with 4, 10 and 16 nodes, one after the other; the including shader declares NODES, one of them.
-const float FOOTPRINT_NODE[30] = {
-    0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558, 0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029,
+// Rules on [0, 1] with 4, 8, 10 and 16 nodes, one after the other; the including shader declares NODES, one of them. Gauss-Legendre,
+// but that the 8 crowd towards 0 (crowded() in footprints/gauss_legendre.h), where edge_piece has the face.
+const float FOOTPRINT_NODE[38] = {
+    0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558, 0.0100270801, 0.0535558032, 0.1345804080, 0.2565045145,
+    0.4201694235, 0.6165093518, 0.8154310090, 0.9610629543, 0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029,
     0.4255628305, 0.5744371695, 0.7166976971, 0.8397047841, 0.9325316833, 0.9869532643, 0.0052995325, 0.0277124885,
     0.0671843988, 0.1222977958, 0.1910618778, 0.2709916112, 0.3591982246, 0.4524937451, 0.5475062549, 0.6408017754,
     0.7290083888, 0.8089381222, 0.8777022042, 0.9328156012, 0.9722875115, 0.9947004675};
-const float FOOTPRINT_WEIGHT[30] = {
-    0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0333356722, 0.0747256746, 0.1095431813, 0.1346333597,
+const float FOOTPRINT_WEIGHT[38] = {
+    0.1739274226, 0.3260725774, 0.3260725774, 0.1739274226, 0.0258171918, 0.0617096157, 0.1009565004, 0.1431516153,
+    0.1828725253, 0.2049369039, 0.1832302834, 0.0973253641, 0.0333356722, 0.0747256746, 0.1095431813, 0.1346333597,
     0.1477621124, 0.1477621124, 0.1346333597, 0.1095431813, 0.0747256746, 0.0333356722, 0.0135762297, 0.0311267620,
     0.0475792558, 0.0623144856, 0.0747979944, 0.0845782597, 0.0913017075, 0.0947253052, 0.0947253052, 0.0913017075,
     0.0845782597, 0.0747979944, 0.0623144856, 0.0475792558, 0.0311267620, 0.0135762297};
 const int FOOTPRINT_NODES = int(NODES);
-const int FOOTPRINT_RULE = FOOTPRINT_NODES == 4 ? 0 : (FOOTPRINT_NODES == 10 ? 4 : 14);
+const int FOOTPRINT_RULE = FOOTPRINT_NODES == 4 ? 0 : (FOOTPRINT_NODES == 8 ? 4 : (FOOTPRINT_NODES == 10 ? 12 : 22));
 
 // A piece of the ray, z along u from p: a sheet's share of a footprint. All of it where footprints are not sliced.
 struct Slice {
@@ -138,18 +141,19 @@ FaceBand face_band(float D, float D2, int faces, FootprintParams params) {
     return band;
 }
 
-// The warped kernel over the ray's part between z = start and start + len, on one side of the face at `face`: side = 1 where t
-// is larger there, else -1. With v = |t - face| / a and w = face + side a g(v), the rational quadratic of edge_warp,
+// The warped kernel over the ray's part between z = near and near + side len, on one side of the face at `face`: side = 1 where
+// t is larger there, else -1; `near` is the end nearer to the face. With v = |t - face| / a and w = face + side a g(v), the rational quadratic of edge_warp,
 // w^2 - t^2 = a (g - v) (a (g + v) + 2 side face): no division but that of g.
-float edge_piece(Chord c, float start, float len, float side, float face, FaceBand band) {
+float edge_piece(Chord c, float near, float len, float side, float face, FaceBand band) {
     float a = band.a;
     float k = band.k;
-    float v0 = side * (c.pn + start * c.un - face) * band.inverse_a;
-    float dv = side * len * c.un * band.inverse_a;
+    float v0 = side * (c.pn + near * c.un - face) * band.inverse_a;
+    float dv = len * c.un * band.inverse_a;
+    float reach = side * len;
     float twice_face = 2.0 * side * face;
     float sum = 0.0;
     for (int i = 0; i < FOOTPRINT_NODES; ++i) {
-        float z = start + len * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
+        float z = near + reach * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
         float v = clamp(v0 + dv * FOOTPRINT_NODE[FOOTPRINT_RULE + i], 0.0, 1.0);
         float b = v - v * v;
         float g = (v + (k - 1.0) * b) / (1.0 + (k - 1.0) * b);
@@ -170,7 +174,8 @@ float footprint_of_faces(float rho2, float pn, float un, float D, float D2, int 
         float middle = (face - c.pn) * inverse_un;
         float end = min((last - c.pn) * inverse_un, c.high);
         float behind = max(middle, c.low);
-        sum += edge_piece(c, start, max(min(middle, c.high) - start, 0.0), -1.0, face, band) +
+        float before = min(middle, c.high);
+        sum += edge_piece(c, before, max(before - start, 0.0), -1.0, face, band) +
                edge_piece(c, behind, max(end - behind, 0.0), 1.0, face, band) - chord_plain(c, face - band.a, face + band.a);
         for (int more = faces - 1 - i; more > 0; --more) {
             face = -D2;
@@ -380,10 +385,11 @@ float paper_map(float x, PaperKnots q, uint smooth_curve) {
     float last = 1.0 - (1.0 - q.t2) * paper_end(inside - q.m2, 1.0 - q.t2, 1.0 - q.m2);
     float middle = q.t1 + (q.t2 - q.t1) / 3.14159265 * acos(clamp(1.0 - 2.0 * (inside - q.m1) / (q.m2 - q.m1), -1.0, 1.0));
     float slope = (q.t2 - q.t1) / (q.m2 - q.m1);
+    // Chosen between, not branched on: lavapipe makes and keeps a shader anew for every branch that a uniform decides.
     bool smoothed = smooth_curve != 0u;
-    first = smoothed ? rational_quadratic(inside, 0.0, q.m1, 0.0, q.t1, 1.0, slope) : first;
-    middle = smoothed ? q.t1 + slope * (inside - q.m1) : middle;
-    last = smoothed ? rational_quadratic(inside, q.m2, 1.0, q.t2, 1.0, slope, 1.0) : last;
+    first = mix(first, rational_quadratic(inside, 0.0, q.m1, 0.0, q.t1, 1.0, slope), smoothed);
+    middle = mix(middle, q.t1 + slope * (inside - q.m1), smoothed);
+    last = mix(last, rational_quadratic(inside, q.m2, 1.0, q.t2, 1.0, slope, 1.0), smoothed);
     float w = inside < q.m1 ? first : (inside < q.m2 ? middle : last);
     return w + (x - inside);
 }

@@ -51,7 +51,7 @@ EDGESPLAT_CONSTANT uint SPEC_CURVED = 10u;     // 1: edges are spheres of their 
 EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // kernels are weighted; collecting splats: how
 EDGESPLAT_CONSTANT uint WEIGHTED_EDGE = 1u;    // by their distance to the edge
 EDGESPLAT_CONSTANT uint WEIGHTED_VOXEL = 2u;   // to a sum of one at each voxel
-EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 10 or 16
+EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 8, 10 or 16
 EDGESPLAT_CONSTANT uint SPEC_GLOSS = 13u;      // 1: some material has highlights
 EDGESPLAT_CONSTANT uint SPEC_LIT_EDGES = 14u;  // 1: splats without an edge count as without normal
 EDGESPLAT_CONSTANT uint SPEC_FOG = 15u;        // 1: fog
@@ -66,6 +66,7 @@ EDGESPLAT_CONSTANT uint SPEC_SHADOWS = 23u;    // number of lights with shadows
 EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
 EDGESPLAT_CONSTANT uint SPEC_ROUNDS = 26u;     // 1: a tile's list is drawn TILE_ROUND entries at a time
 EDGESPLAT_CONSTANT uint SPEC_COUNT = 27u;      // 1: footprints are counted
+EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 
 // Payload: the quantity that a frame carries in place of colour.

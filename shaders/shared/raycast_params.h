@@ -14,7 +14,6 @@ EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured bes
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this
 
 // Specialization constants beside those of limits.h.
-EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;
 EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;       // 1: transparent bricks are leapt over
 EDGESPLAT_CONSTANT uint SPEC_RAY_LIGHT = 34u;  // 0 without light, else 1 + Light::Kind
 

@@ -6,10 +6,7 @@
 namespace edgesplat::test {
 namespace {
 
-// D is stored in steps of 1.2e-4; float32 sampling and normalisation add less than 1e-3 voxel. A voxel half-way between
-// two planes may take either: those are the few that may differ.
-constexpr double kDistanceBound = 2e-3;
-constexpr double kNormalBound = 2e-3;
+// A voxel half-way between two planes may take either: those are the few that may differ.
 constexpr double kTies = 0.003;
 
 class EstimateEdges : public testing::TestWithParam<EdgeEstimator> {};
@@ -35,14 +32,8 @@ TEST_P(EstimateEdges, AgreesWithTheReference) {
             const auto got = decode_edge(words[i].x, words[i].y);
             const auto& want = expected[i];
             edges += want.has_edge ? 1U : 0U;
-            bool same = got.has_edge == want.has_edge && got.has_normal == want.has_normal;
-            if (same && want.has_normal) same = glm::length(got.n - want.n) <= kNormalBound;
-            if (same && want.has_edge) {
-                same = std::abs(got.D - want.D) <= kDistanceBound && got.upper == want.upper;
-                const bool far = got.D2 > 3.9 && want.D2 > 3.9;
-                same = same && (far || std::abs(got.D2 - want.D2) <= 0.01);
-                if (same) worst = std::max(worst, std::abs(got.D - want.D));
-            }
+            const bool same = same_edge(got, want);
+            if (same && want.has_edge) worst = std::max(worst, std::abs(got.D - want.D));
             differ += same ? 0U : 1U;
         }
         EXPECT_GE(edges, expected.size() / 50) << "the scene has too few edges to say anything";

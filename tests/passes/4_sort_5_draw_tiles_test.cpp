@@ -214,7 +214,7 @@ TEST(SortSheets, InSegmentsIsTheSameOrder) {
 }
 
 TEST(SortSheets, SegmentsCoverEveryList) {
-    const PassScene& s = pass_scenes()[0];
+    const PassScene s = pass_scenes()[0];
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         Settings settings = s.settings;
         settings.sheets = sheets;

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <barrier>
+#include <cmath>
+#include <limits>
+#include <numeric>
 #include <random>
 #include <thread>
 
@@ -65,6 +68,87 @@ TEST(SheetParts, AreAllSheetsOnceWithLikeShares) {
     }
 }
 
+/// A volume of 300^3 in blocks, of which those around the middle hold nothing.
+std::vector<CollectionBlock> blocks_of(const VolumeGeometry& geometry) {
+    std::vector<CollectionBlock> blocks;
+    for (int i = 0; i < 27; ++i) {
+        CollectionBlock block;
+        block.core_low = 128 * glm::ivec3(i % 3, i / 3 % 3, i / 9);
+        block.core_size = glm::min(glm::ivec3(128), geometry.dims - block.core_low);
+        if (i != 13) blocks.push_back(block);
+    }
+    return blocks;
+}
+
+TEST(Slabs, AreAllSheetsOnceAndKnowTheirBlocks) {
+    constexpr double kReach = 3.6;
+    VolumeGeometry geometry;
+    geometry.dims = glm::ivec3(300);
+    geometry.index_to_world_axes = glm::dmat3({0.5, 0.1, 0}, {0, 0.7, 0}, {0, -0.2, 2});
+    const std::vector<CollectionBlock> blocks = blocks_of(geometry);
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int view = 0; view < 20; ++view) {
+        const glm::dvec3 away = glm::normalize(glm::dvec3(unit(random), unit(random), unit(random)) + 1e-3);
+        // From outside, from the edge and from inside.
+        const double distance = view % 3 == 0 ? 2000 : view % 3 == 1 ? 150 : 5;
+        const Camera camera{.eye = geometry.center() + distance * away, .direction = -away};
+        const CameraFrame frame = camera_frame(camera);
+        const double thickness = sheet_thickness(geometry, camera, {});
+        for (const int count : {1, 2, 5}) {
+            SCOPED_TRACE(testing::Message() << "view " << view << ", " << count << " parts");
+            std::vector<glm::ivec2> slabs;
+            for (int i = 0; i < count; ++i)
+                slabs.push_back(slab_of_part(geometry, camera, thickness, blocks, {i, count}));
+            EXPECT_EQ(slabs.front().x, 0);
+            EXPECT_EQ(slabs.back().y, std::numeric_limits<int>::max());
+            for (std::size_t i = 1; i < slabs.size(); ++i)
+                ASSERT_EQ(slabs[i].x, slabs[i - 1].y);
+            std::vector<double> voxels(slabs.size());
+            double all = 0;
+            for (const CollectionBlock& block : blocks) {
+                const glm::ivec2 sheets = sheets_of_block(geometry, camera, thickness, kReach, block);
+                for (int n = 0; n < 400; ++n) {
+                    const glm::dvec3 place(unit(random), unit(random), unit(random));
+                    const glm::dvec3 at =
+                        glm::dvec3(block.core_low) + (0.5 + 0.5 * place) * glm::dvec3(block.core_size - 1);
+                    const glm::dvec3 kernel = kReach * glm::normalize(glm::dvec3(unit(random), unit(random), 1));
+                    const double depth = glm::dot(frame.forward, geometry.to_world(at) - frame.eye);
+                    const double end = glm::dot(frame.forward, geometry.to_world(at + kernel) - frame.eye);
+                    for (const double z : {depth, end}) {
+                        if (z <= 0) continue;
+                        const int sheet = static_cast<int>(std::floor(z / thickness));
+                        EXPECT_TRUE(sheet >= sheets.x && sheet < sheets.y);
+                    }
+                    if (depth <= 0) continue;
+                    const int sheet = static_cast<int>(std::floor(depth / thickness));
+                    const glm::dvec3 core(block.core_size);
+                    const double weight = core.x * core.y * core.z;
+                    for (std::size_t i = 0; i < slabs.size(); ++i)
+                        if (sheet >= slabs[i].x && sheet < slabs[i].y) voxels[i] += weight;
+                    all += weight;
+                }
+            }
+            for (const double share : voxels)
+                EXPECT_NEAR(share / all, 1.0 / count, 0.5 / count);
+            EXPECT_NEAR(std::accumulate(voxels.begin(), voxels.end(), 0.0) / all, 1, 1e-12);
+        }
+    }
+}
+
+TEST(Slabs, AreCountedFromThePicturesFirstSheet) {
+    const std::vector<std::uint32_t> pairs(10, 1);
+    const auto sheets = [&](int from, int to, int base) {
+        return Division{.part = {1, 3}, .slab = glm::ivec2(from, to)}.sheets(pairs, base);
+    };
+    EXPECT_EQ(sheets(103, 105, 100), glm::uvec2(3, 5));
+    EXPECT_EQ(sheets(0, 104, 100), glm::uvec2(0, 4));
+    EXPECT_EQ(sheets(104, std::numeric_limits<int>::max(), 100), glm::uvec2(4, 10));
+    EXPECT_EQ(sheets(0, 50, 100), glm::uvec2(0, 0));
+    EXPECT_EQ(sheets(200, 300, 100), glm::uvec2(10, 10));
+    EXPECT_EQ((Division{.part = {}, .slab = {}}.sheets(pairs, 100)), glm::uvec2(0, 10));
+}
+
 /// Sheets folded until a pixel is closed.
 glm::vec4 folded(const glm::vec4& before, std::span<const glm::vec4> sheets, float saturation) {
     glm::vec4 sum = before;
@@ -125,8 +209,10 @@ TEST(PixelsBehind, CloseWhereTheWholePictureCloses) {
 class ThreadExchange : public PartExchange {
   public:
     struct Table {
-        explicit Table(int parts) : all(parts), floats(static_cast<std::size_t>(parts)), pixels(floats.size()) {}
+        explicit Table(int parts)
+            : all(parts), values(static_cast<std::size_t>(parts)), floats(values.size()), pixels(values.size()) {}
         std::barrier<> all;
+        std::vector<int> values;
         std::vector<std::span<float>> floats;
         std::vector<std::span<glm::vec4>> pixels;
     };
@@ -134,6 +220,13 @@ class ThreadExchange : public PartExchange {
 
     SheetPart part() const override { return part_; }
     void wait() override { table_->all.arrive_and_wait(); }
+    int largest(int value) override {
+        table_->values[own()] = value;
+        wait();
+        const int most = std::ranges::max(table_->values);
+        wait();
+        return most;
+    }
     void pass_back(std::span<float> transmittance) override {
         table_->floats[own()] = transmittance;
         wait();

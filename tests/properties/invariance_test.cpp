@@ -110,18 +110,6 @@ TEST(Settings, HalfSheetsStayWithinTheirPrecision) {
 
 // --- Where the volume lies --------------------------------------------------------------------------------------
 
-/// Volume, camera and light moved alike by a linear map (columns: images of the world axes) and a shift.
-Shot moved(Shot shot, const glm::dmat3& map, const glm::dvec3& shift) {
-    const auto& g = shot.volume->geometry;
-    shot.volume = placed(shot.volume, map * g.index_to_world_axes, map * g.origin + shift);
-    shot.camera.eye = map * shot.camera.eye + shift;
-    shot.camera.direction = map * shot.camera.direction;
-    shot.camera.up = map * shot.camera.up;
-    for (Light& light : shot.scene.lights)
-        light.direction = map * light.direction;
-    return shot;
-}
-
 void expect_alike(const Image& a, const Image& b, const char* what) {
     const ImageDifference difference = compare_images(a, b, 2e-3);
     EXPECT_LE(difference.share, 0.01) << what << ", largest " << difference.max;

@@ -27,6 +27,18 @@ inline VolumePointer placed(const VolumePointer& volume, const glm::dmat3& axes,
     return copy;
 }
 
+/// Volume, camera and light moved alike by a linear map (columns: images of the world axes) and a shift.
+inline Shot moved(Shot shot, const glm::dmat3& map, const glm::dvec3& shift = {}) {
+    const auto& g = shot.volume->geometry;
+    shot.volume = placed(shot.volume, map * g.index_to_world_axes, map * g.origin + shift);
+    shot.camera.eye = map * shot.camera.eye + shift;
+    shot.camera.direction = map * shot.camera.direction;
+    shot.camera.up = map * shot.camera.up;
+    for (Light& light : shot.scene.lights)
+        light.direction = map * light.direction;
+    return shot;
+}
+
 /// An opaque torus and a translucent second material, lit by a headlight, whole in the picture.
 inline Shot torus_shot() {
     Shot shot;

@@ -94,7 +94,7 @@ TEST_F(CliMovie, KilledItGoesOnWhereItWas) {
     ASSERT_LT(before.size(), std::size_t{kFrames}) << "it was quicker than the kill";
     for (const auto& [name, time] : before)
         EXPECT_EQ(text_of(folder_ / "film.mp4.frames" / name), text_of(folder_ / "whole" / name)) << "half a frame";
-    std::ofstream(folder_ / "film.mp4.frames/.frame_00009.png.1-1.tmp") << "half";
+    std::ofstream(folder_ / "film.mp4.frames/.frame_00009.png.edgesplat-1-1.tmp") << "half";
     EXPECT_THAT(good(kMovie + "-o film.mp4 --keep-frames"),
                 HasSubstr(std::to_string(before.size()) + " of 10 frames are there already"));
     const auto after = times("film.mp4.frames");

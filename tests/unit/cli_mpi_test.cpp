@@ -2,7 +2,10 @@
 #include <gmock/gmock.h>
 #include <signal.h>
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <thread>
 
@@ -89,6 +92,59 @@ TEST_F(CliMpi, ExtraOutputsAndComparisonsToo) {
         const LoadedImage one = read_image(folder_ / "1.exr"), three = read_image(folder_ / "3.exr");
         EXPECT_EQ(one.channel_names, three.channel_names);
         EXPECT_GE(compare_images(one.image, three.image).psnr, 80);
+    }
+}
+
+/// A rod along z, thick and thin in turns: samples of one byte, x fastest.
+std::string rod(int width, int length) {
+    std::string samples;
+    for (int z = 0; z < length; ++z)
+        for (int y = 0; y < width; ++y)
+            for (int x = 0; x < width; ++x) {
+                const double away = std::hypot(x - (width - 1) * .5, y - (width - 1) * .5);
+                const double radius = width * (.3 + .1 * std::sin(z * .11));
+                samples.push_back(static_cast<char>(std::clamp(128 + 20 * (radius - away), 0., 255.)));
+            }
+    return samples;
+}
+
+TEST_F(CliMpi, RanksHoldTheBlocksOfTheirSheetsOnly) {
+    std::ofstream(folder_ / "rod.raw", std::ios::binary) << rod(28, 600);  // five blocks, one behind the other
+    ASSERT_EQ(run("pack rod.raw --raw 28x28x600:uint8:little:1,1,1 -o vol.esv").status, 0);
+    struct Case {
+        const char* request;
+        int ranks;
+        bool divides;
+    };
+    for (const Case& test : {Case{"--direction 0.5,0.3,-1 --up 0,1,0", 4, true},
+                             Case{"--direction 0.1,0.3,1 --up 0,1,0 --sheets sliced --sheet-spacing 1", 3, true},
+                             Case{"--direction 0.5,0.3,-1 --up 0,1,0 --light 0,1,1 --shadows", 2, false}}) {
+        SCOPED_TRACE(test.request);
+        const std::string request = std::string("render vol.esv --iso 128 --size 64x48 ") + test.request + " -o ";
+        const ProgramRun one = run(request + "1.exr --json 1.json");
+        ASSERT_EQ(one.status, 0) << one.err;
+        good(test.ranks, request + "n.exr --json n.json");
+        const double likeness = psnr("1.exr", "n.exr");
+        EXPECT_GE(likeness, 90);
+
+        const auto all = statistics("1.json")["frames"][0]["splats_collected"].get<std::uint64_t>();
+        std::printf("%d ranks: %.1f dB, splats", test.ranks, likeness);
+        std::uint64_t most = 0, sum = 0;
+        const auto parts = statistics("n.json")["frames"][0]["ranks"];
+        for (const auto& part : parts) {
+            const auto splats = part["splats"].get<std::uint64_t>();
+            std::printf(" %llu", static_cast<unsigned long long>(splats));
+            most = std::max(most, splats);
+            sum += splats;
+        }
+        std::printf(" of %llu\n", static_cast<unsigned long long>(all));
+        EXPECT_GE(sum, all);
+        // A rank's sheets end within a block at either end, which its neighbour holds, too.
+        const std::uint64_t blocks = 5 / static_cast<std::uint64_t>(test.ranks) + 2;
+        if (test.divides)
+            EXPECT_LE(most, all * blocks / 5 + all / 20);
+        else
+            EXPECT_EQ(most, all);
     }
 }
 

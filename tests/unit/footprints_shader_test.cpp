@@ -36,6 +36,9 @@ inline float sqrt(float v) {
 inline float floor(float v) {
     return std::floor(v);
 }
+inline float mix(float a, float b, bool second) {
+    return second ? b : a;
+}
 inline float acos(float v) {
     return std::acos(v);
 }
@@ -77,6 +80,12 @@ const uint NODES = 4;
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
+namespace nodes8 {
+const uint NODES = 8;
+#include "shaders/lib/footprint.glsl"
+}  // namespace nodes8
+#undef EDGESPLAT_FOOTPRINT_GLSL
+#undef EDGESPLAT_KERNEL_GLSL
 namespace nodes10 {
 const uint NODES = 10;
 #include "shaders/lib/footprint.glsl"
@@ -96,9 +105,11 @@ namespace {
 
 using samples::Errors;
 using samples::rays;
+namespace eight = glsl::nodes8;
 namespace ten = glsl::nodes10;
 
 const ten::Slice kWhole{-1e9F, 1e9F};
+const eight::Slice kWholeEight{-1e9F, 1e9F};
 constexpr float kNoFace = 100;  // D2 of an edge without a second face
 
 struct Float {
@@ -161,18 +172,18 @@ TEST(FootprintShader, MirrorsTheQuadratureAndTheShortCut) {
         const Edge edge = {d, {1.3, 12}};
         const int faces = ten::footprint_faces(f.d, kNoFace, params);
         EXPECT_EQ(faces, std::abs(d) < 2.9 ? 1 : 0);
-        single.add(
-            static_cast<double>(ten::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, faces, kWhole, params)),
-            procedural_footprint(ray, edge));
+        single.add(static_cast<double>(
+                       eight::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, faces, kWholeEight, params)),
+                   procedural_footprint(ray, edge));
         warp2d.add(static_cast<double>(ten::footprint_warp2d(f.rho2, f.pn, f.un, f.d, kWhole, params)),
                    warp2d_footprint(ray, edge));
         if (d < 0 || d > 2.8) continue;
         const float second = f.pn * f.pn + 0.2f;
         const Edge two = wall_edge(d, static_cast<double>(second), {1.3, 12});
         const int two_faces = ten::footprint_faces(f.d, second, params);
-        wall.add(
-            static_cast<double>(ten::footprint_procedural(f.rho2, f.pn, f.un, f.d, second, two_faces, kWhole, params)),
-            procedural_footprint(ray, two));
+        wall.add(static_cast<double>(
+                     eight::footprint_procedural(f.rho2, f.pn, f.un, f.d, second, two_faces, kWholeEight, params)),
+                 procedural_footprint(ray, two));
     }
     EXPECT_LE(single.largest(), 1e-4);
     EXPECT_LE(wall.largest(), 1e-4);

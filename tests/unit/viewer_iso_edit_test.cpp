@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "engine/scene/default_materials.h"
+#include "tests/unit/viewer_random.h"
 #include "tests/unit/viewer_volumes.h"
 
 namespace edgesplat::viewer {
@@ -128,8 +128,8 @@ TEST(IsoEdit, TheLastValueStaysUnlessATransferFunctionSaysWhatIsSeen) {
 
 TEST(IsoEdit, WhateverIsDoneTheSceneCanBeDrawn) {
     const Volume v = volume();
-    std::mt19937 random(5);
-    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    Random random(5);
+    const auto uniform = [&] { return random(0, 1); };
     SceneDocument d = document({0.5});
     for (int i = 0; i < 3000; ++i) {
         const double value = std::round((uniform() * 1.4 - 0.2) * 50) / 50;

@@ -8,32 +8,17 @@
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <random>
 #include <string>
 
 #include "engine/volume/pack_volume.h"
 #include "tests/unit/refusal.h"
+#include "tests/unit/viewer_random.h"
 #include "tests/unit/viewer_volumes.h"
 
 namespace edgesplat::viewer {
 namespace {
 
 using namespace viewer_test;
-
-class Random {
-  public:
-    double operator()(double low, double high) { return std::uniform_real_distribution<double>(low, high)(engine_); }
-    glm::dvec3 direction() {
-        for (;;) {
-            const glm::dvec3 v((*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1));
-            const double r = glm::length(v);
-            if (r > 0.1 && r < 1) return v / r;
-        }
-    }
-
-  private:
-    std::mt19937 engine_{5};
-};
 
 /// Solid ball of radius 15 mm in the middle.
 Cavity ball() {
@@ -83,7 +68,7 @@ Accuracy accuracy(Cavity cavity, Kind kind = Kind::Float) {
             v = std::round(v * 12) / 12;
     finish_volume(*volume);
     const Scene scene = solid_scene();
-    Random random;
+    Random random(5);
     Accuracy a;
     const glm::dvec3 size = glm::dvec3(cavity.dims) * cavity.spacing;
     while (a.count < kRays) {
@@ -168,7 +153,7 @@ Ray ray_at_ball(double offset = 0) {
 TEST(ViewerPick, NormalsPointOutOfTheSurface) {
     const Cavity cavity = placed_askew(ball(), 2);
     const auto volume = sampled(cavity);
-    Random random;
+    Random random(5);
     for (int i = 0; i < 200; ++i) {
         const glm::dvec3 out = random.direction();
         const Ray ray{cavity.to_world(cavity.inside + 40.0 * out), -(cavity.axes * out)};
@@ -320,7 +305,7 @@ TEST(ViewerPick, PackedVolumesGiveTheSame) {
         std::filesystem::temp_directory_path() / ("edgesplat-viewer-pick-" + std::to_string(getpid()) + ".h5");
     pack_volume(*volume, file.string());
     const Volume packed = open_packed(file.string());
-    Random random;
+    Random random(5);
     for (int i = 0; i < 50; ++i) {
         const glm::dvec3 out = random.direction();
         const Ray ray{cavity.inside + 50.0 * out + random.direction() * 5.0, -out};

@@ -48,6 +48,7 @@ TEST(Script, RefusesWithFileAndLine) {
     EXPECT_EQ(refusal("move 3"), "a.txt:1: move: expected 2 words");
     EXPECT_EQ(refusal("move 3 x"), "a.txt:1: move: 'x', expected a number");
     EXPECT_EQ(refusal("move 3 nan"), "a.txt:1: move: 'nan', expected a number");
+    EXPECT_EQ(refusal("frames 1e300"), "a.txt:1: frames: '1e300', expected a number from -1e9 to 1e9");
     EXPECT_EQ(refusal("move 1 2 3"), "a.txt:1: move: '3' is too much, expected 2 words");
     EXPECT_NE(refusal("hold Q").find("a.txt:1: hold: 'Q', expected a key"), std::string::npos);
     EXPECT_NE(refusal("press upper").find("expected left, right or middle"), std::string::npos);

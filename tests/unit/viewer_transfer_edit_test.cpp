@@ -5,10 +5,10 @@
 
 #include <cmath>
 #include <limits>
-#include <random>
 
 #include "engine/scene/transfer_function.h"
 #include "tests/unit/refusal.h"
+#include "tests/unit/viewer_random.h"
 #include "tests/unit/viewer_volumes.h"
 
 namespace edgesplat::viewer {
@@ -89,8 +89,8 @@ TEST(TransferEdit, TheLastPointStays) {
 }
 
 TEST(TransferEdit, WhateverIsDoneTheFunctionIsValid) {
-    std::mt19937 random(3);
-    const auto uniform = [&] { return static_cast<double>(random()) / 4294967296.0; };
+    Random random(3);
+    const auto uniform = [&] { return random(0, 1); };
     TransferPoints points = kPoints;
     Scene scene;
     scene.materials.resize(1);

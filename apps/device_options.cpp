@@ -1,0 +1,45 @@
+#include "apps/device_options.h"
+
+#include <fmt/format.h>
+
+namespace {
+
+void print_devices() {
+    const std::vector<edgesplat::DeviceInfo> devices = edgesplat::list_devices();
+    if (devices.empty())
+        fmt::print("no Vulkan device; the package mesa-vulkan-drivers brings one that runs on the processor\n");
+    for (const edgesplat::DeviceInfo& d : devices) {
+        fmt::print("{}: {} ({}), {} {}, Vulkan {}\n", d.index, d.name, d.type, d.driver, d.driver_version,
+                   d.api_version);
+        for (const std::string& reason : d.rejections)
+            fmt::print("   cannot be used: {}\n", reason);
+    }
+}
+
+}  // namespace
+
+void add_device_list(CLI::App& app) {
+    app.add_flag_callback(
+           "--list-devices",
+           [] {
+               print_devices();
+               throw CLI::Success();
+           },
+           "Print the Vulkan devices and leave")
+        ->group("Device");
+}
+
+void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
+    constexpr const char* kGroup = "Device";
+    command
+        .add_option("--device", choice.device, "A Vulkan device: its number in --list-devices, or a part of its name")
+        ->type_name("DEVICE")
+        ->group(kGroup);
+    add_device_list(command);
+    command.add_flag("--validation", choice.validation, "Check every Vulkan call; any message makes the program fail")
+        ->group(kGroup);
+    command
+        .add_flag("--check-numbers", choice.check_numbers,
+                  "Look for numbers that are not finite; name the first pass and splat that come to one, and fail")
+        ->group(kGroup);
+}

@@ -1,0 +1,33 @@
+// The formats with small headers: legacy VTK, GIPL, VTI's refusal, raw data whose description is the first line, and
+// the walks through DICOM and netCDF files that come before their libraries. GDCM, libminc and OpenImageIO themselves
+// are not fuzzed: what they do with a file that the walks let through is theirs.
+#include "engine/error.h"
+#include "engine/volume/load_internal.h"
+#include "tests/fuzz/fuzz_file.h"
+
+using edgesplat::fuzz::load;
+using edgesplat::fuzz::write;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    const std::string_view text = edgesplat::fuzz::text_of(data, size);
+    if (text.starts_with("# vtk DataFile") || text.find("<VTKFile") < 1000) {
+        load("volume.vtk", text);
+    } else if (text.starts_with("raw ")) {
+        const std::size_t end = text.find('\n');
+        if (end == std::string_view::npos) return 0;
+        const std::string path = write("volume.raw", text.substr(end + 1));
+        try {
+            (void)edgesplat::load_volume(path, {.raw = std::string(text.substr(4, end - 4))});
+        } catch (const edgesplat::Error&) {
+        }
+    } else if (text.starts_with("CDF") || (size > 132 && text.substr(128, 4) == "DICM")) {
+        const std::string path = write("volume.bin", text);
+        try {
+            (text[0] == 'C' ? edgesplat::detail::check_netcdf_is_whole : edgesplat::detail::check_dicom_is_whole)(path);
+        } catch (const edgesplat::Error&) {
+        }
+    } else {
+        load("volume.gipl", text);
+    }
+    return 0;
+}

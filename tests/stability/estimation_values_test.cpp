@@ -1,0 +1,270 @@
+// Pass 1 where values are trouble: none that differ, too small, too large, not a number, too few bits.
+#include <cmath>
+#include <limits>
+
+#include "tests/stability/hazard.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A ball of values 0..1 in 20^3, iso-value 0.5.
+VolumePointer ball() {
+    static const auto volume = std::make_shared<const Volume>(sample(sphere_scene({20, 20, 20}, {9.4, 9.7, 9.5}, 5.3)));
+    return volume;
+}
+
+/// The ball's values through v * scale + offset look as the ball does.
+void expect_the_balls_picture(double scale, double offset, double psnr) {
+    const auto other = changed(ball(), [&](float v, const glm::ivec3&) {
+        return static_cast<float>(static_cast<double>(v) * scale + offset);
+    });
+    const Image want = sound(shot_of(ball()), "as it is").color;
+    const Image got = sound(shot_of(other, 0.5 * scale + offset), "scaled").color;
+    EXPECT_GE(compare_images(want, got).psnr, psnr);
+    const Estimate e = estimate(other, {0.5 * scale + offset}, EdgeEstimator::March);
+    EXPECT_EQ(e.lowest, 0);
+    EXPECT_EQ(e.highest, 1);
+    EXPECT_GT(e.edges(), 500U);
+}
+
+void expect_no_edges(const VolumePointer& volume, double iso_value) {
+    for (const EdgeEstimator estimator : kEstimators) {
+        const Estimate e = estimate(volume, {iso_value}, estimator);
+        EXPECT_EQ(e.edges(), 0U) << name_of(estimator);
+        EXPECT_LE(e.differing(), 0) << name_of(estimator);
+    }
+}
+
+TEST(EstimationValues, ConstantBelowTheIsoValueShowsNothing) {
+    const auto volume = volume_of({9, 9, 9}, [](const glm::ivec3&) { return 0.25F; });
+    expect_no_edges(volume, 0.5);
+    EXPECT_EQ(middle_of(sound(shot_of(volume), "constant").color, 3).most, 0);
+}
+
+TEST(EstimationValues, ConstantAboveTheIsoValueIsAFullBlock) {
+    const auto volume = volume_of({12, 12, 12}, [](const glm::ivec3&) { return 0.75F; });
+    expect_no_edges(volume, 0.5);
+    const Middle thick = thickness_along_x(shot_of(volume));
+    EXPECT_NEAR(thick.least, 12, 2e-3);
+    EXPECT_NEAR(thick.most, 12, 2e-3);
+}
+
+TEST(EstimationValues, ConstantAtTheIsoValueIsAFullBlock) {
+    const auto volume = volume_of({12, 12, 12}, [](const glm::ivec3&) { return 0.5F; });
+    expect_no_edges(volume, 0.5);
+    const Middle thick = thickness_along_x(shot_of(volume));
+    EXPECT_NEAR(thick.least, 12, 2e-3);
+    EXPECT_NEAR(thick.most, 12, 2e-3);
+}
+
+TEST(EstimationValues, IsoValueAboveTheDataShowsNothing) {
+    expect_no_edges(ball(), 1.5);
+    EXPECT_EQ(middle_of(sound(shot_of(ball(), 1.5), "above").color, 3).most, 0);
+}
+
+TEST(EstimationValues, IsoValueBelowTheDataIsAFullBlock) {
+    expect_no_edges(ball(), -0.5);
+    EXPECT_NEAR(thickness_along_x(shot_of(ball(), -0.5)).mean, 20, 5e-3);
+}
+
+TEST(EstimationValues, IsoValueAtTheLargestSampleLeavesThatVoxel) {
+    // The largest sample alone is at the iso-value or above: one kernel, however it is warped.
+    const auto peak = volume_of({15, 15, 15}, [](const glm::ivec3& v) { return v == glm::ivec3(7) ? 1.0F : 0.0F; });
+    Shot shot = shot_of(peak, 1);
+    expect_as_reference(shot, "a peak", 0.05);
+    EXPECT_GT(sound(shot, "a peak").color.at(16, 16, 3), 0.3F);
+}
+
+TEST(EstimationValues, IsoValueAtTheSmallestSampleIsAFullBlock) {
+    expect_no_edges(changed(ball(), [](float v, const glm::ivec3&) { return v; }), 0);
+    EXPECT_NEAR(thickness_along_x(shot_of(ball(), 0)).mean, 20, 5e-3);
+}
+
+TEST(EstimationValues, AGradientOfOneUlpIsAStepLikeAnyOther) {
+    const float low = 1000, high = std::nextafter(low, 2000.0F);
+    const auto step = volume_of({16, 14, 14}, [](const glm::ivec3& v) { return v.x < 8 ? 0.0F : 1.0F; });
+    const auto ulp = volume_of({16, 14, 14}, [&](const glm::ivec3& v) { return v.x < 8 ? low : high; });
+    const double between = (static_cast<double>(low) + static_cast<double>(high)) / 2;
+    EXPECT_EQ(sound(shot_of(step), "a step").color.pixels, sound(shot_of(ulp, between), "an ulp").color.pixels);
+    EXPECT_EQ(estimate(ulp, {between}, EdgeEstimator::March).differing(), 0);
+}
+
+TEST(EstimationValues, OneUlpInALargeRangeIsNoEdge) {
+    // Below the smallest gradient (method.md): a wobble of an ulp on the iso-value has no direction to follow.
+    const float base = 0.5F, next = std::nextafter(base, 1.0F);
+    const auto wobble = volume_of({16, 16, 16}, [&](const glm::ivec3& v) {
+        if (v == glm::ivec3(0)) return 0.0F;
+        if (v == glm::ivec3(15)) return 1.0F;
+        return (v.x + v.y + v.z) % 2 == 0 ? base : next;
+    });
+    Shot shot = shot_of(wobble, static_cast<double>(next));
+    sound(shot, "a wobble");
+    for (const EdgeEstimator estimator : kEstimators) {
+        const Estimate e = estimate(wobble, {static_cast<double>(next)}, estimator);
+        for (int z = 0; z < 16; ++z)
+            for (int y = 0; y < 16; ++y)
+                for (int x = 0; x < 16; ++x) {
+                    const bool next_to_extremes = x + y + z < 12 || x + y + z > 33;
+                    EXPECT_FALSE(e.at({x, y, z}).has_edge && !next_to_extremes) << x << " " << y << " " << z;
+                }
+    }
+}
+
+TEST(EstimationValues, Of1eMinus30) {
+    expect_the_balls_picture(1e-30, 0, 90);
+}
+TEST(EstimationValues, Of1ePlus30) {
+    expect_the_balls_picture(1e30, 0, 90);
+}
+TEST(EstimationValues, Negative) {
+    expect_the_balls_picture(40, -1024, 70);
+}
+TEST(EstimationValues, OverTheWholeRangeOfFloats) {
+    expect_the_balls_picture(6.8e38, -3.4e38, 90);
+}
+TEST(EstimationValues, SmallChangesOnALargeOffset) {
+    expect_the_balls_picture(4096, 1e6, 60);  // steps of 1/16: 16 bits of value are left
+}
+
+TEST(EstimationValues, Denormal) {
+    // 1e-41 is 7136 steps of the smallest denormal: 13 bits.
+    expect_the_balls_picture(1e-41, 0, 55);
+}
+
+TEST(EstimationValues, ASingleNanIsTheSmallestValue) {
+    const glm::ivec3 where(9, 9, 9);
+    const auto nan = changed(ball(), [&](float v, const glm::ivec3& at) { return at == where ? kNaN : v; });
+    const auto hole =
+        changed(ball(), [&](float v, const glm::ivec3& at) { return at == where ? ball()->min_value : v; });
+    EXPECT_EQ(nan->non_finite_count, 1U);
+    EXPECT_EQ(sound(shot_of(nan), "NaN").color.pixels, sound(shot_of(hole), "hole").color.pixels);
+}
+
+TEST(EstimationValues, ASingleInfinityDoesNotStretchTheRange) {
+    for (const float infinity : {kInfinity, -kInfinity}) {
+        const auto bad =
+            changed(ball(), [&](float v, const glm::ivec3& at) { return at == glm::ivec3(2) ? infinity : v; });
+        EXPECT_EQ(bad->non_finite_count, 1U);
+        EXPECT_EQ(bad->max_value, ball()->max_value);
+        EXPECT_GE(compare_images(sound(shot_of(bad), "infinity").color, sound(shot_of(ball()), "ball").color).psnr, 90);
+    }
+}
+
+TEST(EstimationValues, ASlabOfNanIsCutOut) {
+    const auto nan = changed(ball(), [&](float v, const glm::ivec3& at) { return at.x >= 8 && at.x < 11 ? kNaN : v; });
+    const auto gap =
+        changed(ball(), [&](float v, const glm::ivec3& at) { return at.x >= 8 && at.x < 11 ? ball()->min_value : v; });
+    const Image color = sound(shot_of(nan), "NaN").color;
+    EXPECT_EQ(color.pixels, sound(shot_of(gap), "gap").color.pixels);
+    EXPECT_NEAR(thickness_along_x(shot_of(nan)).most, 2 * 5.3 - 3, 0.5);
+}
+
+TEST(EstimationValues, NothingButNanShowsNothing) {
+    for (const float bad : {kNaN, kInfinity, -kInfinity}) {
+        const auto nothing = volume_of({8, 9, 10}, [&](const glm::ivec3&) { return bad; });
+        EXPECT_EQ(nothing->non_finite_count, 720U);
+        expect_no_edges(nothing, 0.5);
+        EXPECT_EQ(middle_of(sound(shot_of(nothing), "nothing").color, 3).most, 0);
+    }
+}
+
+TEST(EstimationValues, OneFiniteSampleAmongNan) {
+    const auto one = volume_of({9, 9, 9}, [](const glm::ivec3& v) { return v == glm::ivec3(4) ? 3.0F : kNaN; });
+    EXPECT_EQ(one->min_value, 3);
+    EXPECT_EQ(one->max_value, 3);
+    EXPECT_NEAR(thickness_along_x(shot_of(one, 2.5)).mean, 9, 2e-3) << "all become the smallest finite value";
+}
+
+/// Distance of the estimated planes to x = `edge`, the largest over the voxels within reach.
+double plane_error(const VolumePointer& volume, double iso_value, double edge, EdgeEstimator estimator) {
+    const Estimate e = estimate(volume, {iso_value}, estimator);
+    EXPECT_LE(e.differing(), 0.003) << name_of(estimator);
+    double worst = 0;
+    int found = 0;
+    for (int x = 1; x < e.dims.x - 1; ++x) {
+        const auto& voxel = e.at({x, e.dims.y / 2, e.dims.z / 2});
+        if (!voxel.has_edge || std::abs(x - edge) > 1.6) continue;
+        worst = std::max(worst, std::abs(x + voxel.n.x * voxel.D - edge));
+        ++found;
+    }
+    EXPECT_GE(found, 1) << name_of(estimator) << ": no edge at all";
+    return worst;
+}
+
+TEST(EstimationValues, SteepRampOf8BitsIsPlacedWithinAStep) {
+    // 12 levels a voxel: a level is 1/12 of a voxel.
+    const double slope = 12 / 255.0;
+    const auto ramp = volume_of({24, 9, 9}, [&](const glm::ivec3& v) {
+        return static_cast<float>(std::round(std::clamp(0.5 + (v.x - 11.3) * slope, 0.0, 1.0) * 255) / 255);
+    });
+    for (const EdgeEstimator estimator : {EdgeEstimator::Quadratic, EdgeEstimator::March, EdgeEstimator::Cubic})
+        EXPECT_LE(plane_error(ramp, 0.5, 11.3, estimator), 1.0 / 12) << name_of(estimator);
+}
+
+TEST(EstimationValues, FlatRampOf8BitsIsPlacedWithinItsStairs) {
+    // 0.7 levels a voxel: stairs of one and two voxels. The iso-value between two levels is crossed once.
+    const auto ramp = volume_of(
+        {24, 9, 9}, [](const glm::ivec3& v) { return static_cast<float>(std::round(128 + (v.x - 11.3) * 0.7)); });
+    const double iso = 128.5, truth = 11.3 + 0.5 / 0.7;
+    for (const EdgeEstimator estimator : {EdgeEstimator::Quadratic, EdgeEstimator::March, EdgeEstimator::Cubic})
+        EXPECT_LE(plane_error(ramp, iso, truth, estimator), 0.5 / 0.7 + 0.3) << name_of(estimator);
+}
+
+TEST(EstimationValues, BinaryHalfSpaceHasItsEdgeHalfWay) {
+    const auto binary = volume_of({16, 9, 9}, [](const glm::ivec3& v) { return v.x < 8 ? 0.0F : 1.0F; });
+    for (const EdgeEstimator estimator : {EdgeEstimator::March, EdgeEstimator::Cubic})
+        EXPECT_LE(plane_error(binary, 0.5, 7.5, estimator), 0.05) << name_of(estimator);
+    // A parabola through 0, 1, 1 crosses 1/2 an eighth of a voxel from the middle.
+    EXPECT_LE(plane_error(binary, 0.5, 7.5, EdgeEstimator::Quadratic), 0.125);
+    EXPECT_NEAR(thickness_along_x(shot_of(binary)).mean, 8, 0.1);
+}
+
+TEST(EstimationValues, LabelsThatTouchAcrossTwoIsoValues) {
+    // 0 | 2 side by side: both iso-values lie between the same two voxels; 0 | 1 | 2 elsewhere.
+    const auto labels = volume_of({20, 12, 12}, [](const glm::ivec3& v) {
+        if (v.x < 8) return 0.0F;
+        return v.x < 11 && v.y < 6 ? 1.0F : 2.0F;
+    });
+    Shot shot = shot_of(labels);
+    shot.scene.iso_values = {0.5, 1.5};
+    shot.scene.materials = {{}, {{0.2, 0.4, 1}, 0.3}, {{1, 0.8, 0.6}, 3}};
+    expect_as_reference(shot, "labels", 0.02);
+    const Estimate e = estimate(labels, {0.5, 1.5}, EdgeEstimator::March);
+    EXPECT_TRUE(e.at({9, 2, 6}).has_edge);
+    EXPECT_TRUE(e.at({8, 9, 6}).has_edge);
+    EXPECT_NEAR(e.at({8, 9, 6}).D, 0.25, 0.05) << "1.5 lies a quarter of the way back from 2 to 0";
+}
+
+TEST(EstimationValues, Checkerboard) {
+    const auto board =
+        volume_of({12, 12, 12}, [](const glm::ivec3& v) { return ((v.x + v.y + v.z) & 1) == 0 ? 0.0F : 1.0F; });
+    expect_as_reference(shot_of(board), "checkerboard");
+    // Half of the voxels are full: what crosses the whole is as thick as half of it.
+    Shot plain = shot_of(board);
+    plain.settings.edges = EdgeEstimator::Off;
+    EXPECT_NEAR(thickness_along_x(plain).mean, 6, 0.02);
+    EXPECT_NEAR(thickness_along_x(shot_of(board)).mean, 6, 0.06 * 6);
+}
+
+TEST(EstimationValues, Noise) {
+    std::uint32_t random = 20260301;
+    const auto noise = volume_of({16, 16, 16}, [&](const glm::ivec3&) {
+        random = random * 1664525U + 1013904223U;
+        return static_cast<float>(random >> 8U) / 16777216.0F;
+    });
+    expect_as_reference(shot_of(noise), "noise", 0.02, 55);
+    for (const EdgeEstimator estimator : kEstimators) {
+        for (const auto& edge : estimate(noise, {0.5}, estimator).device) {
+            if (!edge.has_edge) continue;
+            ASSERT_NEAR(glm::length(edge.n), 1, 1e-6);
+            ASSERT_GE(edge.D, -0.501);
+            ASSERT_LE(edge.D, 3.21);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat::test
