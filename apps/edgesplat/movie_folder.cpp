@@ -13,6 +13,7 @@
 
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
+#include "engine/fnv1a.h"
 #include "engine/image_file.h"
 #include "footprints/temporary_file.h"
 
@@ -23,14 +24,6 @@ using nlohmann::ordered_json;
 namespace {
 
 constexpr const char* kNote = "movie.json";
-
-/// FNV-1a: a short name for a long text.
-std::string hash_of(const std::string& text) {
-    std::uint64_t hash = 14695981039346656037U;
-    for (const char c : text)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211U;
-    return fmt::format("{:016x}", hash);
-}
 
 /// The names under which two notes differ.
 std::vector<std::string> differences(const ordered_json& a, const ordered_json& b) {
@@ -96,7 +89,8 @@ MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, co
                  folder_.string(), fmt::join(changed, ", "));
         return;
     }
-    const ordered_json note{{"hash", hash_of(edgesplat::json_text(decided_by))}, {"decided_by", decided_by}};
+    const ordered_json note{{"hash", fmt::format("{:016x}", edgesplat::fnv1a(edgesplat::json_text(decided_by)))},
+                            {"decided_by", decided_by}};
     const edgesplat::FileContent content{folder_ / kNote, edgesplat::json_text(note, 2) + "\n"};
     edgesplat::write_files({&content, 1});
 }

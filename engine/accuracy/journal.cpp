@@ -11,6 +11,7 @@
 
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
+#include "engine/fnv1a.h"
 #include "engine/image_file.h"
 #include "footprints/temporary_file.h"
 
@@ -54,10 +55,7 @@ std::string differences(const ordered_json& there, const ordered_json& wanted) {
 }  // namespace
 
 std::string checksum_of(std::string_view bytes) {
-    std::uint64_t hash = 14695981039346656037ULL;
-    for (const char c : bytes)
-        hash = (hash ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-    return fmt::format("{:016x}", hash);
+    return fmt::format("{:016x}", fnv1a(bytes));
 }
 
 Journal::Journal(std::filesystem::path path, const ordered_json& identity, bool restart) : path_(std::move(path)) {

@@ -2,8 +2,10 @@
 
 #include <array>
 #include <fstream>
+#include <string_view>
 #include <system_error>
 
+#include "engine/fnv1a.h"
 #include "footprints/temporary_file.h"
 
 namespace edgesplat::gpu {
@@ -18,17 +20,14 @@ struct Header {
     bool operator==(const Header&) const = default;
 };
 
-std::uint64_t checksum_of(const std::vector<std::uint8_t>& data) {
-    std::uint64_t hash = 0xcbf29ce484222325U;
-    for (const std::uint8_t byte : data)
-        hash = (hash ^ byte) * 0x100000001b3U;
-    return hash;
+std::string_view bytes_of(const std::vector<std::uint8_t>& data) {
+    return {reinterpret_cast<const char*>(data.data()), data.size()};
 }
 
 Header header_of(const std::vector<std::uint8_t>& data) {
     Header header;
     header.bytes = data.size();
-    header.checksum = checksum_of(data);
+    header.checksum = fnv1a(bytes_of(data));
     return header;
 }
 
@@ -55,7 +54,7 @@ bool write_pipeline_cache_file(const fs::path& file, const std::vector<std::uint
     try {
         TemporaryFile out(file);
         out.write({reinterpret_cast<const char*>(&header), sizeof header});
-        out.write({reinterpret_cast<const char*>(data.data()), data.size()});
+        out.write(bytes_of(data));
         out.rename_to_target();
     } catch (const std::system_error&) {
         return false;

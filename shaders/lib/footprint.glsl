@@ -142,8 +142,8 @@ FaceBand face_band(float D, float D2, int faces, FootprintParams params) {
 }
 
 // The warped kernel over the ray's part between z = near and near + side len, on one side of the face at `face`: side = 1 where
-// t is larger there, else -1; `near` is the end nearer to the face. With v = |t - face| / a and w = face + side a g(v), the rational quadratic of edge_warp,
-// w^2 - t^2 = a (g - v) (a (g + v) + 2 side face): no division but that of g.
+// t is larger there, else -1; `near` is the end nearer to the face. With v = |t - face| / a and w = face + side a g(v), the
+// rational quadratic of edge_warp, w^2 - t^2 = a (g - v) (a (g + v) + 2 side face): no division but that of g.
 float edge_piece(Chord c, float near, float len, float side, float face, FaceBand band) {
     float a = band.a;
     float k = band.k;
