@@ -37,11 +37,12 @@ std::vector<Effect> settings_effects() {
          .turn_on = warp,
          .passes = {"1_estimate_edges"},
          .resources = {"edge field"},
+         .resized = {"prepared splats"},
          .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR"},
                        {shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS"},
                        {shader::SPEC_EDGES, "SPEC_EDGES"},
                        {shader::SPEC_SMOOTH, "SPEC_SMOOTH"}},
-         .frame_fields = {"footprint", "support_table", "wall_support"}});
+         .frame_fields = {"footprint", "support_table", "extents"}});
     rows.push_back({.name = "spline edges",
                     .help = "edges are found on the cubic B-spline through the samples",
                     .call = "settings.edges = \"cubic\"; --edges cubic",
@@ -119,7 +120,8 @@ std::vector<Effect> settings_effects() {
                         return fmt::format("sheets are `sliced`, {} voxel apart", r.settings.sheet_spacing);
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.sheets = SheetCut::Sliced; },
-                    .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets"},
+                    .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets",
+                                "prepared splats"},
                     .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}}});
     rows.push_back({.name = "half sheets",
                     .help = "a sheet's colour and depth take half the memory",
@@ -153,7 +155,7 @@ std::vector<Effect> settings_effects() {
                     .base = make_opaque,
                     .passes = {"1a_mark_buried"},
                     .resources = {"buried mask"},
-                    .resized = {"splat list", "sheets of splats", "splat order"},
+                    .resized = {"splat list", "sheets of splats", "splat order", "prepared splats"},
                     .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
                     .scene_fields = {"opaque_mask", "bury_distance"}});
     return rows;

@@ -33,7 +33,7 @@ std::vector<Effect> view_effects() {
                  r.settings.cull_buried = true;
              },
          .resized = {"splat list", "sheets of splats", "splat order", "sort counters", "tiles of splats",
-                     "pairs of sheets", "sheet starts", "chunks of sheets"},
+                     "pairs of sheets", "sheet starts", "chunks of sheets", "prepared splats"},
          .constants = {{shader::SPEC_CLIP_KEEP, "SPEC_CLIP_KEEP"}, {shader::SPEC_CLIP_REMOVE, "SPEC_CLIP_REMOVE"}},
          .frame_fields = {"clip_keep", "clip_remove"},
          .scene_fields = {"clip_keep", "clip_remove"}});
@@ -44,6 +44,7 @@ std::vector<Effect> view_effects() {
                         return r.scene.effects.antialias ? "effects.antialias is true" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.scene.effects.antialias = true; },
+                    .resized = {"prepared splats"},
                     .constants = {{shader::SPEC_ANTIALIAS, "SPEC_ANTIALIAS"}},
                     .frame_fields = {"pixel"}});
     rows.push_back({.name = "samples",

@@ -138,6 +138,8 @@ class Passes {
         if (plan.variant.tiles) {
             add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
                 {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});
+            add(name, "4_prepare_splats", kRates.draw_entry * entries,
+                {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "5_draw_tiles", drawing,
                 {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_}))});
         } else {

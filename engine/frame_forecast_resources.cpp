@@ -7,6 +7,7 @@
 #include "engine/frame_resources.h"
 #include "engine/frame_tiles.h"
 #include "engine/passes/2_collect_splats.h"
+#include "engine/passes/4_prepare_splats.h"
 #include "engine/renderer_state.h"
 #include "shaders/shared/occlusion_params.h"
 
@@ -87,6 +88,7 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     add(vk::Format::eR32Sfloat, true, false, Usage::eStorage);
     add(vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     add(vk::Format::eR8Uint, true, false, Usage::eStorage);
+    add(vk::Format::eR32G32B32A32Sfloat, false, false, Usage::eStorage);
     add(vk::Format::eR16Sfloat, false, true, Usage::eSampled);
     add(vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
@@ -209,6 +211,9 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5")));
     out.push_back(growing(
         buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word, "(pairs at once) splat, sheet", "4", "5")));
+    const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
+    out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),
+                                "(entries at once) place, kernel, colour", "4", "5")));
     out.push_back(growing(buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4")));
     const glm::u64vec2 size(plan.params.size);
     out.push_back(growing(buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5")));

@@ -163,12 +163,23 @@ void plan_edge_weights(const Scene& scene, const Settings& settings, shader::Sce
 }  // namespace
 
 SupportSpheres support_spheres(const Settings& drawn) {
-    if (!draws_warped(drawn)) return {{}, 0, kKernelRadius};
+    if (!draws_warped(drawn)) return {{}, {}, kKernelRadius};
     const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
     SupportSpheres out;
-    out.by_distance = drawn.edge_shape == EdgeShape::Curved ? covering_supports_of_curved(band, shader::SUPPORT_STEPS)
-                                                            : covering_supports(band, shader::SUPPORT_STEPS);
-    out.wall = out.farthest = largest_support_radius(band);
+    const bool plane = drawn.edge_shape != EdgeShape::Curved;
+    out.by_distance = plane ? covering_supports(band, shader::SUPPORT_STEPS)
+                            : covering_supports_of_curved(band, shader::SUPPORT_STEPS);
+    // Tables and short cuts leave something where the kernel they stand for is zero.
+    if (plane && drawn.warp == WarpFamily::Edge && drawn.footprints == FootprintMode::Procedural) {
+        out.extents = covering_extents(band, shader::SUPPORT_STEPS, shader::EXTENT_DIRECTIONS);
+    } else {
+        for (const Support& s : out.by_distance)
+            out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS,
+                               static_cast<float>(std::abs(s.shift) + s.radius));
+    }
+    out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(kKernelRadius));
+    out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS, 0.0F);
+    out.farthest = largest_support_radius(band);
     for (const Support& s : out.by_distance)
         out.farthest = std::max(out.farthest, std::abs(s.shift) + s.radius);
     return out;

@@ -77,7 +77,7 @@ std::uint32_t tile_blocks(const glm::ivec2& tiles);
 /// Spheres that hold the kernels of some settings.
 struct SupportSpheres {
     std::vector<Support> by_distance;  ///< SUPPORT_STEPS cells of |D| in [0, R + a]; empty without a warp
-    double wall = 0;                   ///< radius for a kernel with two faces, voxels
+    std::vector<float> extents;        ///< FrameParams::extents
     double farthest = 0;               ///< how far from its voxel any kernel reaches
 };
 SupportSpheres support_spheres(const Settings& drawn);

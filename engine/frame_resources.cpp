@@ -21,8 +21,8 @@ gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool vol
 
 Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : device_(&device) {
     const std::array sizes{
-        vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, 4),
-        vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_SCENE - 4),
+        vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, shader::BIND_SHEETS),
+        vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_SCENE - shader::BIND_SHEETS),
         vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, shader::BIND_COUNT - shader::BIND_SCENE)};
     pool_ = vk::raii::DescriptorPool(device.handle(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
     const auto layout = pipelines.set_layout();
@@ -35,13 +35,14 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_scalar_ = placeholder(device, vk::Format::eR32Sfloat, true, false, Usage::eStorage);
     no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
+    no_records_ = placeholder(device, vk::Format::eR32G32B32A32Sfloat, false, false, Usage::eStorage);
     no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
     no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder block");
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 
 void Bindings::prepare(gpu::Commands& commands) const {
-    commands.prepare({&no_scalar_, &no_edges_, &no_mask_, &no_array_, &no_picture_});
+    commands.prepare({&no_scalar_, &no_edges_, &no_mask_, &no_records_, &no_array_, &no_picture_});
 }
 
 void Bindings::write(const VolumeResources& volume, const FootprintResources& footprints,
@@ -56,6 +57,7 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
                            Slot{shader::BIND_COEFFICIENTS, volume.coefficients, no_scalar_, {}},
                            Slot{shader::BIND_EDGES, volume.edges, no_edges_, {}},
                            Slot{shader::BIND_BURIED, volume.buried, no_mask_, {}},
+                           Slot{shader::BIND_PREPARED, targets.prepared, no_records_, {}},
                            Slot{shader::BIND_SHEETS, targets.sheets, no_array_, *nearest_},
                            Slot{shader::BIND_ACCUMULATED, targets.accumulated, no_picture_, *nearest_},
                            Slot{shader::BIND_TABLE, footprints.table, no_array_, *linear_}};

@@ -35,9 +35,9 @@ struct VolumeResources {
 struct FootprintResources {
     gpu::GpuImage table;  ///< (layers, height, width) r16f; host -> 5, modes `table` and `table-lerp` of family `edge`
     shader::FootprintParams params{};
-    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};  ///< FrameParams::support_table
-    float wall_support = 0;
-    double farthest_reach = 0;  ///< of any kernel, voxels
+    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};                            ///< FrameParams::support_table
+    std::array<float, sizeof(shader::FrameParams::extents) / sizeof(float)> extents{};  ///< FrameParams::extents
+    double farthest_reach = 0;                                                          ///< of any kernel, voxels
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes. A picture whose sheets are layers
@@ -46,21 +46,23 @@ struct TargetResources {
     gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f or rgba16f; 5 -> 6
     gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
     gpu::GpuImage accumulated;  ///< (height, width) rgba32f or rgba16f; 6 -> 5a, 7
-    gpu::Buffer sheet_of;       ///< (splat_count) uint; 3 -> 4, 5
-    gpu::Buffer order;          ///< (splat_count * sheets_per_splat) uint; 4 -> 5
-    gpu::Buffer counters;       ///< (sheet_count, SORT_BLOCKS) uint; 4
-    gpu::Buffer groups;         ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
-    gpu::Buffer draws;          ///< (group_count) DrawCommand; 4 -> 5
-    gpu::Buffer drawn;          ///< (4) uint, mapped: FrameParams::drawn; 4, 5 -> host
-    gpu::Buffer frame;          ///< FrameParams, mapped; host -> 3..7
-    gpu::Buffer indices;        ///< quad_indices(); host -> 5
-    gpu::Buffer tile_rects;     ///< (splat_count) uvec2: tiles each splat touches; 3 -> 4
-    gpu::Buffer sheet_pairs;    ///< (sheet_count) uint, mapped: pairs of splats and tiles; 3 -> host
+    gpu::GpuImage prepared;   ///< rgba32f, PREPARED_ROW wide: records of a chunk's splats (prepared_splat.glsl); 4 -> 5
+    gpu::Buffer sheet_of;     ///< (splat_count) uint; 3 -> 4, 5
+    gpu::Buffer order;        ///< (splat_count * sheets_per_splat) uint; 4 -> 5
+    gpu::Buffer counters;     ///< (sheet_count, SORT_BLOCKS) uint; 4
+    gpu::Buffer groups;       ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
+    gpu::Buffer draws;        ///< (group_count) DrawCommand; 4 -> 5
+    gpu::Buffer drawn;        ///< (4) uint, mapped: FrameParams::drawn; 4, 5 -> host
+    gpu::Buffer frame;        ///< FrameParams, mapped; host -> 3..7
+    gpu::Buffer indices;      ///< quad_indices(); host -> 5
+    gpu::Buffer tile_rects;   ///< (splat_count) uvec2: tiles each splat touches; 3 -> 4
+    gpu::Buffer sheet_pairs;  ///< (sheet_count) uint, mapped: pairs of splats and tiles; 3 -> host
     gpu::Buffer sheet_starts;   ///< (sheet_count + 1) uint, mapped: into `order`; 4 -> 4, host
     gpu::Buffer chunks;         ///< (sheet_count) uvec2, mapped: parts of `order`; host -> 4
     gpu::Buffer tile_counters;  ///< (tiles, tile_blocks) uint; 4
     gpu::Buffer tile_ranges;    ///< (tiles) uvec2: parts of tile_entries; 4 -> 5
-    gpu::Buffer tile_entries;   ///< (pairs of the largest chunk) uvec2: splat, sheet; 4 -> 5
+    gpu::Buffer tile_order;     ///< (tiles) uint, mapped: those with a list, longest first; host -> 5; with rounds only
+    gpu::Buffer tile_entries;   ///< (pairs of the largest chunk) uvec2: place in `order`, sheet; 4 -> 5
     gpu::Buffer tile_closed;    ///< (tiles) uint: pixels that take no more; 5 -> 4
     gpu::Buffer tile_sheets;    ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
     gpu::Buffer output;         ///< (height, width) vec4, mapped; 7 -> host
@@ -84,7 +86,7 @@ class Bindings {
     vk::raii::DescriptorPool pool_ = nullptr;
     vk::raii::DescriptorSet set_ = nullptr;
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
-    gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_array_, no_picture_;
+    gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;
 };
 

@@ -1,9 +1,12 @@
 #include "engine/frame_tiles.h"
 
 #include <algorithm>
+#include <functional>
+#include <numeric>
 
 #include "engine/frame.h"
 #include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_prepare_splats.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/4_sort_tiles.h"
 #include "engine/passes/7_resolve.h"
@@ -16,19 +19,22 @@ std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
     return std::min(most, std::max(256 * count, std::uint64_t{1} << 14U));
 }
 
-Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit) {
+Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit,
+                   std::uint64_t entries) {
     Chunks chunks;
     std::uint64_t sum = 0;
     std::uint32_t begin = starts.front();
     const auto close = [&](std::uint32_t end) {
         if (end > begin) chunks.parts.emplace_back(begin, end);
+        if (end - begin <= shader::PREPARED_ENTRIES)
+            chunks.most_prepared = std::max<std::uint64_t>(chunks.most_prepared, end - begin);
         chunks.most_pairs = std::max(chunks.most_pairs, sum);
         begin = end;
         chunks.pairs += sum;
         sum = 0;
     };
     for (std::size_t sheet = 0; sheet < pairs.size(); ++sheet) {
-        if (sum > 0 && sum + pairs[sheet] > limit) close(starts[sheet]);
+        if (sum > 0 && (sum + pairs[sheet] > limit || starts[sheet + 1] - begin > entries)) close(starts[sheet]);
         sum += pairs[sheet];
     }
     close(starts.back());
@@ -74,6 +80,45 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
     return chunks;
 }
 
+namespace {
+
+/// Tiles by the length of their lists, so that a round goes to those alone that it has something for.
+class TileOrder {
+  public:
+    TileOrder(const shader::FrameParams& p, const TargetResources& targets, bool rounds)
+        : count_(static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y)) {
+        if (!rounds) return;
+        ranges_ = targets.tile_ranges.mapped<glm::uvec2>(count_);
+        order_ = targets.tile_order.mapped<std::uint32_t>(count_);
+        listed_ = 0;
+    }
+
+    /// After a chunk's lists were made.
+    void sort() {
+        std::iota(order_.begin(), order_.end(), 0U);
+        const auto empty = std::ranges::partition(order_, [&](std::uint32_t tile) { return length(tile) > 0; });
+        listed_ = order_.size() - empty.size();
+        std::ranges::sort(order_.first(listed_), std::greater{}, [&](std::uint32_t tile) { return length(tile); });
+    }
+
+    /// Tiles whose lists go on in that round of TILE_ROUND entries: the first so many.
+    std::size_t in_round(std::uint32_t round) const {
+        if (order_.empty()) return count_;
+        const auto some = order_.first(listed_);
+        const auto done = std::ranges::lower_bound(some, round * shader::TILE_ROUND, std::greater{},
+                                                   [&](std::uint32_t tile) { return length(tile); });
+        return static_cast<std::size_t>(done - some.begin());
+    }
+
+  private:
+    std::uint32_t length(std::uint32_t tile) const { return ranges_[tile].y - ranges_[tile].x; }
+    std::size_t count_, listed_ = 0;
+    std::span<const glm::uvec2> ranges_;
+    std::span<std::uint32_t> order_;
+};
+
+}  // namespace
+
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between) {
     const auto& p = plan.params;
@@ -86,9 +131,20 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
         commands.span("4_sort_tiles",
                       [&] { passes::sort_tiles(commands, targets.tile_counters, p.tile_blocks, chunk, steps); });
     };
-    const auto draw = [&](std::uint32_t round) {
+    TileOrder order(p, targets, how.rounds);
+    // A sheet of very many splats is drawn from the splats themselves.
+    const auto entries = [&](std::uint32_t chunk) { return parts[chunk].y - parts[chunk].x; };
+    const auto is_prepared = [&](std::uint32_t chunk) { return entries(chunk) <= shader::PREPARED_ENTRIES; };
+    const auto prepare = [&](std::uint32_t chunk) {
+        if (!is_prepared(chunk)) return;
+        commands.span("4_prepare_splats",
+                      [&] { passes::prepare_splats(commands, plan.variant, chunk, entries(chunk)); });
+    };
+    const auto draw = [&](std::uint32_t chunk, std::uint32_t round) {
+        passes::TileDraw of_chunk = how;
+        of_chunk.prepared = is_prepared(chunk);
         commands.span("5_draw_tiles",
-                      [&] { passes::draw_tiles(commands, plan.variant, plan.params.tiles, how, round); });
+                      [&] { passes::draw_tiles(commands, plan.variant, order.in_round(round), of_chunk, round); });
     };
     const auto resolve = [&] {
         if (how.part) return;
@@ -99,30 +155,32 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
         commands.run([&] {
             for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
                 sort(chunk);
-                draw(0);
+                prepare(chunk);
+                draw(chunk, 0);
             }
             resolve();
         });
         return commands.span_times();
     }
     std::vector<PassTime> times;
-    std::uint32_t longest = 0;
     for (std::uint32_t chunk = 0; chunk <= chunks; ++chunk) {
         std::uint32_t round = 0;
-        for (; between && round * shader::TILE_ROUND < longest; ++round) {
-            commands.run([&] { draw(round); });
+        for (; between && order.in_round(round) > 0; ++round) {
+            commands.run([&] { draw(chunk - 1, round); });
             add_times(times, commands.span_times());
             between();
         }
         commands.run([&] {
-            for (; round * shader::TILE_ROUND < longest; ++round)
-                draw(round);
-            if (chunk < chunks)
+            for (; order.in_round(round) > 0; ++round)
+                draw(chunk - 1, round);
+            if (chunk < chunks) {
                 sort(chunk);
-            else
+                prepare(chunk);
+            } else {
                 resolve();
+            }
         });
-        longest = targets.drawn.mapped<std::uint32_t>(4)[1];
+        order.sort();
         add_times(times, commands.span_times());
     }
     return times;

@@ -105,17 +105,16 @@ void RendererState::collect_anew(const CollectionPlan& wanted) {
 }
 
 void RendererState::choose_supports(const Settings& settings) {
-    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
-    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
-    if (draws_warped(settings) && (band_in_use != band || curved_in_use != curved)) {
-        const SupportSpheres spheres = support_spheres(settings);
-        std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
-                               [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-        footprint_resources.wall_support = static_cast<float>(spheres.wall);
-        footprint_resources.farthest_reach = spheres.farthest;
-        band_in_use = band;
-        curved_in_use = curved;
-    }
+    if (!draws_warped(settings)) return;
+    const SupportsMadeFor wanted{
+        {settings.edge_half_width, settings.edge_strength}, settings.edge_shape, settings.warp, settings.footprints};
+    if (supports_made_for == wanted) return;
+    const SupportSpheres spheres = support_spheres(settings);
+    std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
+                           [](const Support& s) { return glm::vec2(s.shift, s.radius); });
+    std::ranges::copy(spheres.extents, footprint_resources.extents.begin());
+    footprint_resources.farthest_reach = spheres.farthest;
+    supports_made_for = wanted;
 }
 
 void RendererState::release_unused(const Settings& drawn) {

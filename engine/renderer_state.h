@@ -152,9 +152,15 @@ struct RendererState : DeviceState, SplatSet {
 
     std::optional<EdgeBand> table_band;  ///< what the footprint table was made for
     FootprintTableSize table_texels;
-    bool curved_in_use = false;
-    std::optional<EdgeBand> band_in_use;  ///< what the support spheres were made for
-    FramePlan plan;                       ///< of the last draw
+    struct SupportsMadeFor {
+        EdgeBand band;
+        EdgeShape shape;
+        WarpFamily warp;
+        FootprintMode footprints;
+        bool operator==(const SupportsMadeFor&) const = default;
+    };
+    std::optional<SupportsMadeFor> supports_made_for;
+    FramePlan plan;  ///< of the last draw
     std::vector<PassTime> collection_times;
     std::vector<PassTime> draw_times;                            ///< of the last draw
     PartExchange* exchange = nullptr;                            ///< see Renderer::divide_sheets

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/passes/4_prepare_splats.h"
 #include "engine/renderer_state.h"
 
 namespace edgesplat {
@@ -53,7 +54,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
         provide_layers(plan_in_use);
     p.footprint = footprint_resources.params;
     std::ranges::copy(footprint_resources.supports, p.support_table);
-    p.wall_support = footprint_resources.wall_support;
+    std::ranges::copy(footprint_resources.extents, p.extents);
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
     bindings.write(volume_resources, footprint_resources, targets);
 }
@@ -63,8 +64,9 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
     const auto layers = static_cast<int>(p.sheets_per_group);
     for (gpu::Buffer* unused :
          {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
-          &targets.tile_ranges, &targets.tile_entries, &targets.tile_closed, &targets.tile_sheets})
+          &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_closed, &targets.tile_sheets})
         *unused = {};
+    targets.prepared = {};
     if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
         !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
         !has_shape(targets.accumulated, plan_in_use.accumulated_format, p.size, 1)) {
@@ -113,7 +115,10 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
     grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Host, "sheet starts");
     grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
-    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Device, "tile ranges");
+    // The host sees which tiles a round is for.
+    const bool rounds = device.is_software();
+    grow(device, targets.tile_ranges, tiles * 2 * kWord, rounds ? Place::Host : Place::Device, "tile ranges");
+    if (rounds) grow(device, targets.tile_order, tiles * kWord, Place::Host, "tile order");
     grow(device, targets.tile_entries, chunk_pairs(p.tiles) * 2 * kWord, Place::Device, "tile entries");
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
@@ -124,6 +129,7 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
     p.chunks = targets.chunks.address();
     p.tile_counters = targets.tile_counters.address();
     p.tile_ranges = targets.tile_ranges.address();
+    p.tile_order = targets.tile_order ? targets.tile_order.address() : 0;
     p.tile_entries = targets.tile_entries.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_sheets = targets.tile_sheets.address();
@@ -131,6 +137,14 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
 
 void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_entries, chunks.most_pairs * 2 * kWord, Place::Device, "tile entries");
+    const std::uint32_t slots = passes::prepared_slots(chunks.most_prepared);
+    const gpu::ImageShape records = passes::prepared_shape(plan.variant, slots);
+    if (!targets.prepared || targets.prepared.shape().size.y < records.size.y) {
+        targets.prepared = {};
+        targets.prepared = gpu::GpuImage(device, records, "prepared splats");
+        commands.run([&] { commands.prepare({&targets.prepared}); });
+        bindings.write(volume_resources, footprint_resources, targets);
+    }
     auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
@@ -146,6 +160,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     p.tile_counters = targets.tile_counters.address();
     p.tile_entries = targets.tile_entries.address();
+    p.prepared_mask = slots - 1;
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
 }
 

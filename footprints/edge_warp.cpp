@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "footprints/kernel.h"
@@ -143,7 +144,7 @@ std::vector<Support> warped_support_table(const EdgeBand& band, int entries) {
 
 std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
     if (cells < 1) throw std::invalid_argument("covering_supports: cells must be at least 1");
-    constexpr int kPerCell = 16;
+    constexpr int kPerCell = 4;
     const double step = (kKernelRadius + band.half_width) / (cells * kPerCell);
     std::vector<Support> spheres;
     for (int i = 0; i < cells; ++i) {
@@ -163,6 +164,36 @@ std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
         spheres.push_back(cover);
     }
     return spheres;
+}
+
+std::vector<float> covering_extents(const EdgeBand& band, int cells, int directions) {
+    if (cells < 1 || directions < 1)
+        throw std::invalid_argument("covering_extents: cells and directions must be at least 1");
+    constexpr int kPerCell = 4, kRims = 96;
+    const double R = kKernelRadius, step = (R + band.half_width) / (cells * kPerCell);
+    // The kernel's ball as discs across n, evenly spaced in angle: between two of them it bulges, between two distances
+    // they move.
+    const double margin = 2e-3 + step / 2;
+    std::vector<float> table;
+    for (int cell = 0; cell < cells; ++cell) {
+        std::vector<double> row(static_cast<std::size_t>(directions), 0.0);
+        for (int i = 0; i <= kRims * (kPerCell + 1); ++i) {
+            const Edge edge{step * (cell * kPerCell + i % (kPerCell + 1)), band};
+            const double angle = std::numbers::pi * (i / (kPerCell + 1)) / kRims;
+            // t c + e s is largest where c = t / |(t, e)|.
+            const double t = unwarped_coordinate(R * std::cos(angle), edge), e = R * std::sin(angle);
+            const double best = t / std::max(std::hypot(t, e), 1e-12);
+            for (int direction = 0; direction < directions; ++direction) {
+                const double c =
+                    std::clamp(best, 2.0 * direction / directions - 1, 2.0 * (direction + 1) / directions - 1);
+                double& extent = row[static_cast<std::size_t>(direction)];
+                extent = std::max(extent, t * c + e * std::sqrt(std::max(1 - c * c, 0.0)));
+            }
+        }
+        for (const double extent : row)
+            table.push_back(static_cast<float>(extent + margin));
+    }
+    return table;
 }
 
 std::vector<Support> covering_supports_of_curved(const EdgeBand& band, int cells) {

@@ -2,6 +2,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/tile_entries.glsl"
+#include "shaders/lib/sheet_of_entry.glsl"
 
 void main() {
     Block block = block_of_invocation();
@@ -9,16 +10,13 @@ void main() {
     UintsRef starts = UintsRef(params.frame.sheet_starts);
     PairsRef entries = PairsRef(params.frame.tile_entries);
     Pairs pairs = begin_pairs(block, 1u);
-    // The last sheet that begins at or before the entry.
-    uint sheet = 0u;
-    for (uint step = 1u << 16; step > 0u; step >>= 1)
-        sheet += sheet + step < params.frame.sheet_count && starts.at[min(sheet + step, params.frame.sheet_count)] <= pairs.entry ? step : 0u;
+    uint sheet = sheet_of_entry(pairs.entry);
     for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
         while (starts.at[sheet + 1u] <= pairs.entry) ++sheet;
         uvec2 at = tile_of(pairs);
         uint tile = at.y * uint(params.frame.tiles.x) + at.x;
         if (!is_closed(at.x, at.y))
-            entries.at[counters.at[tile * params.frame.tile_blocks + block.column]++] = uvec2(pairs.number, sheet);
+            entries.at[counters.at[tile * params.frame.tile_blocks + block.column]++] = uvec2(pairs.entry, sheet);
         next_pair(pairs, block);
     }
     end_pairs(pairs, block, 1u);

@@ -26,8 +26,10 @@ layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
+layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(binding = BIND_TABLE) uniform sampler2DArray table;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
@@ -44,8 +46,8 @@ uvec2 number_material;
 vec4 filtered;
 #define CLIP_PARAMS params.frame
 #include "shaders/lib/footprint.glsl"
+#include "shaders/lib/prepared_splat.glsl"
 FaceBand band;
-const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
 #define FACE_BAND(d, d2, faces) band
 #include "shaders/lib/splat_value.glsl"
 #include "shaders/lib/fold_sheet.glsl"
@@ -64,6 +66,7 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
 void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
+    if (ROUNDS == 1u) tile = UintsRef(params.frame.tile_order).at[tile];
     uvec2 range = PairsRef(params.frame.tile_ranges).at[tile];
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + draw_round * TILE_ROUND, min(range.x + (draw_round + 1u) * TILE_ROUND, range.y));
@@ -87,9 +90,11 @@ void main() {
         float way_length = length(way);
         vec3 u = way / way_length;
         float mm = length(params.frame.index_to_world * u);
-        // The subgroup's pixels look along `middle`, or `spread` off it.
+        // The subgroup's pixels look along `middle`, or up to `spread` off it along two axes across.
         vec3 middle = normalize(subgroupAdd(u));
-        float spread = 1.01 * subgroupMax(length(u - middle)) + 1e-6;
+        vec3 aside = normalize(params.frame.ray_x - dot(params.frame.ray_x, middle) * middle), upward = cross(middle, aside);
+        vec3 astray = u / dot(u, middle);
+        vec2 spread = 1.01 * vec2(subgroupMax(abs(dot(astray, aside))), subgroupMax(abs(dot(astray, upward)))) + 1e-6;
 
         normal_distance = vec4(0.0);
         PixelsRef unfinished = PixelsRef(params.frame.tile_sheets);
@@ -104,29 +109,18 @@ void main() {
         for (uint base = range.x; base < range.y && subgroupAny(open); base += gl_SubgroupSize) {
             uint mine = base + gl_SubgroupInvocationID;
             uvec2 entry = PairsRef(params.frame.tile_entries).at[min(mine, range.y - 1u)];
-            Splat splat = SplatsRef(params.frame.splats).at[entry.x];
-            Edge e = unpack_edge(splat.normal, splat.edge);
-            Projection p = place_splat(splat.voxel, e);
-            vec2 depths = vec2(0.0);
-            if (SLICED == 1u) {
-                float near = params.frame.sheet_zero + float(entry.y) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
-                depths = vec2(near, near + params.frame.sheet_thickness);
-                cut_support(p, depths);
-            }
-            SplatInputs s = splat_inputs(entry.x, splat, e, p, depths);
-            vec3 centre = s.from_eye + p.centre;
-            float along = dot(centre, middle), far = length(centre);
-            float reach = reach_across(p) + spread * far;
-            bool touches = mine < range.y && length(centre - along * middle) <= reach && along > -reach;
-
-            // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
-            bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
-            float plane = at_eye ? params.frame.near_depth : p.view.z;
-            vec2 toward = p.view.xy / p.view.z;
-            vec3 start = at_eye ? plane * params.frame.ray_z - s.from_eye : -plane * (toward.x * params.frame.ray_x + toward.y * params.frame.ray_y);
-
-            FaceBand own_band;
-            if (BANDS) own_band = face_band(e.d, s.shape.x, footprint_faces(e.d, s.shape.x, params.frame.footprint), params.frame.footprint);
+            PreparedSplat s;
+            if (PREPARED == 1u) load_place(entry.x, s);
+            else s = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
+            // From the support's centre to the rays: how far off the nearest of them is, and how far the support reaches that way.
+            float along = dot(s.centre, middle);
+            vec3 away = along * middle - s.centre;
+            float apart = length(away);
+            away /= max(apart, 1e-6);
+            apart -= (abs(dot(away, aside)) * spread.x + abs(dot(away, upward)) * spread.y) * max(along + s.around, 0.0);
+            float reach = s.around;
+            if (!SUPPORT_IS_SPHERE) reach = support_towards(s.extents, dot(away, s.inputs.normal_distance.xyz));
+            bool touches = mine < range.y && along > -s.around && apart <= reach;
 
             uvec4 hits = subgroupBallot(touches);
             for (uint word = 0u; word * 32u < gl_SubgroupSize; ++word)
@@ -138,38 +132,32 @@ void main() {
                     sheet_sum = vec4(0.0);
                     current = sheet;
                 }
-                color_sigma = subgroupBroadcast(s.color_sigma, lane);
-                if (FOOTPRINTS != ISOTROPIC) normal_distance = subgroupBroadcast(s.normal_distance, lane);
-                float curvature = 0.0;
-                vec2 cut = vec2(0.0);
-                if (CURVED == 1u) curvature = subgroupBroadcast(s.shape.y, lane);
-                if (SLICED == 1u) cut = subgroupBroadcast(s.shape.zw, lane);
-                shape = vec4(FOOTPRINTS != ISOTROPIC ? subgroupBroadcast(s.shape.x, lane) : -1.0, curvature, cut);
+                // All load the same record: on lavapipe handing its numbers over one by one takes longer.
+                uint drawn = subgroupBroadcast(entry.x, lane);
+                PreparedSplat h;
+                if (PREPARED == 1u) load_kernel(drawn, h);
+                else h = prepared_splat(UintsRef(params.frame.order).at[drawn], sheet);
+                color_sigma = h.inputs.color_sigma;
+                normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
+                shape = vec4(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, CURVED == 1u ? h.inputs.shape.y : 0.0,
+                             SLICED == 1u ? h.inputs.shape.zw : vec2(0.0));
+                if (BANDS) band = h.band;
                 if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-                    from_eye = subgroupBroadcast(s.from_eye, lane);
-                    matter = subgroupBroadcast(s.matter, lane);
-                    number_material = subgroupBroadcast(s.number_material, lane);
+                    from_eye = h.inputs.from_eye;
+                    matter = h.inputs.matter;
+                    number_material = h.inputs.number_material;
                 }
-                if (BANDS) {
-                    band.a = subgroupBroadcast(own_band.a, lane);
-                    band.k = subgroupBroadcast(own_band.k, lane);
-                    band.inverse_a = subgroupBroadcast(own_band.inverse_a, lane);
-                    band.first = subgroupBroadcast(own_band.first, lane);
-                    band.last = subgroupBroadcast(own_band.last, lane);
-                }
-                float at_plane = subgroupBroadcast(plane, lane);
-                vec3 offset = subgroupBroadcast(start, lane) + at_plane * across;
+                vec3 offset = h.start + h.plane * across;
                 if (ANTIALIAS == 1u) {
-                    from_eye = subgroupBroadcast(s.from_eye, lane);
-                    filtered = subgroupBroadcast(s.filtered, lane);
-                    pixels = (slope - subgroupBroadcast(toward, lane)) / params.frame.pixel;
+                    filtered = h.inputs.filtered;
+                    pixels = (slope - h.slopes) / params.frame.pixel;
                 }
                 if (COUNT == 1u) {
                     ++evaluated;
                     shaded += open ? 1u : 0u;
                 }
                 float beyond = dot(offset, u);
-                sheet_sum += splat_value(offset - beyond * u, u, at_plane * way_length - beyond, mm);
+                sheet_sum += splat_value(offset - beyond * u, u, h.plane * way_length - beyond, mm);
             }
         }
         // What the next round may go on with is the sheet of the last entry, whether or not it was here.

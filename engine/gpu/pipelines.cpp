@@ -57,7 +57,7 @@ Pipelines::Pipelines(const Device& device, const std::filesystem::path& cache_fo
         vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
     std::array<vk::DescriptorSetLayoutBinding, shader::BIND_COUNT> bindings;
     for (std::uint32_t i = 0; i < shader::BIND_COUNT; ++i) {
-        const auto type = i <= shader::BIND_BURIED ? Type::eStorageImage
+        const auto type = i < shader::BIND_SHEETS  ? Type::eStorageImage
                           : i < shader::BIND_SCENE ? Type::eCombinedImageSampler
                                                    : Type::eUniformBuffer;
         bindings.at(i) = {i, type, 1, stages};

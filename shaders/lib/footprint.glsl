@@ -55,14 +55,19 @@ float kernel_chord(float rho2, float z) {
     float half_chord = KERNEL_R * sqrt(w);
     float s = clamp(z / max(half_chord, 1e-6), -1.0, 1.0);
     float c = 1.0 - s * s;
-    float i1 = s * (1.0 - s * s / 3.0);
-    float c2 = c * c;
-    float i2 = (s * c2 + 4.0 * i1) / 5.0;
-    float i3 = (s * c2 * c + 6.0 * i2) / 7.0;
-    float i4 = (s * c2 * c2 + 8.0 * i3) / 9.0;
-    float i5 = (s * c2 * c2 * c + 10.0 * i4) / 11.0;
-    float i6 = (s * c2 * c2 * c2 + 12.0 * i5) / 13.0;
-    float i7 = (s * c2 * c2 * c2 * c + 14.0 * i6) / 15.0;
+    float i1 = s - s * s * s * (1.0 / 3.0);
+    float c2 = s * c * c;
+    float c3 = c2 * c;
+    float c4 = c3 * c;
+    float c5 = c4 * c;
+    float c6 = c5 * c;
+    float c7 = c6 * c;
+    float i2 = c2 * (1.0 / 5.0) + i1 * (4.0 / 5.0);
+    float i3 = c3 * (1.0 / 7.0) + i2 * (6.0 / 7.0);
+    float i4 = c4 * (1.0 / 9.0) + i3 * (8.0 / 9.0);
+    float i5 = c5 * (1.0 / 11.0) + i4 * (10.0 / 11.0);
+    float i6 = c6 * (1.0 / 13.0) + i5 * (12.0 / 13.0);
+    float i7 = c7 * (1.0 / 15.0) + i6 * (14.0 / 15.0);
     return half_chord * w * w * (0.0173624837 * i2 + w * (-0.0404017909 * i3 + w * (0.531403221 * i4 +
            w * (-0.680940898 * i5 + w * (1.37803587 * i6 + w * -0.611612954 * i7)))));
 }
@@ -130,34 +135,47 @@ struct FaceBand {
 float face_first(float face, float a, float k) { return max(face - a, face + edge_warp_inverse(-KERNEL_R - face, a, k)); }
 float face_last(float face, float a, float k) { return min(face + a, face + edge_warp_inverse(KERNEL_R - face, a, k)); }
 
-FaceBand face_band(float D, float D2, int faces, FootprintParams params) {
+// All but where it is integrated.
+FaceBand face_widths(float D, float D2, int faces, FootprintParams params) {
     float thickness = D + D2;
     FaceBand band;
     band.a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
     band.k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
     band.inverse_a = 1.0 / band.a;
+    band.first = 0.0;
+    band.last = 0.0;
+    return band;
+}
+
+FaceBand face_band(float D, float D2, int faces, FootprintParams params) {
+    FaceBand band = face_widths(D, D2, faces, params);
     band.first = face_first(D, band.a, band.k);
     band.last = face_last(D, band.a, band.k);
     return band;
 }
 
 // The warped kernel over the ray's part between z = near and near + side len, on one side of the face at `face`: side = 1 where
-// t is larger there, else -1; `near` is the end nearer to the face. With v = |t - face| / a and w = face + side a g(v), the
-// rational quadratic of edge_warp, w^2 - t^2 = a (g - v) (a (g + v) + 2 side face): no division but that of g.
+// t is larger there, else -1; `near` is the end nearer to the face. With x = |z - near| / len the squared distance from the axis
+// along n, z^2 + rho^2 - t^2, is a quadratic in x, and with v = |t - face| / a the warped coordinate is w = face + side a g(v), g
+// the rational quadratic of edge_warp: no division but that of g. All in radii of the kernel.
 float edge_piece(Chord c, float near, float len, float side, float face, FaceBand band) {
-    float a = band.a;
-    float k = band.k;
-    float v0 = side * (c.pn + near * c.un - face) * band.inverse_a;
-    float dv = len * c.un * band.inverse_a;
     float reach = side * len;
-    float twice_face = 2.0 * side * face;
+    float t = c.pn + near * c.un;
+    float v0 = side * (t - face) * band.inverse_a;
+    float dv = len * c.un * band.inverse_a;
+    float inside0 = 1.0 - (c.rho2 + near * near - t * t) * KERNEL_INVERSE_R2;
+    float inside1 = -2.0 * reach * (near - t * c.un) * KERNEL_INVERSE_R2;
+    float inside2 = -len * len * (1.0 - c.un * c.un) * KERNEL_INVERSE_R2;
+    float face_w = face * (1.0 / KERNEL_R);
+    float band_w = side * band.a * (1.0 / KERNEL_R);
+    float stronger = band.k - 1.0;
     float sum = 0.0;
     for (int i = 0; i < FOOTPRINT_NODES; ++i) {
-        float z = near + reach * FOOTPRINT_NODE[FOOTPRINT_RULE + i];
-        float v = clamp(v0 + dv * FOOTPRINT_NODE[FOOTPRINT_RULE + i], 0.0, 1.0);
-        float b = v - v * v;
-        float g = (v + (k - 1.0) * b) / (1.0 + (k - 1.0) * b);
-        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] * kernel(c.rho2 + z * z + a * (g - v) * (a * (g + v) + twice_face));
+        float x = FOOTPRINT_NODE[FOOTPRINT_RULE + i];
+        float v = v0 + dv * x;
+        float b = stronger * (v - v * v);
+        float w = face_w + band_w * ((v + b) / (1.0 + b));
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + i] * kernel_at(inside0 + x * (inside1 + x * inside2) - w * w);
     }
     return len * sum;
 }

@@ -24,13 +24,39 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-// Centre (along n) and radius of the sphere that holds the warped kernel, docs/method.md, pass 3.
+// Centre (along n) and radius of a sphere that holds what is warped around a face.
+vec2 face_support(float d) {
+    vec2 s = params.frame.support_table[min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u)];
+    return vec2(d < 0.0 ? -s.x : s.x, s.y);
+}
+
+// The same of the splat's kernel, docs/method.md, pass 3. Between two faces no point is moved further than either alone would move it.
 vec2 splat_support(Edge e) {
     if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
-    if (e.d2 < params.frame.band) return vec2(0.0, params.frame.wall_support);
-    uint cell = min(uint(abs(e.d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u);
-    vec2 s = params.frame.support_table[cell];
-    return vec2(e.d < 0.0 ? -s.x : s.x, s.y);
+    vec2 first = face_support(e.d), second = face_support(e.d2);
+    float both = max(params.frame.support, max(abs(first.x) + first.y, abs(second.x) + second.y));
+    return e.d2 < params.frame.band ? vec2(0.0, both) : first;
+}
+
+// Rows of `extents` for the first face and the second, as seen along n: row | mirrored << 7.
+uint extent_row(float d) {
+    return min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u) | (d < 0.0 ? 128u : 0u);
+}
+
+uint splat_extents(Edge e) {
+    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return EXTENT_PLAIN | (EXTENT_PLAIN << 8);
+    return extent_row(e.d) | (e.d2 < params.frame.band ? extent_row(-e.d2) : EXTENT_PLAIN + 1u) << 8;
+}
+
+float extent_of(uint row, uint direction) {
+    return params.frame.extents[(row & 127u) * EXTENT_DIRECTIONS + ((row & 128u) != 0u ? EXTENT_DIRECTIONS - 1u - direction : direction)];
+}
+
+// How far a kernel reaches from its voxel in a direction with that cosine to n.
+float support_towards(uint rows, float cosine) {
+    uint direction = min(uint(clamp(cosine * 0.5 + 0.5, 0.0, 1.0) * float(EXTENT_DIRECTIONS)), EXTENT_DIRECTIONS - 1u);
+    float first = extent_of(rows & 255u, direction), second = extent_of(rows >> 8, direction);
+    return max(first, second > 0.0 ? max(second, params.frame.support) : 0.0);
 }
 
 // Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from

@@ -9,13 +9,14 @@ EDGESPLAT_CONSTANT uint BIND_VOLUME = 0u;        // r32f (z, y, x), samples scal
 EDGESPLAT_CONSTANT uint BIND_COEFFICIENTS = 1u;  // r32f, cubic B-spline coefficients (estimator `cubic` only)
 EDGESPLAT_CONSTANT uint BIND_EDGES = 2u;         // rg32ui, edge field (shared/edge.h)
 EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = every voxel around is opaque
-EDGESPLAT_CONSTANT uint BIND_SHEETS = 4u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
-EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 5u;   // rgba32f, premultiplied colour and alpha so far
-EDGESPLAT_CONSTANT uint BIND_TABLE = 6u;         // r16f, footprint layers
-EDGESPLAT_CONSTANT uint BIND_SCENE = 7u;         // SceneParams
-EDGESPLAT_CONSTANT uint BIND_FRAME = 8u;         // FrameParams
-EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 9u;     // OcclusionParams
-EDGESPLAT_CONSTANT uint BIND_COUNT = 10u;
+EDGESPLAT_CONSTANT uint BIND_PREPARED = 4u;      // rgba32f, records of a chunk's splats (lib/prepared_splat.glsl)
+EDGESPLAT_CONSTANT uint BIND_SHEETS = 5u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
+EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 6u;   // rgba32f, premultiplied colour and alpha so far
+EDGESPLAT_CONSTANT uint BIND_TABLE = 7u;         // r16f, footprint layers
+EDGESPLAT_CONSTANT uint BIND_SCENE = 8u;         // SceneParams
+EDGESPLAT_CONSTANT uint BIND_FRAME = 9u;         // FrameParams
+EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 10u;     // OcclusionParams
+EDGESPLAT_CONSTANT uint BIND_COUNT = 11u;
 
 EDGESPLAT_SHARED_END
 #endif

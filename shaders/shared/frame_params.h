@@ -51,6 +51,7 @@ struct FrameParams {
     vec4 fog;                // rgb, density per mm
     vec4 silhouette;         // rgb, strength
     vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
+    float extents[66 * 32];  // how far supports reach, voxels, by |D| as above and the direction's cosine to n (EXTENT_PLAIN)
     ivec3 dims;
     uint splat_count;
     ivec2 size;  // pixels
@@ -60,12 +61,12 @@ struct FrameParams {
     float band;          // R + a
     float saturation;    // alpha at which a pixel takes no more
     float near_depth;    // mm: depth of the plane that rays of full-screen splats are described in
-    float wall_support;  // support radius of a splat with two faces, voxels
     float sheet_zero;    // mm: depth of sheet 0's near plane relative to the anchor
     float curvature_unit;  // the largest curvature that is drawn, 1/voxel
     float fog_start;       // mm
     float silhouette_sharpness;
     vec2 pixel;            // slopes from one sample of the picture to the next; with antialias only
+    uint prepared_mask;    // slots for prepared splats less one; a power of two of them
     uint pad;
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
@@ -93,7 +94,8 @@ struct FrameParams {
     Address chunks;         // (chunks) uvec2: the part of `order` that is drawn at once, half open
     Address tile_counters;  // (tiles, tile_blocks) uint: counts, then offsets
     Address tile_ranges;    // (tiles) uvec2: parts of tile_entries, half open
-    Address tile_entries;   // (pairs of the chunk) uvec2: splat number, sheet; by tile, sheet, number
+    Address tile_order;     // (tiles) uint: tiles by the length of their lists, longest first; with rounds only
+    Address tile_entries;   // (pairs of the chunk) uvec2: place in `order`, sheet; by tile, sheet, number
     Address tile_closed;    // (tiles) uint: pixels that take no more
     Address tile_sheets;    // (size.y, size.x) vec4: sums of a sheet whose entries go on in the next round
     ivec2 tiles;
@@ -108,8 +110,8 @@ static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
-static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 1416);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 2008);
+static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 9864);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 10464);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -21,6 +21,8 @@ EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
 EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
+EDGESPLAT_CONSTANT uint EXTENT_DIRECTIONS = 32u;  // cells of the cosine to n, each with how far those supports reach there
+EDGESPLAT_CONSTANT uint EXTENT_PLAIN = 64u;       // the row of a kernel that is not warped; one of zeros comes after it
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 // lavapipe ends every loop of an invocation once all of them together have gone round 65535 times, without a word. What follows
 // keeps them below.
@@ -29,6 +31,8 @@ EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are
 EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
 EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
 EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column
+EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 96 bytes each by default
+EDGESPLAT_CONSTANT uint PREPARED_ROW = 4096u;  // texels of the image that holds them: lavapipe loads those fastest
 EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
@@ -66,6 +70,7 @@ EDGESPLAT_CONSTANT uint SPEC_SHADOWS = 23u;    // number of lights with shadows
 EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
 EDGESPLAT_CONSTANT uint SPEC_ROUNDS = 26u;     // 1: a tile's list is drawn TILE_ROUND entries at a time
 EDGESPLAT_CONSTANT uint SPEC_COUNT = 27u;      // 1: footprints are counted
+EDGESPLAT_CONSTANT uint SPEC_PREPARED = 28u;   // 1: entries are prepared, 0: by whoever draws them
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 

@@ -76,13 +76,17 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             double shift = 0, radius = kKernelRadius;
             if (draws_warped(s.settings) && edge.has_edge) {
                 const double band = kKernelRadius + s.settings.edge_half_width;
-                const auto cell = std::min(static_cast<std::size_t>(std::abs(edge.D) / band * shader::SUPPORT_STEPS),
-                                           std::size_t{shader::SUPPORT_STEPS - 1});
-                shift = (edge.D < 0 ? -1 : 1) * static_cast<double>(params.support_table[cell].x);
-                radius = static_cast<double>(params.support_table[cell].y);
+                const auto face = [&](double d) {
+                    const auto cell = std::min(static_cast<std::size_t>(std::abs(d) / band * shader::SUPPORT_STEPS),
+                                               std::size_t{shader::SUPPORT_STEPS - 1});
+                    return glm::dvec2(params.support_table[cell]);
+                };
+                shift = (edge.D < 0 ? -1 : 1) * face(edge.D).x;
+                radius = face(edge.D).y;
                 if (edge.D2 < band) {
+                    radius = std::max(
+                        {kKernelRadius, std::abs(shift) + radius, std::abs(face(edge.D2).x) + face(edge.D2).y});
                     shift = 0;
-                    radius = static_cast<double>(params.wall_support);
                 }
             }
             return std::pair(shift, radius * unit / thickness);

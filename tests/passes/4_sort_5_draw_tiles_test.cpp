@@ -20,17 +20,18 @@ std::vector<glm::vec4> picture(RendererState& state, const PassScene& s, const S
 }
 
 /// Draws the last picture again, in chunks of so many pairs. How many there were.
-std::size_t in_chunks(RendererState& state, std::uint64_t limit) {
+std::size_t in_chunks(RendererState& state, std::uint64_t limit, std::uint64_t entries = shader::PREPARED_ENTRIES) {
     sort_frame(state.commands, state.plan, state.targets);
     const std::uint32_t sheets = state.plan.params.sheet_count;
-    const Chunks chunks = plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
-                                      state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
+    const Chunks chunks =
+        plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
+                    state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit, entries);
     state.provide_chunks(chunks);
     draw_frame(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()), {});
     return chunks.parts.size();
 }
 
-/// Of the last chunk drawn.
+/// Of the last chunk drawn; entries are splat numbers and sheets.
 struct Lists {
     std::vector<glm::uvec2> ranges, entries, rects;
     std::vector<std::uint32_t> sheet_of;
@@ -42,6 +43,10 @@ Lists lists_of(RendererState& state) {
     Lists lists;
     lists.ranges = download<glm::uvec2>(state, state.targets.tile_ranges, tiles);
     lists.entries = download<glm::uvec2>(state, state.targets.tile_entries, lists.ranges.back().y);
+    const std::uint32_t most = std::ranges::max(lists.entries, {}, &glm::uvec2::x).x + 1;
+    const auto order = download<std::uint32_t>(state, state.targets.order, most);
+    for (glm::uvec2& entry : lists.entries)
+        entry.x = order[entry.x];
     lists.rects = download<glm::uvec2>(state, state.targets.tile_rects, p.splat_count);
     lists.sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, p.splat_count);
     return lists;
@@ -229,6 +234,37 @@ TEST(SortSheets, SegmentsCoverEveryList) {
     }
 }
 
+TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
+    // One sheet of them, each of which the picture shows.
+    PassScene s;
+    s.volume.geometry.dims = {400, 400, 5};
+    for (std::size_t i = 0; i < s.volume.geometry.voxel_count(); ++i)
+        s.volume.values.push_back(i / (400 * 400) == 2 ? 1.0F : 0.0F);
+    finish_volume(s.volume);
+    s.scene.iso_values = {0.5};
+    s.scene.materials = {{}, {{1, 0.5, 0.2}, 0.4}};
+    look_at(s, {199.5, 180, 400}, {199.5, 199.5, 2}, 60);
+    s.settings.sheet_spacing = 8;
+    RendererState& state = prepared(s);
+    const auto want = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
+    in_chunks(state, ~std::uint64_t{0}, ~std::uint64_t{0});
+    const auto parts = state.targets.chunks.mapped<glm::uvec2>(1);
+    ASSERT_GT(parts[0].y - parts[0].x, shader::PREPARED_ENTRIES);
+    // The same splats, few enough at a time.
+    Settings thin = s.settings;
+    thin.sheet_spacing = 0.02;
+    const auto few = picture(state, s, thin, shader::PAYLOAD_TAU);
+    const auto many = picture(state, s, s.settings, shader::PAYLOAD_TAU);
+    float peak = 0, worst = 0;
+    for (std::size_t i = 0; i < few.size(); ++i) {
+        peak = std::max(peak, few[i].a);
+        worst = std::max(worst, std::abs(few[i].a - many[i].a));
+    }
+    EXPECT_GT(peak, 0.1F);
+    EXPECT_LE(worst, 1e-5F * peak);
+    EXPECT_GT(want[want.size() / 2].a, 0.1F);
+}
+
 TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
     const std::vector<std::uint32_t> pairs{5, 0, 4, 3, 20, 1, 0, 2}, starts{0, 2, 2, 4, 6, 9, 10, 10, 12};
     const Chunks chunks = plan_chunks(pairs, starts, 10);
@@ -237,6 +273,7 @@ TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
     EXPECT_EQ(chunks.most_pairs, 20U);
     EXPECT_TRUE(plan_chunks(std::vector<std::uint32_t>{0, 0}, std::vector<std::uint32_t>{0, 0, 0}, 10).parts.empty());
     EXPECT_EQ(plan_chunks(pairs, starts, 1000).parts, (std::vector<glm::uvec2>{{0, 12}}));
+    EXPECT_EQ(plan_chunks(pairs, starts, 1000, 4).parts, (std::vector<glm::uvec2>{{0, 4}, {4, 6}, {6, 10}, {10, 12}}));
 }
 
 TEST(DrawTiles, ManyChunksMakeTheSamePicture) {

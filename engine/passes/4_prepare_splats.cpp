@@ -1,0 +1,33 @@
+#include "engine/passes/4_prepare_splats.h"
+
+#include <algorithm>
+#include <bit>
+
+namespace edgesplat::passes {
+
+std::uint32_t prepared_stride(const DrawVariant& variant) {
+    std::uint32_t vectors = 3;  // place, start, colour
+    if (variant.footprints != FootprintMode::Isotropic) vectors += 2;
+    if (variant.sliced) vectors += 1;
+    if (variant.clip.keep + variant.clip.remove > 0) vectors += 2;
+    if (variant.antialias) vectors += 2;
+    return vectors;
+}
+
+gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots) {
+    const std::uint32_t rows = (slots * prepared_stride(variant) + shader::PREPARED_ROW - 1) / shader::PREPARED_ROW;
+    return {.format = vk::Format::eR32G32B32A32Sfloat,
+            .size = {static_cast<int>(shader::PREPARED_ROW), static_cast<int>(rows), 1},
+            .usage = vk::ImageUsageFlagBits::eStorage};
+}
+
+std::uint32_t prepared_slots(std::uint64_t entries) {
+    return static_cast<std::uint32_t>(std::bit_ceil(std::clamp<std::uint64_t>(entries, 1, shader::PREPARED_ENTRIES)));
+}
+
+void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count) {
+    commands.dispatch("4g_prepare_splats.comp", draw_constants(variant), chunk, gpu::groups_for(count, 64));
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes

@@ -1,0 +1,23 @@
+// Sorted splats -> records of what their pixels share: place, kernel, colour.
+#pragma once
+
+#include "engine/gpu/commands.h"
+#include "engine/gpu/image.h"
+#include "engine/passes/5_draw_splats.h"
+
+namespace edgesplat::passes {
+
+/// FrameParams: reads part `chunk` of `order`, `count` entries, and their splats; writes their records into
+/// the image at BIND_PREPARED, which has at least as many slots.
+void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count);
+
+/// Texels of a record: PREPARED_STRIDE of shaders/lib/prepared_splat.glsl.
+std::uint32_t prepared_stride(const DrawVariant& variant);
+
+/// The image that holds so many.
+gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots);
+
+/// Slots for chunks of at most so many entries, a power of two; larger chunks than PREPARED_ENTRIES are not prepared.
+std::uint32_t prepared_slots(std::uint64_t entries);
+
+}  // namespace edgesplat::passes

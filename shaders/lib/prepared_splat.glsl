@@ -1,0 +1,123 @@
+// What all pixels of a splat share, found once: where it lies, its kernel, its colour. Kept in records of PREPARED_STRIDE vec4 from
+// 4_prepare_splats to 5_draw_tiles; `prepared_stride` in C++ has the same sum. After shaders/lib/splat_inputs.glsl; the including
+// shader declares `FaceBand` footprints (shaders/lib/footprint.glsl).
+#ifndef EDGESPLAT_PREPARED_SPLAT_GLSL
+#define EDGESPLAT_PREPARED_SPLAT_GLSL
+
+const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
+
+const bool SUPPORT_IS_SPHERE = FOOTPRINTS == 0u || SLICED == 1u || ANTIALIAS == 1u;
+
+struct PreparedSplat {
+    vec3 centre;     // of the support where it is a sphere, else of the voxel; minus the eye, index space
+    float around;    // that sphere's radius, voxels, across the ray
+    uint extents;    // else: how far the support reaches which way (support_towards)
+    vec3 start;      // a point of the ray with slopes (0, 0), relative to the voxel, index space
+    float plane;     // its depth, mm: other rays pass plane * (x ray_x + y ray_y) beside it
+    vec2 slopes;     // of the voxel; with antialias only
+    FaceBand band;   // with BANDS only
+    SplatInputs inputs;
+};
+
+PreparedSplat prepared_splat(uint number, uint sheet) {
+    PreparedSplat s;
+    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    Projection p = place_splat(splat.voxel, e);
+    vec2 depths = vec2(0.0);
+    if (SLICED == 1u) {
+        float near = params.frame.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
+        depths = vec2(near, near + params.frame.sheet_thickness);
+        cut_support(p, depths);
+    }
+    s.inputs = splat_inputs(number, splat, e, p, depths);
+    s.centre = s.inputs.from_eye + (SUPPORT_IS_SPHERE ? p.centre : vec3(0.0));
+    s.around = SUPPORT_IS_SPHERE ? reach_across(p) : params.frame.band;
+    s.extents = splat_extents(e);
+    // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
+    bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
+    s.plane = at_eye ? params.frame.near_depth : p.view.z;
+    s.slopes = p.view.xy / p.view.z;
+    s.start = at_eye ? s.plane * params.frame.ray_z - s.inputs.from_eye
+                     : -s.plane * (s.slopes.x * params.frame.ray_x + s.slopes.y * params.frame.ray_y);
+    if (BANDS) s.band = face_band(e.d, s.inputs.shape.x, footprint_faces(e.d, s.inputs.shape.x, params.frame.footprint), params.frame.footprint);
+    return s;
+}
+
+const uint PREPARED_KERNEL = 1u;
+const uint PREPARED_START = FOOTPRINTS != 0u ? 3u : 1u;
+const uint PREPARED_CUT = PREPARED_START + 2u;
+const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
+const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
+const uint PREPARED_STRIDE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
+
+// Entries of a chunk are consecutive and no more than there are slots.
+uint prepared_slot(uint entry) { return (entry & params.frame.prepared_mask) * PREPARED_STRIDE; }
+
+ivec2 prepared_texel(uint at) { return ivec2(at % PREPARED_ROW, at / PREPARED_ROW); }
+
+#ifdef KEEPS_PREPARED
+void keep_prepared(uint entry, PreparedSplat s) {
+    uint at = prepared_slot(entry);
+    imageStore(prepared, prepared_texel(at), vec4(s.centre, SUPPORT_IS_SPHERE ? s.around : uintBitsToFloat(s.extents)));
+    if (FOOTPRINTS != 0u) {
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
+        vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.xy, ends));
+    }
+    imageStore(prepared, prepared_texel(at + PREPARED_START), vec4(s.start, s.plane));
+    imageStore(prepared, prepared_texel(at + PREPARED_START + 1u), s.inputs.color_sigma);
+    if (SLICED == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CUT), vec4(s.inputs.shape.zw, 0.0, 0.0));
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        imageStore(prepared, prepared_texel(at + PREPARED_MATTER), vec4(s.inputs.from_eye, uintBitsToFloat(s.inputs.number_material.y)));
+        imageStore(prepared, prepared_texel(at + PREPARED_MATTER + 1u), vec4(s.inputs.matter, uintBitsToFloat(s.inputs.number_material.x)));
+    }
+    if (ANTIALIAS == 1u) {
+        imageStore(prepared, prepared_texel(at + PREPARED_FILTER), vec4(s.slopes, 0.0, 0.0));
+        imageStore(prepared, prepared_texel(at + PREPARED_FILTER + 1u), s.inputs.filtered);
+    }
+}
+
+#else
+// What an invocation needs of its own entry, to see whether it is drawn.
+void load_place(uint entry, inout PreparedSplat s) {
+    uint at = prepared_slot(entry);
+    vec4 v = imageLoad(prepared, prepared_texel(at));
+    s.centre = v.xyz;
+    s.around = SUPPORT_IS_SPHERE ? v.w : params.frame.band;
+    s.extents = floatBitsToUint(v.w);
+    if (FOOTPRINTS != 0u) s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
+}
+
+// What all need of an entry that is.
+void load_kernel(uint entry, inout PreparedSplat s) {
+    uint at = prepared_slot(entry);
+    if (FOOTPRINTS != 0u) {
+        s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
+        vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
+        s.inputs.shape.xy = v.xy;
+        if (BANDS) {
+            float d = s.inputs.normal_distance.w;
+            s.band = face_widths(d, v.x, footprint_faces(d, v.x, params.frame.footprint), params.frame.footprint);
+            s.band.first = v.z;
+            s.band.last = v.w;
+        }
+    }
+    vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_START));
+    s.start = v.xyz;
+    s.plane = v.w;
+    s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));
+    if (SLICED == 1u) s.inputs.shape.zw = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));
+        s.inputs.from_eye = place.xyz;
+        s.inputs.matter = matter.xyz;
+        s.inputs.number_material = uvec2(floatBitsToUint(matter.w), floatBitsToUint(place.w));
+    }
+    if (ANTIALIAS == 1u) {
+        s.slopes = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER)).xy;
+        s.inputs.filtered = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER + 1u));
+    }
+}
+#endif
+#endif
