@@ -208,9 +208,11 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(on_host(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
     out.push_back(growing(buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
                                  "(tiles, blocks) uint", "4", "4")));
-    out.push_back(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5")));
-    out.push_back(growing(
-        buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word, "(pairs at once) splat, sheet", "4", "5")));
+    out.push_back(on_host(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5, host"))));
+    out.push_back(
+        on_host(growing(buffer("tile order", tiles * word, "(tiles) uint, longest list first", "host", "5"))));
+    out.push_back(growing(buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word,
+                                 "(pairs at once) place in the order, sheet", "4", "5")));
     const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
     out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),
                                 "(entries at once) place, kernel, colour", "4", "5")));

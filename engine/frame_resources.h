@@ -60,8 +60,8 @@ struct TargetResources {
     gpu::Buffer sheet_starts;   ///< (sheet_count + 1) uint, mapped: into `order`; 4 -> 4, host
     gpu::Buffer chunks;         ///< (sheet_count) uvec2, mapped: parts of `order`; host -> 4
     gpu::Buffer tile_counters;  ///< (tiles, tile_blocks) uint; 4
-    gpu::Buffer tile_ranges;    ///< (tiles) uvec2: parts of tile_entries; 4 -> 5
-    gpu::Buffer tile_order;     ///< (tiles) uint, mapped: those with a list, longest first; host -> 5; with rounds only
+    gpu::Buffer tile_ranges;    ///< (tiles) uvec2, mapped: parts of tile_entries; 4 -> 5, host
+    gpu::Buffer tile_order;     ///< (tiles) uint, mapped: longest list first; host -> 5; with rounds only
     gpu::Buffer tile_entries;   ///< (pairs of the largest chunk) uvec2: place in `order`, sheet; 4 -> 5
     gpu::Buffer tile_closed;    ///< (tiles) uint: pixels that take no more; 5 -> 4
     gpu::Buffer tile_sheets;    ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5

@@ -26,8 +26,6 @@ Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::ui
     std::uint32_t begin = starts.front();
     const auto close = [&](std::uint32_t end) {
         if (end > begin) chunks.parts.emplace_back(begin, end);
-        if (end - begin <= shader::PREPARED_ENTRIES)
-            chunks.most_prepared = std::max<std::uint64_t>(chunks.most_prepared, end - begin);
         chunks.most_pairs = std::max(chunks.most_pairs, sum);
         begin = end;
         chunks.pairs += sum;
@@ -74,8 +72,8 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
     const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
     const glm::uvec2 sheets = division.sheets(pairs, p.sheet_base);
     const std::size_t count = sheets.y - sheets.x;
-    Chunks chunks =
-        plan_chunks(pairs.subspan(sheets.x, count), starts.subspan(sheets.x, count + 1), chunk_pairs(p.tiles));
+    Chunks chunks = plan_chunks(pairs.subspan(sheets.x, count), starts.subspan(sheets.x, count + 1),
+                                chunk_pairs(p.tiles), std::uint64_t{p.prepared_mask} + 1);
     chunks.sheets = sheets;
     return chunks;
 }
@@ -134,7 +132,7 @@ std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan,
     TileOrder order(p, targets, how.rounds);
     // A sheet of very many splats is drawn from the splats themselves.
     const auto entries = [&](std::uint32_t chunk) { return parts[chunk].y - parts[chunk].x; };
-    const auto is_prepared = [&](std::uint32_t chunk) { return entries(chunk) <= shader::PREPARED_ENTRIES; };
+    const auto is_prepared = [&](std::uint32_t chunk) { return entries(chunk) <= p.prepared_mask + 1; };
     const auto prepare = [&](std::uint32_t chunk) {
         if (!is_prepared(chunk)) return;
         commands.span("4_prepare_splats",

@@ -18,17 +18,16 @@ std::uint64_t chunk_pairs(const glm::ivec2& tiles);
 
 /// Consecutive sheets that are drawn at once.
 struct Chunks {
-    std::vector<glm::uvec2> parts;    ///< of the sorted order, half open; empty ones are left out
-    std::uint64_t most_pairs = 0;     ///< of any chunk
-    std::uint64_t most_prepared = 0;  ///< entries of the order, of any chunk that is prepared
-    glm::uvec2 sheets{0};             ///< the sheets that are drawn, half open
-    std::uint64_t pairs = 0;          ///< of all chunks
+    std::vector<glm::uvec2> parts;  ///< of the sorted order, half open; empty ones are left out
+    std::uint64_t most_pairs = 0;   ///< of any chunk
+    glm::uvec2 sheets{0};           ///< the sheets that are drawn, half open
+    std::uint64_t pairs = 0;        ///< of all chunks
 };
 
 /// `pairs` per sheet that is drawn; `starts`: where each sheet begins in the order, and where the last one ends. A
 /// sheet is never divided: one with more than `limit` pairs, or `entries` of the order, is a chunk of its own.
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit,
-                   std::uint64_t entries = shader::PREPARED_ENTRIES);
+                   std::uint64_t entries = ~std::uint64_t{0});
 
 /// At least as many pairs as any column of a chunk has: those of all sheets that reach into it. `part` of the order,
 /// divided into so many columns of equal length; `pairs` and `starts` of all sheets.

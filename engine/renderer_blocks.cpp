@@ -251,6 +251,23 @@ std::vector<float> RendererState::read_block(const std::vector<std::size_t>& mis
     return samples;
 }
 
+void RendererState::bound_held_blocks() {
+    auto& resources = volume_resources;
+    resources.box_low = volume->geometry.dims - 1;
+    resources.box_high = glm::ivec3(0);
+    for (const auto& held : residence->held) {
+        if (!held || held->count == 0) continue;
+        resources.box_low = glm::min(resources.box_low, held->low);
+        resources.box_high = glm::max(resources.box_high, held->high);
+    }
+    if (resources.splat_count == 0) std::swap(resources.box_low, resources.box_high);
+}
+
+void RendererState::release_for_collection() {
+    drop_targets();
+    bindings.write(volume_resources, {}, {});
+}
+
 Gathered RendererState::collect_blocks(const FrameRequest& request, const CollectionPlan& wanted,
                                        std::uint64_t most_splats, double wait) {
     auto& resources = volume_resources;
@@ -263,12 +280,20 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
     std::ranges::copy_if(needed, std::back_inserter(missing), [&](std::size_t i) { return !residence->held[i]; });
     if (missing.empty()) return Gathered::All;
     const auto start = Clock::now();
-    drop_targets();
-    bindings.write(resources, {}, {});
+    release_for_collection();
     occluded.reset();
     shadowed.reset();
+    const bool hides = may_hide_blocks(request);
+    if (hides) sort_by_depth(request, missing);
+    std::size_t look = 0;
     for (std::size_t number = 0; number < missing.size(); ++number) {
         heed_interruption();
+        // A look takes about as long as a block: often at first, where the nearest may hide all else.
+        if (hides && number == look) {
+            leave_hidden_blocks(request, missing, number);
+            look += std::clamp<std::size_t>(number, 1, 8);
+            if (number == missing.size()) break;
+        }
         if (number > 0 && milliseconds_since(start) > wait) return Gathered::Unfinished;
         const CollectionBlock& block = residence->blocks[missing[number]];
         load_block(block, read_block(missing, number));
@@ -281,14 +306,7 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         if (!held) return Gathered::TooMany;
         add_times(collection_times, held->times);
     }
-    resources.box_low = volume->geometry.dims - 1;
-    resources.box_high = glm::ivec3(0);
-    for (const auto& held : residence->held) {
-        if (!held || held->count == 0) continue;
-        resources.box_low = glm::min(resources.box_low, held->low);
-        resources.box_high = glm::max(resources.box_high, held->high);
-    }
-    if (resources.splat_count == 0) std::swap(resources.box_low, resources.box_high);
+    bound_held_blocks();
     return Gathered::All;
 }
 

@@ -72,6 +72,17 @@ struct RendererState : DeviceState, SplatSet {
     bool agree_on_level(int& finest);
     /// Whether a part of the picture has too many splats; if none has, the box becomes that of all parts' splats.
     bool too_many_somewhere(Gathered gathered);
+    /// Whether blocks that cannot be seen can be left unread.
+    bool may_hide_blocks(const FrameRequest& request) const;
+    /// Those first that may show nearest to the eye.
+    void sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const;
+    /// Draws what there is in front of the missing blocks from number `first` on, sorted by depth, and leaves out those
+    /// of them of which no pixel would show anything.
+    void leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
+    /// The box of the splats that are in the list.
+    void bound_held_blocks();
+    /// Frees what pictures are drawn into; collecting uses the bindings.
+    void release_for_collection();
     std::vector<float> read_block(const std::vector<std::size_t>& missing, std::size_t number);
     /// Goes to the other set, which holds a coarser level while a finer one is on its way.
     void exchange_sets() { std::swap(static_cast<SplatSet&>(*this), other); }
@@ -116,7 +127,7 @@ struct RendererState : DeviceState, SplatSet {
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
     void provide_layers(FramePlan& plan);
-    void provide_tiles(shader::FrameParams& p);
+    void provide_tiles(FramePlan& plan);
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);
     /// Passes 3 to 7 with one payload; the picture is left in targets.output. `offset`: of its rays from the pixels'

@@ -49,7 +49,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     p.drawn = targets.drawn.address();
     p.output_pixels = targets.output.address();
     if (plan_in_use.variant.tiles)
-        provide_tiles(p);
+        provide_tiles(plan_in_use);
     else
         provide_layers(plan_in_use);
     p.footprint = footprint_resources.params;
@@ -104,7 +104,8 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
     std::ranges::fill(targets.groups.mapped<shader::SheetGroup>(p.group_count), empty);
 }
 
-void RendererState::provide_tiles(shader::FrameParams& p) {
+void RendererState::provide_tiles(FramePlan& plan_in_use) {
+    auto& p = plan_in_use.params;
     for (gpu::GpuImage* unused : {&targets.sheets, &targets.depth, &targets.accumulated})
         *unused = {};
     targets.groups = {};
@@ -116,20 +117,27 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
     grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     // The host sees which tiles a round is for.
-    const bool rounds = device.is_software();
-    grow(device, targets.tile_ranges, tiles * 2 * kWord, rounds ? Place::Host : Place::Device, "tile ranges");
-    if (rounds) grow(device, targets.tile_order, tiles * kWord, Place::Host, "tile order");
+    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges");
+    grow(device, targets.tile_order, tiles * kWord, Place::Host, "tile order");
     grow(device, targets.tile_entries, chunk_pairs(p.tiles) * 2 * kWord, Place::Device, "tile entries");
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
     grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets");
+    const std::uint32_t slots = passes::prepared_slots(std::uint64_t{p.splat_count} * plan_in_use.sheets_per_splat);
+    const gpu::ImageShape records = passes::prepared_shape(plan_in_use.variant, slots);
+    if (!targets.prepared || targets.prepared.shape().size.y < records.size.y) {
+        targets.prepared = {};
+        targets.prepared = gpu::GpuImage(device, records, "prepared splats");
+        commands.run([&] { commands.prepare({&targets.prepared}); });
+    }
+    p.prepared_mask = slots - 1;
     p.tile_rects = targets.tile_rects.address();
     p.sheet_pairs = targets.sheet_pairs.address();
     p.sheet_starts = targets.sheet_starts.address();
     p.chunks = targets.chunks.address();
     p.tile_counters = targets.tile_counters.address();
     p.tile_ranges = targets.tile_ranges.address();
-    p.tile_order = targets.tile_order ? targets.tile_order.address() : 0;
+    p.tile_order = targets.tile_order.address();
     p.tile_entries = targets.tile_entries.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_sheets = targets.tile_sheets.address();
@@ -137,14 +145,6 @@ void RendererState::provide_tiles(shader::FrameParams& p) {
 
 void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_entries, chunks.most_pairs * 2 * kWord, Place::Device, "tile entries");
-    const std::uint32_t slots = passes::prepared_slots(chunks.most_prepared);
-    const gpu::ImageShape records = passes::prepared_shape(plan.variant, slots);
-    if (!targets.prepared || targets.prepared.shape().size.y < records.size.y) {
-        targets.prepared = {};
-        targets.prepared = gpu::GpuImage(device, records, "prepared splats");
-        commands.run([&] { commands.prepare({&targets.prepared}); });
-        bindings.write(volume_resources, footprint_resources, targets);
-    }
     auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
@@ -160,7 +160,6 @@ void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     p.tile_counters = targets.tile_counters.address();
     p.tile_entries = targets.tile_entries.address();
-    p.prepared_mask = slots - 1;
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
 }
 

@@ -119,7 +119,10 @@ void main() {
             away /= max(apart, 1e-6);
             apart -= (abs(dot(away, aside)) * spread.x + abs(dot(away, upward)) * spread.y) * max(along + s.around, 0.0);
             float reach = s.around;
-            if (!SUPPORT_IS_SPHERE) reach = support_towards(s.extents, dot(away, s.inputs.normal_distance.xyz));
+            if (!SPHERES) {
+                float towards = support_towards(s.extents, dot(away, s.inputs.normal_distance.xyz));
+                reach = s.is_sphere ? reach : towards;
+            }
             bool touches = mine < range.y && along > -s.around && apart <= reach;
 
             uvec4 hits = subgroupBallot(touches);

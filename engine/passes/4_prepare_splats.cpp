@@ -22,7 +22,9 @@ gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots) 
 }
 
 std::uint32_t prepared_slots(std::uint64_t entries) {
-    return static_cast<std::uint32_t>(std::bit_ceil(std::clamp<std::uint64_t>(entries, 1, shader::PREPARED_ENTRIES)));
+    // A chunk seldom has more than a fourth of them; 4096 take less than half a megabyte.
+    const std::uint64_t wanted = std::max<std::uint64_t>(entries / 4, std::min<std::uint64_t>(entries, 4096));
+    return static_cast<std::uint32_t>(std::bit_ceil(std::clamp<std::uint64_t>(wanted, 1, shader::PREPARED_ENTRIES)));
 }
 
 void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count) {

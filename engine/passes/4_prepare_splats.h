@@ -17,7 +17,8 @@ std::uint32_t prepared_stride(const DrawVariant& variant);
 /// The image that holds so many.
 gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots);
 
-/// Slots for chunks of at most so many entries, a power of two; larger chunks than PREPARED_ENTRIES are not prepared.
+/// Slots for pictures of at most so many entries, a power of two up to PREPARED_ENTRIES. Chunks of more are not
+/// prepared.
 std::uint32_t prepared_slots(std::uint64_t entries);
 
 }  // namespace edgesplat::passes

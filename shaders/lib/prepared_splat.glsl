@@ -6,9 +6,11 @@
 
 const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
 
-const bool SUPPORT_IS_SPHERE = FOOTPRINTS == 0u || SLICED == 1u || ANTIALIAS == 1u;
+// Supports of plain and of cut kernels are spheres, and those of kernels that are widened.
+const bool SPHERES = FOOTPRINTS == 0u || SLICED == 1u;
 
 struct PreparedSplat {
+    bool is_sphere;  // the support
     vec3 centre;     // of the support where it is a sphere, else of the voxel; minus the eye, index space
     float around;    // that sphere's radius, voxels, across the ray
     uint extents;    // else: how far the support reaches which way (support_towards)
@@ -31,8 +33,10 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
         cut_support(p, depths);
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
-    s.centre = s.inputs.from_eye + (SUPPORT_IS_SPHERE ? p.centre : vec3(0.0));
-    s.around = SUPPORT_IS_SPHERE ? reach_across(p) : params.frame.band;
+    s.is_sphere = SPHERES;
+    if (ANTIALIAS == 1u) s.is_sphere = s.is_sphere || p.filtered.share > 0.0;
+    s.centre = s.inputs.from_eye + (s.is_sphere ? p.centre : vec3(0.0));
+    s.around = s.is_sphere ? reach_across(p) : params.frame.band;
     s.extents = splat_extents(e);
     // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
     bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
@@ -59,7 +63,7 @@ ivec2 prepared_texel(uint at) { return ivec2(at % PREPARED_ROW, at / PREPARED_RO
 #ifdef KEEPS_PREPARED
 void keep_prepared(uint entry, PreparedSplat s) {
     uint at = prepared_slot(entry);
-    imageStore(prepared, prepared_texel(at), vec4(s.centre, SUPPORT_IS_SPHERE ? s.around : uintBitsToFloat(s.extents)));
+    imageStore(prepared, prepared_texel(at), vec4(s.centre, s.is_sphere ? s.around : -1.0 - float(s.extents)));
     if (FOOTPRINTS != 0u) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
         vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
@@ -84,8 +88,10 @@ void load_place(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);
     vec4 v = imageLoad(prepared, prepared_texel(at));
     s.centre = v.xyz;
-    s.around = SUPPORT_IS_SPHERE ? v.w : params.frame.band;
-    s.extents = floatBitsToUint(v.w);
+    s.is_sphere = SPHERES;
+    if (ANTIALIAS == 1u) s.is_sphere = v.w >= 0.0;
+    s.around = s.is_sphere ? v.w : params.frame.band;
+    s.extents = uint(max(-1.0 - v.w, 0.0));
     if (FOOTPRINTS != 0u) s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
 }
 

@@ -20,12 +20,11 @@ std::vector<glm::vec4> picture(RendererState& state, const PassScene& s, const S
 }
 
 /// Draws the last picture again, in chunks of so many pairs. How many there were.
-std::size_t in_chunks(RendererState& state, std::uint64_t limit, std::uint64_t entries = shader::PREPARED_ENTRIES) {
+std::size_t in_chunks(RendererState& state, std::uint64_t limit) {
     sort_frame(state.commands, state.plan, state.targets);
     const std::uint32_t sheets = state.plan.params.sheet_count;
-    const Chunks chunks =
-        plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
-                    state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit, entries);
+    const Chunks chunks = plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
+                                      state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
     state.provide_chunks(chunks);
     draw_frame(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()), {});
     return chunks.parts.size();
@@ -247,9 +246,9 @@ TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
     s.settings.sheet_spacing = 8;
     RendererState& state = prepared(s);
     const auto want = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
-    in_chunks(state, ~std::uint64_t{0}, ~std::uint64_t{0});
+    in_chunks(state, ~std::uint64_t{0});
     const auto parts = state.targets.chunks.mapped<glm::uvec2>(1);
-    ASSERT_GT(parts[0].y - parts[0].x, shader::PREPARED_ENTRIES);
+    ASSERT_GT(parts[0].y - parts[0].x, state.plan.params.prepared_mask + 1);
     // The same splats, few enough at a time.
     Settings thin = s.settings;
     thin.sheet_spacing = 0.02;

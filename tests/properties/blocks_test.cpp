@@ -123,6 +123,55 @@ TEST(Blocks, ArePicturesOfTheWholeWithEffects) {
     EXPECT_GE(compare_images(*tau.blocks.tau, *tau.whole.tau).psnr + 20 * std::log10(range), 90);
 }
 
+/// A rod of five blocks with a wall across its beginning and surfaces everywhere behind it.
+Shot walled_rod() {
+    Shot shot;
+    const auto behind = gyroid({20, 20, 600});
+    shot.volume = sampled({20, 20, 600}, [&](const glm::dvec3& p) {
+        const auto at = static_cast<std::size_t>(p.x + 20 * (p.y + 20 * p.z));
+        return std::abs(p.z - 30) <= 2 ? 2.0 : p.z < 60 ? -2.0 : static_cast<double>(behind->values[at]);
+    });
+    shot.scene.iso_values = {0.2};
+    shot.scene.materials = {{}, {{1, 0.85, 0.7}, 4}};
+    shot.camera = look(*shot.volume, {9.5, 9.5, -60}, {9.5, 9.6, 0}, 9);
+    shot.width = shot.height = 96;
+    return shot;
+}
+
+TEST(Blocks, BehindWhatIsOpaqueAreLeftOut) {
+    const Shot shot = walled_rod();
+    const Pair before = both(shot);
+    EXPECT_EQ(before.blocks.stats.blocks, 5U);
+    EXPECT_EQ(before.blocks.stats.blocks_held, 1U);
+    EXPECT_LT(before.blocks.stats.splats_collected, before.whole.stats.splats_collected / 3);
+    EXPECT_GE(compare_images(before.blocks.color, before.whole.color).psnr, 90);
+    EXPECT_GE(std::ranges::min(before.whole.color.pixels), 0.0F);
+
+    // Beside the wall one sees past it, and from the other end whatever that end does not hide.
+    Shot beside = shot;
+    beside.camera = look(*shot.volume, {60, 9.5, -60}, {9.5, 9.6, 100}, 60);
+    const Pair past = both(beside);
+    EXPECT_EQ(past.blocks.stats.blocks_held, 5U);
+    EXPECT_GE(compare_images(past.blocks.color, past.whole.color).psnr, 90);
+    Shot end = shot;
+    end.camera = look(*shot.volume, {9.5, 9.5, 700}, {9.5, 9.6, 0}, 7);
+    const Pair other = both(end);
+    EXPECT_GE(compare_images(other.blocks.color, other.whole.color).psnr, 90);
+}
+
+TEST(Blocks, AreAllThereForWhatNeedsThem) {
+    Shot unsaturated = walled_rod();
+    unsaturated.settings.saturation = 1;
+    EXPECT_EQ(both(unsaturated).blocks.stats.blocks_held, 5U);
+    EXPECT_EQ(both(walled_rod(), {.tau = true}).blocks.stats.blocks_held, 5U);
+    Shot shaded = walled_rod();
+    shaded.scene.lights = {{.kind = Light::Kind::Directional, .direction = {0.3, -0.4, 1}, .shadows = true}};
+    EXPECT_EQ(both(shaded).blocks.stats.blocks_held, 5U);
+    Shot clear = walled_rod();
+    clear.scene.materials.back().extinction = 0.05;
+    EXPECT_EQ(both(clear).blocks.stats.blocks_held, 5U);
+}
+
 /// Deleted when done with.
 struct PackedFile {
     explicit PackedFile(const Volume& volume) { pack_volume(volume, path); }
