@@ -94,8 +94,9 @@ class TileOrder {
     /// After a chunk's lists were made.
     void sort() {
         std::iota(order_.begin(), order_.end(), 0U);
-        const auto empty = std::ranges::partition(order_, [&](std::uint32_t tile) { return length(tile) > 0; });
-        listed_ = order_.size() - empty.size();
+        const auto empty =
+            std::partition(order_.begin(), order_.end(), [&](std::uint32_t tile) { return length(tile) > 0; });
+        listed_ = static_cast<std::size_t>(empty - order_.begin());
         std::ranges::sort(order_.first(listed_), std::greater{}, [&](std::uint32_t tile) { return length(tile); });
     }
 

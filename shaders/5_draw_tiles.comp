@@ -130,11 +130,14 @@ void main() {
             for (uint bits = hits[word]; bits != 0u; bits &= bits - 1u) {
                 uint lane = word * 32u + uint(findLSB(bits));
                 uint sheet = subgroupBroadcast(entry.y, lane);
-                for (uint run = sheet != current ? 1u : 0u; run > 0u; --run) {
-                    fold(sum, open, sheet_sum);
-                    sheet_sum = vec4(0.0);
-                    current = sheet;
-                }
+                vec4 with_sheet = sum;
+                bool still_open = open;
+                fold(with_sheet, still_open, sheet_sum);
+                bool ended = sheet != current;
+                sum = ended ? with_sheet : sum;
+                open = ended ? still_open : open;
+                sheet_sum = ended ? vec4(0.0) : sheet_sum;
+                current = sheet;
                 // All load the same record: on lavapipe handing its numbers over one by one takes longer.
                 uint drawn = subgroupBroadcast(entry.x, lane);
                 PreparedSplat h;

@@ -195,11 +195,9 @@ float footprint_of_faces(float rho2, float pn, float un, float D, float D2, int 
         float before = min(middle, c.high);
         sum += edge_piece(c, before, max(before - start, 0.0), -1.0, face, band) +
                edge_piece(c, behind, max(end - behind, 0.0), 1.0, face, band) - chord_plain(c, face - band.a, face + band.a);
-        for (int more = faces - 1 - i; more > 0; --more) {
-            face = -D2;
-            first = face_first(face, band.a, band.k);
-            last = face_last(face, band.a, band.k);
-        }
+        face = -D2;
+        first = face_first(face, band.a, band.k);
+        last = face_last(face, band.a, band.k);
     }
     return max(sum, 0.0);
 }
