@@ -285,13 +285,14 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
     shadowed.reset();
     const bool hides = may_hide_blocks(request);
     if (hides) sort_by_depth(request, missing);
-    std::size_t look = 0;
+    double looking = 0;
     for (std::size_t number = 0; number < missing.size(); ++number) {
         heed_interruption();
-        // A look takes about as long as a block: often at first, where the nearest may hide all else.
-        if (hides && number == look) {
+        // The nearest may hide all else, so the first looks come soon; together they take a fifth of the time at most.
+        if (hides && 4 * looking <= milliseconds_since(start) - looking) {
+            const auto look = Clock::now();
             leave_hidden_blocks(request, missing, number);
-            look += std::clamp<std::size_t>(number, 1, 8);
+            looking += milliseconds_since(look);
             if (number == missing.size()) break;
         }
         if (number > 0 && milliseconds_since(start) > wait) return Gathered::Unfinished;
