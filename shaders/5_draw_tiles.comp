@@ -1,6 +1,6 @@
 // A chunk of sheets, tile by tile: each pixel adds the splats of a sheet, folds the sheet behind what it has, and stops when it
-// is opaque. A subgroup takes as many splats of its tile's list as it has invocations, each invocation prepares one and sees
-// whether it touches the subgroup's pixels; those that do are then drawn one after another by all of them.
+// is opaque. A subgroup takes as many splats of its tile's list as it has invocations, each invocation looks whether one of them
+// touches the subgroup's pixels; those that do are then drawn one after another by all of them.
 // docs/method.md, 5_draw_tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
