@@ -141,6 +141,27 @@ std::vector<Effect> settings_effects() {
                     .turn_on = [](FrameRequest& r) { r.settings.accumulation = SheetFormat::Half; },
                     .base = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Float; },
                     .resized = {"accumulated picture"}});
+    rows.push_back({.name = "refined pixels",
+                    .help = "where the picture is smooth one pixel of four or sixteen is drawn, and the others follow",
+                    .call = "settings.pixels = \"refined\"; --pixels refined (on by default)",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const Settings s = drawn_settings(r);
+                        const bool refined = s.pixels == PixelChoice::Refined && s.sheet_format == SheetFormat::Tiles;
+                        return refined ? "pixels are `refined`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.pixels = PixelChoice::Refined; },
+                    .base =
+                        [](FrameRequest& r) {
+                            // Near enough that splats are many pixels wide.
+                            r.settings.pixels = PixelChoice::Every;
+                            r.camera.fov_y *= 0.6;
+                            r.size *= 4;
+                        },
+                    .passes = {"5_refine_pixels"},
+                    .resources = {"lists of pixels", "closed pixels, seen"},
+                    .resized = {"tile order", "tile entries"},
+                    .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}, {shader::SPEC_GROUP, "SPEC_GROUP", 256}},
+                    .frame_fields = {"tile_pixels"}});
     rows.push_back({.name = "buried voxels",
                     .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
                     .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",

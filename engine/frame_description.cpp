@@ -219,6 +219,7 @@ FrameDescription describe_frame(const FrameRequest& request, Renderer& renderer,
             std::ranges::find(measured->passes, extra ? pass.draw + ": " + pass.name : pass.name, &PassTime::name);
         if (found != measured->passes.end()) pass.measured_milliseconds = found->milliseconds;
     }
+    std::erase_if(out.passes, [](const PassDescription& pass) { return pass.depends && !pass.measured_milliseconds; });
     return out;
 }
 

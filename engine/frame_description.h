@@ -17,6 +17,8 @@ struct PassDescription {
     std::vector<std::string> variants;  ///< shaders with their specialization constants: "7_resolve.comp PAYLOAD=0"
     double estimated_milliseconds = 0;  ///< on the kind of device that is described; see `estimate`
     std::optional<double> measured_milliseconds;
+    bool depends =
+        false;  ///< whether it runs is seen once splats are sorted; left out of a measured frame that did not
 };
 
 /// An image or a buffer.

@@ -11,6 +11,7 @@
 #include "engine/passes/3_select_footprints.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/5_draw_tiles.h"
+#include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
@@ -141,7 +142,16 @@ class Passes {
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "5_draw_tiles", drawing,
-                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_}))});
+                {variant("5_draw_tiles.comp",
+                         passes::tile_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});
+            // A picture whose splats turn out to be small is drawn without.
+            if (plan.refined) {
+                std::vector<std::string> steps;
+                for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
+                    steps.push_back(variant("5_refine_pixels.comp", passes::refine_constants(step)));
+                add(name, "5_refine_pixels", kRates.composite_pixel * pixels, steps);
+                out_.back().depends = true;
+            }
         } else {
             add(name, "5_draw_splats", drawing,
                 {"group_rect.vert, 5a_clear_sheets.frag",

@@ -75,7 +75,7 @@ std::uint64_t order_bytes(const FramePlan& plan) {
 /// What every renderer holds from the beginning.
 void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(on_host(buffer("frame parameters", sizeof(shader::FrameParams), "(1) FrameParams", "host", "3-7")));
-    out.push_back(on_host(buffer("drawn splats", 4 * sizeof(std::uint32_t), "(4) uint", "4, 5", "host")));
+    out.push_back(on_host(buffer("drawn splats", 3 * sizeof(std::uint32_t), "(3) uint", "4, 5", "host")));
     out.push_back(on_host(buffer("quad indices", passes::quad_indices().size() * sizeof(std::uint32_t),
                                  "(quads x 6) uint", "host", "5")));
 
@@ -209,14 +209,21 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(growing(buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
                                  "(tiles, blocks) uint", "4", "4")));
     out.push_back(on_host(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5, host"))));
-    out.push_back(
-        on_host(growing(buffer("tile order", tiles * word, "(tiles) uint, longest list first", "host", "5"))));
-    out.push_back(growing(buffer("tile entries", chunk_pairs(plan.params.tiles) * 2 * word,
+    out.push_back(on_host(
+        growing(buffer("tile order", tile_order_items(plan) * word, "(tiles) uint, longest list first", "host", "5"))));
+    out.push_back(growing(buffer("tile entries", tile_entry_pairs(plan) * 2 * word,
                                  "(pairs at once) place in the order, sheet", "4", "5")));
     const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
     out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),
                                 "(entries at once) place, kernel, colour", "4", "5")));
     out.push_back(growing(buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4")));
+    out.push_back(
+        on_host(growing(buffer("pixels to draw of tiles", tiles * word, "(tiles) uint", "host, 5", "4, 5, host"))));
+    if (plan.refined) {
+        out.push_back(growing(buffer("lists of pixels", tiles * shader::TILE * shader::TILE * word,
+                                     "(tiles, pixels) x, y in the tile", "5", "5")));
+        out.push_back(on_host(growing(buffer("closed pixels, seen", tiles * word, "(tiles) uint", "5", "host"))));
+    }
     const glm::u64vec2 size(plan.params.size);
     out.push_back(growing(buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5")));
 }

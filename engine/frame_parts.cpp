@@ -116,15 +116,10 @@ PixelsBehind::PixelsBehind(std::span<const float> in_front, float saturation, st
     }
 }
 
-std::vector<std::uint32_t> PixelsBehind::closed_pixels(const glm::ivec2& size, const glm::ivec2& tiles) const {
+std::vector<std::uint32_t> PixelsBehind::closed_pixels(const glm::ivec2& size, const glm::ivec2& tiles,
+                                                       std::span<const std::uint32_t> drawn) const {
     constexpr int kTile = static_cast<int>(shader::TILE);
-    std::vector<std::uint32_t> closed;
-    for (int y = 0; y < tiles.y; ++y) {
-        for (int x = 0; x < tiles.x; ++x) {
-            const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), size - kTile * glm::ivec2(x, y));
-            closed.push_back(static_cast<std::uint32_t>(pixels.x * pixels.y));
-        }
-    }
+    std::vector<std::uint32_t> closed(drawn.begin(), drawn.end());
     const auto width = static_cast<std::size_t>(size.x);
     for (const std::size_t i : again_)
         --closed[i / width / kTile * static_cast<std::size_t>(tiles.x) + i % width / kTile];

@@ -49,8 +49,9 @@ class PixelsBehind {
                  std::span<glm::vec4> pixels);
 
     bool any() const { return !again_.empty(); }
-    /// Of each tile, how many pixels of `size` are closed; row by row.
-    std::vector<std::uint32_t> closed_pixels(const glm::ivec2& size, const glm::ivec2& tiles) const;
+    /// Of each tile, how many of the pixels that are `drawn` are closed; row by row.
+    std::vector<std::uint32_t> closed_pixels(const glm::ivec2& size, const glm::ivec2& tiles,
+                                             std::span<const std::uint32_t> drawn) const;
     /// Takes what was drawn again over into the part, as if nothing were in front.
     void take(std::span<const float> in_front, std::span<const glm::vec4> pixels, std::span<glm::vec4> part) const;
 

@@ -163,25 +163,31 @@ void plan_edge_weights(const Scene& scene, const Settings& settings, shader::Sce
 }  // namespace
 
 SupportSpheres support_spheres(const Settings& drawn) {
-    if (!draws_warped(drawn)) return {{}, {}, kKernelRadius};
+    if (!draws_warped(drawn)) return {{}, kKernelRadius};
     const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
     SupportSpheres out;
     const bool plane = drawn.edge_shape != EdgeShape::Curved;
     out.by_distance = plane ? covering_supports(band, shader::SUPPORT_STEPS)
                             : covering_supports_of_curved(band, shader::SUPPORT_STEPS);
-    // Tables and short cuts leave something where the kernel they stand for is zero.
-    if (plane && drawn.warp == WarpFamily::Edge && drawn.footprints == FootprintMode::Procedural) {
-        out.extents = covering_extents(band, shader::SUPPORT_STEPS, shader::EXTENT_DIRECTIONS);
-    } else {
-        for (const Support& s : out.by_distance)
-            out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS,
-                               static_cast<float>(std::abs(s.shift) + s.radius));
-    }
-    out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(kKernelRadius));
-    out.extents.insert(out.extents.end(), shader::EXTENT_DIRECTIONS, 0.0F);
     out.farthest = largest_support_radius(band);
     for (const Support& s : out.by_distance)
         out.farthest = std::max(out.farthest, std::abs(s.shift) + s.radius);
+    return out;
+}
+
+std::vector<float> support_extents(const Settings& drawn, const SupportSpheres& spheres) {
+    std::vector<float> out;
+    // Tables and short cuts leave something where the kernel they stand for is zero.
+    if (drawn.edge_shape == EdgeShape::Plane && drawn.warp == WarpFamily::Edge &&
+        drawn.footprints == FootprintMode::Procedural) {
+        out = covering_extents({drawn.edge_half_width, drawn.edge_strength}, shader::SUPPORT_STEPS,
+                               shader::EXTENT_DIRECTIONS);
+    } else {
+        for (const Support& s : spheres.by_distance)
+            out.insert(out.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(std::abs(s.shift) + s.radius));
+    }
+    out.insert(out.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(kKernelRadius));
+    out.insert(out.end(), shader::EXTENT_DIRECTIONS, 0.0F);
     return out;
 }
 
@@ -314,6 +320,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                              : settings.warp == WarpFamily::Paper                 ? 10U
                                                                                   : 8U};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
+    plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
+                   std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.variant.transfer = !scene.transfer.empty();
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR

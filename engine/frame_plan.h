@@ -54,6 +54,7 @@ struct FramePlan {
     vk::Format sheet_format{};
     vk::Format accumulated_format{};
     bool gradient = false;               ///< colour over a background of two colours
+    bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
     shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
@@ -77,10 +78,12 @@ std::uint32_t tile_blocks(const glm::ivec2& tiles);
 /// Spheres that hold the kernels of some settings.
 struct SupportSpheres {
     std::vector<Support> by_distance;  ///< SUPPORT_STEPS cells of |D| in [0, R + a]; empty without a warp
-    std::vector<float> extents;        ///< FrameParams::extents
     double farthest = 0;               ///< how far from its voxel any kernel reaches
 };
 SupportSpheres support_spheres(const Settings& drawn);
+
+/// FrameParams::extents of settings that draw warped kernels, with their spheres.
+std::vector<float> support_extents(const Settings& drawn, const SupportSpheres& spheres);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

@@ -23,7 +23,8 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     const std::array sizes{
         vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, shader::BIND_SHEETS),
         vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_SCENE - shader::BIND_SHEETS),
-        vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, shader::BIND_COUNT - shader::BIND_SCENE)};
+        vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, shader::BIND_PICTURE - shader::BIND_SCENE),
+        vk::DescriptorPoolSize(vk::DescriptorType::eStorageTexelBuffer, shader::BIND_COUNT - shader::BIND_PICTURE)};
     pool_ = vk::raii::DescriptorPool(device.handle(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
     const auto layout = pipelines.set_layout();
     set_ = std::move(vk::raii::DescriptorSets(device.handle(), {*pool_, layout}).front());
@@ -38,6 +39,8 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_records_ = placeholder(device, vk::Format::eR32G32B32A32Sfloat, false, false, Usage::eStorage);
     no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
     no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder block");
+    no_texels_ =
+        vk::raii::BufferView(device.handle(), {{}, no_block_.handle(), vk::Format::eR32G32B32A32Sfloat, 0, 16});
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 
@@ -71,6 +74,9 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
             *set_, slot.binding, 0,
             slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
     }
+    const vk::BufferView texels = *targets.output_texels ? *targets.output_texels : *no_texels_;
+    writes.emplace_back(*set_, shader::BIND_PICTURE, 0, 1, vk::DescriptorType::eStorageTexelBuffer, nullptr, nullptr,
+                        &texels);
     device_->handle().updateDescriptorSets(writes, nullptr);
     write_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
     write_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);

@@ -52,7 +52,7 @@ struct TargetResources {
     gpu::Buffer counters;     ///< (sheet_count, SORT_BLOCKS) uint; 4
     gpu::Buffer groups;       ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6
     gpu::Buffer draws;        ///< (group_count) DrawCommand; 4 -> 5
-    gpu::Buffer drawn;        ///< (4) uint, mapped: FrameParams::drawn; 4, 5 -> host
+    gpu::Buffer drawn;        ///< (3) uint, mapped: FrameParams::drawn; 4, 5 -> host
     gpu::Buffer frame;        ///< FrameParams, mapped; host -> 3..7
     gpu::Buffer indices;      ///< quad_indices(); host -> 5
     gpu::Buffer tile_rects;   ///< (splat_count) uvec2: tiles each splat touches; 3 -> 4
@@ -61,11 +61,15 @@ struct TargetResources {
     gpu::Buffer chunks;         ///< (sheet_count) uvec2, mapped: parts of `order`; host -> 4
     gpu::Buffer tile_counters;  ///< (tiles, tile_blocks) uint; 4
     gpu::Buffer tile_ranges;    ///< (tiles) uvec2, mapped: parts of tile_entries; 4 -> 5, host
-    gpu::Buffer tile_order;     ///< (tiles) uint, mapped: longest list first; host -> 5; with rounds only
-    gpu::Buffer tile_entries;   ///< (pairs of the largest chunk) uvec2: place in `order`, sheet; 4 -> 5
-    gpu::Buffer tile_closed;    ///< (tiles) uint: pixels that take no more; 5 -> 4
-    gpu::Buffer tile_sheets;    ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
-    gpu::Buffer output;         ///< (height, width) vec4, mapped; 7 -> host
+    gpu::Buffer tile_order;  ///< (tiles x groups of each) uint, mapped: longest list first; host -> 5; with rounds only
+    gpu::Buffer tile_entries;  ///< (pairs of the largest chunk) uvec2: place in `order`, sheet; 4 -> 5
+    gpu::Buffer tile_closed;   ///< (tiles) uint: pixels that take no more; 5 -> 4
+    gpu::Buffer tile_todo;     ///< (tiles) uint, mapped: pixels that are drawn; host, 5 -> 4, 5, host
+    gpu::Buffer tiles_seen;    ///< (tiles) uint, mapped: tile_closed; 5 -> host; with refined pixels only
+    gpu::Buffer tile_pixels;   ///< (tiles, TILE * TILE) uint: which; 5 -> 5; with refined pixels only
+    gpu::Buffer tile_sheets;   ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
+    gpu::Buffer output;        ///< (height, width) vec4, mapped; 5, 7 -> host
+    vk::raii::BufferView output_texels = nullptr;  ///< the same as texels
 };
 
 /// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image or
@@ -88,6 +92,7 @@ class Bindings {
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;
+    vk::raii::BufferView no_texels_ = nullptr;
 };
 
 /// Size of the staging buffer that upload_image uses for such an image.

@@ -5,10 +5,12 @@
 #include <numeric>
 
 #include "engine/frame.h"
+#include "engine/frame_tile_lists.h"
 #include "engine/passes/3_select_footprints.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/4_sort_tiles.h"
+#include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
@@ -56,6 +58,54 @@ std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, s
     return most;
 }
 
+std::uint64_t tile_count(const FramePlan& plan) {
+    return static_cast<std::uint64_t>(plan.params.tiles.x) * static_cast<std::uint64_t>(plan.params.tiles.y);
+}
+
+namespace {
+
+/// Groups of invocations for the most pixels that a tile draws at once, after that step of a refined picture.
+std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step) {
+    if (!how.refined) return 1;
+    const std::uint32_t across = shader::TILE / step, coarser = across / 2;
+    const std::uint32_t most = step == shader::REFINE_STEP ? across * across : across * across - coarser * coarser;
+    return (most + passes::tile_group(how) - 1) / passes::tile_group(how);
+}
+
+/// How many pixels of each tile are drawn first.
+void fill_todo(const FramePlan& plan, const TargetResources& targets) {
+    const glm::ivec2 tiles = plan.params.tiles, size = plan.params.size;
+    const auto step = static_cast<int>(plan.refined ? shader::REFINE_STEP : 1);
+    const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));
+    constexpr int kTile = static_cast<int>(shader::TILE);
+    for (int y = 0, tile = 0; y < tiles.y; ++y) {
+        for (int x = 0; x < tiles.x; ++x, ++tile) {
+            const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), size - kTile * glm::ivec2(x, y));
+            const glm::ivec2 drawn = (pixels + step - 1) / step;
+            todo[static_cast<std::size_t>(tile)] = static_cast<std::uint32_t>(drawn.x * drawn.y);
+        }
+    }
+}
+
+}  // namespace
+
+bool worth_refining(const Chunks& chunks) {
+    // Splats that are few pixels wide are as many for the eight pixels that are drawn together, wherever those lie.
+    return chunks.pairs > 4 * chunks.entries;
+}
+
+std::uint64_t tile_order_items(const FramePlan& plan) {
+    return tile_count(plan) * tile_groups({.rounds = true, .refined = plan.refined}, 1);
+}
+
+std::uint64_t tile_entry_pairs(const FramePlan& plan) {
+    return chunk_pairs(plan.params.tiles) * (plan.refined ? 2 : 1);
+}
+
+std::uint32_t first_step(const FramePlan& plan) {
+    return plan.refined ? shader::REFINE_STEP : 1;
+}
+
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                   const Division& division) {
     const auto& p = plan.params;
@@ -75,114 +125,198 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
     Chunks chunks = plan_chunks(pairs.subspan(sheets.x, count), starts.subspan(sheets.x, count + 1),
                                 chunk_pairs(p.tiles), std::uint64_t{p.prepared_mask} + 1);
     chunks.sheets = sheets;
+    chunks.entries = starts[sheets.y] - starts[sheets.x];
     return chunks;
 }
 
 namespace {
 
-/// Tiles by the length of their lists, so that a round goes to those alone that it has something for.
-class TileOrder {
+/// A tiled frame from its chunks on: for a device that takes it all at once, and for one that must be given rounds.
+class TileFrame {
   public:
-    TileOrder(const shader::FrameParams& p, const TargetResources& targets, bool rounds)
-        : count_(static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y)) {
-        if (!rounds) return;
-        ranges_ = targets.tile_ranges.mapped<glm::uvec2>(count_);
-        order_ = targets.tile_order.mapped<std::uint32_t>(count_);
-        listed_ = 0;
+    TileFrame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, std::uint32_t chunks,
+              passes::TileDraw how, std::uint32_t first, std::uint32_t last)
+        : commands_(commands),
+          plan_(plan),
+          targets_(targets),
+          how_(how),
+          first_(first),
+          last_(last),
+          parts_(targets.chunks.mapped<glm::uvec2>(chunks)),
+          prepared_(chunks) {
+        how_.refined = plan.refined;
     }
 
-    /// After a chunk's lists were made.
-    void sort() {
-        std::iota(order_.begin(), order_.end(), 0U);
-        const auto empty =
-            std::partition(order_.begin(), order_.end(), [&](std::uint32_t tile) { return length(tile) > 0; });
-        listed_ = static_cast<std::size_t>(empty - order_.begin());
-        std::ranges::sort(order_.first(listed_), std::greater{}, [&](std::uint32_t tile) { return length(tile); });
+    std::vector<PassTime> at_once() {
+        commands_.run([&] {
+            for (std::uint32_t step = first_; step >= last_; step /= 2) {
+                const std::uint32_t groups = tile_groups(how_, step);
+                for (std::uint32_t chunk = 0; chunk < parts_.size(); ++chunk) {
+                    // The lists of a single chunk stand until the picture is there.
+                    if (step == first_ || parts_.size() > 1) sort(chunk);
+                    prepare(chunk);
+                    draw(chunk, step, tile_count(plan_) * groups, 0);
+                }
+                finish(step);
+            }
+        });
+        return commands_.span_times();
     }
 
-    /// Tiles whose lists go on in that round of TILE_ROUND entries: the first so many.
-    std::size_t in_round(std::uint32_t round) const {
-        if (order_.empty()) return count_;
-        const auto some = order_.first(listed_);
-        const auto done = std::ranges::lower_bound(some, round * shader::TILE_ROUND, std::greater{},
-                                                   [&](std::uint32_t tile) { return length(tile); });
-        return static_cast<std::size_t>(done - some.begin());
+    std::vector<PassTime> in_rounds(const std::function<void()>& between) {
+        std::vector<PassTime> times;
+        const auto run = [&](const auto& body) {
+            commands_.run(body);
+            add_times(times, commands_.span_times());
+        };
+        TileOrder order(plan_, targets_, passes::tile_group(how_));
+        KeptLists kept(plan_, targets_, parts_.size());
+        for (std::uint32_t step = first_; step >= last_; step /= 2) {
+            order.clear();
+            const auto count = order.any_todo() ? static_cast<std::uint32_t>(parts_.size()) : 0U;
+            for (std::uint32_t chunk = 0; chunk <= count; ++chunk) {
+                std::uint32_t round = 0;
+                const auto draw_round = [&] {
+                    if (round == 0) prepare(chunk - 1);
+                    draw(chunk - 1, step, order.in_round(round), round);
+                    ++round;
+                };
+                while (between && order.in_round(round) > 0) {
+                    run(draw_round);
+                    between();
+                }
+                const auto draw_rest = [&] {
+                    while (order.in_round(round) > 0)
+                        draw_round();
+                };
+                if (chunk == count) {
+                    run([&] {
+                        draw_rest();
+                        finish(step);
+                    });
+                    break;
+                }
+                // Whether lists that were kept still serve is seen once the chunk before is drawn, and others lie
+                // elsewhere.
+                if (how_.refined && order.in_round(round) > 0) {
+                    run([&] {
+                        draw_rest();
+                        see_tiles();
+                    });
+                }
+                if (!how_.refined || !kept.take(chunk)) {
+                    if (how_.refined) kept.place(chunk, most_pairs(chunk));
+                    run([&] {
+                        draw_rest();
+                        sort(chunk);
+                        see_tiles();
+                    });
+                    if (how_.refined) kept.keep(chunk);
+                }
+                order.sort(tile_groups(how_, step));
+            }
+        }
+        return times;
     }
 
   private:
-    std::uint32_t length(std::uint32_t tile) const { return ranges_[tile].y - ranges_[tile].x; }
-    std::size_t count_, listed_ = 0;
-    std::span<const glm::uvec2> ranges_;
-    std::span<std::uint32_t> order_;
+    std::uint32_t entries(std::uint32_t chunk) const { return parts_[chunk].y - parts_[chunk].x; }
+    /// A sheet of very many splats is drawn from the splats themselves.
+    bool is_prepared(std::uint32_t chunk) const { return entries(chunk) <= plan_.params.prepared_mask + 1; }
+
+    std::span<const std::uint32_t> pairs() const {
+        return targets_.sheet_pairs.mapped<std::uint32_t>(plan_.params.sheet_count);
+    }
+    std::span<const std::uint32_t> starts() const {
+        return targets_.sheet_starts.mapped<std::uint32_t>(std::size_t{plan_.params.sheet_count} + 1);
+    }
+    std::uint64_t most_pairs(std::uint32_t chunk) const {
+        return most_column_pairs(parts_[chunk], 1, pairs(), starts());
+    }
+
+    void sort(std::uint32_t chunk) {
+        const std::uint32_t blocks = plan_.params.tile_blocks;
+        const std::uint64_t most = most_column_pairs(parts_[chunk], blocks, pairs(), starts());
+        const auto steps = static_cast<std::uint32_t>((most + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
+        commands_.span("4_sort_tiles",
+                       [&] { passes::sort_tiles(commands_, targets_.tile_counters, blocks, chunk, steps); });
+    }
+
+    /// Unless the chunk's splats still are.
+    void prepare(std::uint32_t chunk) {
+        if (!is_prepared(chunk) || prepared_[chunk]) return;
+        // Places are taken in turn.
+        if (parts_.back().y - parts_.front().x > plan_.params.prepared_mask + 1)
+            std::fill(prepared_.begin(), prepared_.end(), false);
+        prepared_[chunk] = true;
+        commands_.span("4_prepare_splats",
+                       [&] { passes::prepare_splats(commands_, plan_.variant, chunk, entries(chunk)); });
+    }
+
+    void draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t groups, std::uint32_t round) {
+        passes::TileDraw of_chunk = how_;
+        of_chunk.prepared = is_prepared(chunk);
+        commands_.span("5_draw_tiles", [&] {
+            passes::draw_tiles(commands_, plan_.variant, of_chunk,
+                               {.groups = groups,
+                                .round = round,
+                                .tile_groups = tile_groups(how_, step),
+                                .first_pixels = how_.refined && step == shader::REFINE_STEP});
+        });
+    }
+
+    /// For the host: pixels of tiles that take no more.
+    void see_tiles() {
+        if (!how_.refined) return;
+        commands_.raw().copyBuffer(targets_.tile_closed.handle(), targets_.tiles_seen.handle(),
+                                   vk::BufferCopy(0, 0, tile_count(plan_) * sizeof(std::uint32_t)));
+        commands_.barrier();
+    }
+
+    /// After the pixels of a step.
+    void finish(std::uint32_t step) {
+        if (first_ == last_ && how_.part) return;
+        if (step > 1) {
+            commands_.span("5_refine_pixels", [&] { passes::refine_pixels(commands_, tile_count(plan_), step); });
+            see_tiles();
+        } else if (!how_.part) {
+            commands_.span("7_resolve",
+                           [&] { passes::resolve(commands_, plan_.variant, plan_.params.size, plan_.gradient); });
+        }
+    }
+
+    gpu::Commands& commands_;
+    const FramePlan& plan_;
+    const TargetResources& targets_;
+    passes::TileDraw how_;
+    std::uint32_t first_, last_;  ///< steps
+    std::span<const glm::uvec2> parts_;
+    std::vector<bool> prepared_;  ///< chunks whose splats are
 };
 
 }  // namespace
 
 std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between) {
-    const auto& p = plan.params;
-    const auto parts = targets.chunks.mapped<glm::uvec2>(chunks);
-    const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
-    const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
-    const auto sort = [&](std::uint32_t chunk) {
-        const std::uint64_t most = most_column_pairs(parts[chunk], p.tile_blocks, pairs, starts);
-        const auto steps = static_cast<std::uint32_t>((most + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
-        commands.span("4_sort_tiles",
-                      [&] { passes::sort_tiles(commands, targets.tile_counters, p.tile_blocks, chunk, steps); });
-    };
-    TileOrder order(p, targets, how.rounds);
-    // A sheet of very many splats is drawn from the splats themselves.
-    const auto entries = [&](std::uint32_t chunk) { return parts[chunk].y - parts[chunk].x; };
-    const auto is_prepared = [&](std::uint32_t chunk) { return entries(chunk) <= p.prepared_mask + 1; };
-    const auto prepare = [&](std::uint32_t chunk) {
-        if (!is_prepared(chunk)) return;
-        commands.span("4_prepare_splats",
-                      [&] { passes::prepare_splats(commands, plan.variant, chunk, entries(chunk)); });
-    };
-    const auto draw = [&](std::uint32_t chunk, std::uint32_t round) {
-        passes::TileDraw of_chunk = how;
-        of_chunk.prepared = is_prepared(chunk);
-        commands.span("5_draw_tiles",
-                      [&] { passes::draw_tiles(commands, plan.variant, order.in_round(round), of_chunk, round); });
-    };
-    const auto resolve = [&] {
-        if (how.part) return;
-        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
-    };
-    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(4).last(2), 0U);
-    if (!how.rounds) {
-        commands.run([&] {
-            for (std::uint32_t chunk = 0; chunk < chunks; ++chunk) {
-                sort(chunk);
-                prepare(chunk);
-                draw(chunk, 0);
-            }
-            resolve();
-        });
-        return commands.span_times();
-    }
-    std::vector<PassTime> times;
-    for (std::uint32_t chunk = 0; chunk <= chunks; ++chunk) {
-        std::uint32_t round = 0;
-        for (; between && order.in_round(round) > 0; ++round) {
-            commands.run([&] { draw(chunk - 1, round); });
-            add_times(times, commands.span_times());
-            between();
-        }
-        commands.run([&] {
-            for (; order.in_round(round) > 0; ++round)
-                draw(chunk - 1, round);
-            if (chunk < chunks) {
-                sort(chunk);
-                prepare(chunk);
-            } else {
-                resolve();
-            }
-        });
-        order.sort();
-        add_times(times, commands.span_times());
-    }
-    return times;
+    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(3).last(2), 0U);
+    fill_todo(plan, targets);
+    TileFrame frame(commands, plan, targets, chunks, how, first_step(plan), 1);
+    return how.rounds ? frame.in_rounds(between) : frame.at_once();
+}
+
+std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                std::uint32_t chunks, passes::TileDraw how, std::uint32_t step) {
+    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(3).last(2), 0U);
+    if (step == first_step(plan)) fill_todo(plan, targets);
+    how.part = true;
+    TileFrame frame(commands, plan, targets, chunks, how, step, step);
+    return how.rounds ? frame.in_rounds({}) : frame.at_once();
+}
+
+std::vector<PassTime> refine_frame(gpu::Commands& commands, const FramePlan& plan, std::uint32_t step) {
+    commands.run(
+        [&] { commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan), step); }); });
+    return commands.span_times();
 }
 
 std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan) {

@@ -54,7 +54,7 @@ bool uses_table(const Settings& settings) {
 
 RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice), opened_as(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
-    targets.drawn = gpu::Buffer(device, 4 * sizeof(std::uint32_t), Place::Host, "drawn splats");
+    targets.drawn = gpu::Buffer(device, 3 * sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
     targets.indices = gpu::Buffer(device, indices.size() * sizeof(indices[0]), Place::Host, "quad indices");
     std::copy(indices.begin(), indices.end(), targets.indices.mapped<std::uint32_t>(indices.size()).begin());
@@ -112,7 +112,7 @@ void RendererState::choose_supports(const Settings& settings) {
     const SupportSpheres spheres = support_spheres(settings);
     std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
                            [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-    std::ranges::copy(spheres.extents, footprint_resources.extents.begin());
+    std::ranges::copy(support_extents(settings, spheres), footprint_resources.extents.begin());
     footprint_resources.farthest_reach = spheres.farthest;
     supports_made_for = wanted;
 }
@@ -160,11 +160,16 @@ void RendererState::provide_footprints(const Settings& settings) {
     footprint_resources.params.paper_rise = static_cast<float>(paper.rise);
 }
 
-void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
-                         std::uint32_t payload, const glm::dvec2& offset) {
-    plan = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
+FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, const Settings& settings,
+                                      const glm::ivec2& size, std::uint32_t payload) const {
+    return plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                       volume_resources.box_low, volume_resources.box_high,
                       draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
+}
+
+void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+                         std::uint32_t payload, const glm::dvec2& offset) {
+    plan = plan_picture(scene, camera, settings, size, payload);
     if (offset != glm::dvec2(0)) shift_rays(plan, offset);
     if (opened_as.check_numbers) check_splats();
     draw_planned();
@@ -182,6 +187,7 @@ void RendererState::draw_planned() {
     if (exchange) return draw_part(how);
     const Chunks chunks = sort_frame(commands, plan, targets);
     draw_times = commands.span_times();
+    plan.refined = plan.refined && worth_refining(chunks);
     provide_chunks(chunks);
     std::function<void()> between;
     if (interruption) between = [this] { heed_interruption(); };

@@ -33,8 +33,8 @@ void RendererState::add_counts(RenderStats& stats) const {
     };
     if (plan.variant.tiles) {
         stats.dirty_share = dirty_share_of_tiles(plan.params, targets);
-        const auto counts = targets.drawn.mapped<std::uint32_t>(4);
-        add({.vertices = 0, .fragments = counts[2], .shaded = counts[3]});
+        const auto counts = targets.drawn.mapped<std::uint32_t>(3);
+        add({.vertices = 0, .fragments = counts[1], .shaded = counts[2]});
         return;
     }
     if (const auto counts = commands.draw_counts()) add(*counts);

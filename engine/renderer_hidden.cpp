@@ -5,7 +5,6 @@
 #include "engine/frame_parts.h"
 #include "engine/gpu/read_back.h"
 #include "engine/renderer_state.h"
-#include "footprints/kernel.h"
 
 namespace edgesplat {
 namespace {
@@ -63,11 +62,10 @@ void RendererState::leave_hidden_blocks(const FrameRequest& request, std::vector
     const glm::ivec2 sheets =
         sheets_of_block(geometry, request.camera, thickness, reach, residence->blocks[missing[first]]);
     bound_held_blocks();
-    plan = plan_frame(*volume, request.scene, request.camera, drawn, request.size, shader::PAYLOAD_COLOR,
-                      volume_resources.splat_count, volume_resources.box_low, volume_resources.box_high,
-                      draws_warped(drawn) ? reach : kKernelRadius);
+    plan = plan_picture(request.scene, request.camera, drawn, request.size, shader::PAYLOAD_COLOR);
     // A little more than a pixel needs to be closed, for what the box of the splats does to rounding.
     plan.params.saturation += 0.2F * (1 - plan.params.saturation);
+    plan.refined = false;
     provide_targets(plan);
     const Chunks chunks = sort_frame(commands, plan, targets, {{}, glm::ivec2(0, sheets.x)});
     provide_chunks(chunks);

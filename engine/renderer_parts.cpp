@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <ctime>
+#include <functional>
 
 #include "engine/error.h"
 #include "engine/frame_parts.h"
+#include "engine/gpu/read_back.h"
 #include "engine/renderer_state.h"
 
 namespace edgesplat {
@@ -51,11 +53,45 @@ void Renderer::divide_sheets(PartExchange* exchange) {
     state_->exchange = exchange;
 }
 
+bool RendererState::parts_refine(const Chunks& own) {
+    if (!plan.refined) return false;
+    std::vector<glm::vec4> sum{{static_cast<float>(own.pairs), static_cast<float>(own.entries), 0, 0}};
+    exchange->add(sum);
+    std::vector<std::uint32_t> said{0};
+    if (exchange->part().index == 0) {
+        Chunks all;
+        all.pairs = static_cast<std::uint64_t>(sum[0].x);
+        all.entries = static_cast<std::uint64_t>(sum[0].y);
+        said[0] = worth_refining(all) ? 1 : 0;
+    }
+    exchange->share(said);
+    return said[0] == 1;
+}
+
+void RendererState::share_pixels(std::uint32_t step, std::span<glm::vec4> whole) {
+    const std::size_t tiles = tile_count(plan), of_tile = std::size_t{shader::TILE} * shader::TILE;
+    const auto todo = targets.tile_todo.mapped<std::uint32_t>(tiles);
+    const bool first = exchange->part().index == 0;
+    std::vector<std::uint32_t> lists(tiles * of_tile), counts(tiles);
+    if (first) {
+        const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
+        std::ranges::copy(whole, pixels.begin());
+        add_times(draw_times, refine_frame(commands, plan, step));
+        std::ranges::copy(pixels, whole.begin());
+        lists = gpu::read_back<std::uint32_t>(device, commands, targets.tile_pixels, 0, lists.size());
+        std::ranges::copy(todo, counts.begin());
+    }
+    exchange->share(counts);
+    exchange->share(lists);
+    if (!first) {
+        std::ranges::copy(counts, todo.begin());
+        write(commands, targets.tile_pixels, lists);
+    }
+    write(commands, targets.tile_closed, std::vector<std::uint32_t>(tiles));
+    std::ranges::fill(targets.output.mapped<glm::vec4>(whole.size()), glm::vec4(0));
+}
+
 void RendererState::draw_part(passes::TileDraw how) {
-    const bool sums = plan.variant.payload == shader::PAYLOAD_TAU;
-    const auto& size = plan.params.size;
-    const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-    const auto pixels = targets.output.mapped<glm::vec4>(count);
     std::uint32_t chunks = 0;
     {
         const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
@@ -67,7 +103,28 @@ void RendererState::draw_part(passes::TileDraw how) {
         share.pairs += planned.pairs;
         provide_chunks(planned);
         chunks = static_cast<std::uint32_t>(planned.parts.size());
-        add_times(draw_times, draw_frame(commands, plan, targets, chunks, how));
+        plan.refined = parts_refine(planned);
+    }
+    std::vector<glm::vec4> whole(static_cast<std::size_t>(plan.params.size.x) *
+                                 static_cast<std::size_t>(plan.params.size.y));
+    for (std::uint32_t step = first_step(plan); step > 0; step /= 2) {
+        const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step);
+        std::ranges::transform(whole, drawn, whole.begin(), std::plus{});
+        if (step > 1) share_pixels(step, whole);
+    }
+    if (exchange->part().index > 0) return;
+    std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
+    add_times(draw_times, resolve_frame(commands, plan));
+}
+
+std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step) {
+    const bool sums = plan.variant.payload == shader::PAYLOAD_TAU;
+    const auto& size = plan.params.size;
+    const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    const auto pixels = targets.output.mapped<glm::vec4>(count);
+    {
+        const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
+        add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
     }
     const auto wait = [&] {
         const AddedTime time(share.wait_milliseconds);
@@ -86,8 +143,9 @@ void RendererState::draw_part(passes::TileDraw how) {
             const AddedTime time(share.redraw_milliseconds, &share.processor_milliseconds);
             const PixelsBehind behind(in_front, plan.params.saturation, part, pixels);
             if (behind.any()) {
-                write(commands, targets.tile_closed, behind.closed_pixels(size, plan.params.tiles));
-                add_times(draw_times, draw_frame(commands, plan, targets, chunks, how));
+                const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));
+                write(commands, targets.tile_closed, behind.closed_pixels(size, plan.params.tiles, todo));
+                add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
                 behind.take(in_front, pixels, part);
             }
         }
@@ -95,9 +153,7 @@ void RendererState::draw_part(passes::TileDraw how) {
     }
     const AddedTime time(share.composite_milliseconds);
     sums ? exchange->add(part) : exchange->fold(part);
-    if (exchange->part().index > 0) return;
-    std::ranges::copy(part, pixels.begin());
-    add_times(draw_times, resolve_frame(commands, plan));
+    return part;
 }
 
 }  // namespace edgesplat

@@ -34,6 +34,8 @@ class PartExchange {
     virtual void fold(std::span<glm::vec4> pixels) = 0;
     /// Likewise their sum.
     virtual void add(std::span<glm::vec4> pixels) = 0;
+    /// Part 0's words, for all.
+    virtual void share(std::span<std::uint32_t> words) = 0;
 };
 
 /// Which sheets of a picture were drawn here, and the time of all its samples.

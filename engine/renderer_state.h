@@ -130,6 +130,10 @@ struct RendererState : DeviceState, SplatSet {
     void provide_tiles(FramePlan& plan);
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);
+    void provide_output(std::size_t pixels);
+    /// Of the splats that are there.
+    FramePlan plan_picture(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+                           std::uint32_t payload) const;
     /// Passes 3 to 7 with one payload; the picture is left in targets.output. `offset`: of its rays from the pixels'
     /// centres, in pixels.
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
@@ -143,6 +147,12 @@ struct RendererState : DeviceState, SplatSet {
 
     /// Of a tiled picture, the part that the exchange says; with the first part, the whole is left in targets.output.
     void draw_part(passes::TileDraw how);
+    /// Whether the whole picture is refined: what a part knows of its splats is its own.
+    bool parts_refine(const Chunks& own);
+    /// This part's pixels of a step; the whole ones with the first part.
+    std::vector<glm::vec4> draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step);
+    /// After a step: the first part fills in what follows, and says which pixels all are to draw next.
+    void share_pixels(std::uint32_t step, std::span<glm::vec4> whole);
 
     /// Throws Interrupted if that is wanted.
     void heed_interruption() const {

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/frame_tiles.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/renderer_state.h"
 
@@ -35,7 +36,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * kWord, Place::Device,
          "sort counters");
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels");
+    provide_output(pixels);
 
     p.splats = volume_resources.splats.address();
     p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
@@ -59,12 +60,24 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     bindings.write(volume_resources, footprint_resources, targets);
 }
 
+void RendererState::provide_output(std::size_t pixels) {
+    const std::size_t bytes = pixels * sizeof(glm::vec4);
+    if (targets.output && targets.output.bytes() >= bytes) return;
+    const std::uint32_t most = device.physical().getProperties().limits.maxTexelBufferElements;
+    if (pixels > most) fail("size: {} pixels, expected at most {} on this device", pixels, most);
+    targets.output_texels = nullptr;
+    grow(device, targets.output, bytes, Place::Host, "output pixels");
+    targets.output_texels =
+        vk::raii::BufferView(device.handle(), {{}, targets.output.handle(), vk::Format::eR32G32B32A32Sfloat, 0, bytes});
+}
+
 void RendererState::provide_layers(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
     const auto layers = static_cast<int>(p.sheets_per_group);
     for (gpu::Buffer* unused :
          {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
-          &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_closed, &targets.tile_sheets})
+          &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_closed, &targets.tile_todo,
+          &targets.tile_pixels, &targets.tiles_seen, &targets.tile_sheets})
         *unused = {};
     targets.prepared = {};
     if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
@@ -118,9 +131,18 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
     // The host sees which tiles a round is for.
     grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges");
-    grow(device, targets.tile_order, tiles * kWord, Place::Host, "tile order");
-    grow(device, targets.tile_entries, chunk_pairs(p.tiles) * 2 * kWord, Place::Device, "tile entries");
+    grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order");
+    grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries");
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
+    grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles");
+    if (plan_in_use.refined) {
+        grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device,
+             "lists of pixels");
+        grow(device, targets.tiles_seen, tiles * kWord, Place::Host, "closed pixels, seen");
+    } else {
+        targets.tiles_seen = {};
+        targets.tile_pixels = {};
+    }
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
     grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets");
     const std::uint32_t slots = passes::prepared_slots(std::uint64_t{p.splat_count} * plan_in_use.sheets_per_splat);
@@ -140,6 +162,8 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     p.tile_order = targets.tile_order.address();
     p.tile_entries = targets.tile_entries.address();
     p.tile_closed = targets.tile_closed.address();
+    p.tile_todo = targets.tile_todo.address();
+    p.tile_pixels = targets.tile_pixels ? targets.tile_pixels.address() : 0;
     p.tile_sheets = targets.tile_sheets.address();
 }
 

@@ -10,7 +10,7 @@ void main() {
     for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
         uvec2 at = tile_of(pairs);
         uint tile = at.y * uint(params.frame.tiles.x) + at.x;
-        counters.at[tile * params.frame.tile_blocks + block.column] += is_closed(at.x, at.y) ? 0u : 1u;
+        counters.at[tile * params.frame.tile_blocks + block.column] += is_closed(tile) ? 0u : 1u;
         next_pair(pairs, block);
     }
     end_pairs(pairs, block, 0u);

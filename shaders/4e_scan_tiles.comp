@@ -19,7 +19,7 @@ void main() {
 
     uint sum = 0u;
     for (uint i = first * blocks; i < last * blocks; ++i) sum += counters.at[i];
-    uint offset = sum_before(sum), longest = 0u;
+    uint offset = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
         for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
@@ -28,14 +28,5 @@ void main() {
             offset += n;
         }
         ranges.at[tile] = uvec2(begin, offset);
-        longest = max(longest, offset - begin);
     }
-    barrier();
-    sums[me] = longest;
-    barrier();
-    for (uint step = 128u; step > 0u; step /= 2u) {
-        if (me < step) sums[me] = max(sums[me], sums[me + step]);
-        barrier();
-    }
-    if (me == 0u) UintsRef(params.frame.drawn).at[1] = sums[0];
 }

@@ -15,7 +15,7 @@ void main() {
         while (starts.at[sheet + 1u] <= pairs.entry) ++sheet;
         uvec2 at = tile_of(pairs);
         uint tile = at.y * uint(params.frame.tiles.x) + at.x;
-        if (!is_closed(at.x, at.y))
+        if (!is_closed(tile))
             entries.at[counters.at[tile * params.frame.tile_blocks + block.column]++] = uvec2(pairs.entry, sheet);
         next_pair(pairs, block);
     }

@@ -11,7 +11,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 256) in;
+layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -27,10 +27,12 @@ layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
+layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(binding = BIND_TABLE) uniform sampler2DArray table;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
-layout(push_constant) uniform Push { uint draw_round; };
+layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
 #include "shaders/lib/transfer.glsl"
@@ -51,11 +53,7 @@ FaceBand band;
 #define FACE_BAND(d, d2, faces) band
 #include "shaders/lib/splat_value.glsl"
 #include "shaders/lib/fold_sheet.glsl"
-
-// Consecutive invocations are compact blocks: 8 are 4 x 2 pixels, 32 are 8 x 4, 64 are 8 x 8.
-ivec2 pixel_in_tile(uint i) {
-    return ivec2((i & 3u) | (i >> 2 & 4u) | (i >> 3 & 8u), (i >> 2 & 1u) | (i >> 2 & 2u) | (i >> 3 & 4u) | (i >> 4 & 8u));
-}
+#include "shaders/lib/pixel_in_tile.glsl"
 
 // A pixel takes no more once it is opaque.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
@@ -63,10 +61,25 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
     open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
 }
 
+// Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
+const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
+
+// Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
+uint pixels_of(uint tile) { return mix(UintsRef(params.frame.tile_todo).at[tile], FIRST_PIXELS, what >> 31 == 1u); }
+
+ivec2 place_of(uint tile, uint place) {
+    if (REFINED == 0u) return pixel_in_tile(place);
+    uint listed = UintsRef(params.frame.tile_pixels).at[tile * TILE * TILE + place];
+    return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
+}
+
 void main() {
-    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint draw_round = what & 0xfffffu;
+    uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (ROUNDS == 1u) item = UintsRef(params.frame.tile_order).at[item];
+    uint groups = REFINED == 1u ? what >> 20 & 0xfu : 1u;
+    uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    if (ROUNDS == 1u) tile = UintsRef(params.frame.tile_order).at[tile];
     uvec2 range = PairsRef(params.frame.tile_ranges).at[tile];
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + draw_round * TILE_ROUND, min(range.x + (draw_round + 1u) * TILE_ROUND, range.y));
@@ -74,12 +87,12 @@ void main() {
     // The sheet of the first entry may have begun in the round before, that of the last may go on in the next.
     bool goes_on = ROUNDS == 1u && range.y < whole_end, went_on = ROUNDS == 1u && draw_round > 0u;
     ivec2 size = params.frame.size;
+    uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
     ivec2 pixel = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) +
-                  pixel_in_tile(gl_LocalInvocationIndex);
-    bool inside = pixel.x < size.x && pixel.y < size.y;
+                  place_of(tile, min(place, max(count, 1u) - 1u));
+    bool inside = pixel.x < size.x && pixel.y < size.y && place < count;
     ivec2 held = min(pixel, size - 1);
-    PixelsRef picture = PixelsRef(params.frame.output_pixels);
-    vec4 sum = picture.at[held.y * size.x + held.x];
+    vec4 sum = imageLoad(picture, held.y * size.x + held.x);
     bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
     bool open = was_open;
     uint evaluated = 0u, shaded = 0u;
@@ -173,14 +186,14 @@ void main() {
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) unfinished.at[held.y * size.x + held.x] = sheet_sum;
-        for (uint write = was_open ? 1u : 0u; write > 0u; --write) picture.at[held.y * size.x + held.x] = sum;
+        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {
         uint all = subgroupAdd(evaluated), of_open = subgroupAdd(shaded);
         if (subgroupElect()) {
-            atomicAdd(UintsRef(params.frame.drawn).at[2], all);
-            atomicAdd(UintsRef(params.frame.drawn).at[3], of_open);
+            atomicAdd(UintsRef(params.frame.drawn).at[1], all);
+            atomicAdd(UintsRef(params.frame.drawn).at[2], of_open);
         }
     }
     if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);

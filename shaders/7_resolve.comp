@@ -10,14 +10,15 @@ layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
+layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
     if (any(greaterThanEqual(pixel, size))) return;
-    PixelsRef picture = PixelsRef(params.frame.output_pixels);
+    int at = pixel.y * size.x + pixel.x;
     vec4 sum = vec4(0.0);
-    if (TILES == 1u) sum = picture.at[pixel.y * size.x + pixel.x];
+    if (TILES == 1u) sum = imageLoad(picture, at);
     else sum = texelFetch(accumulated, pixel, 0);
     if (PAYLOAD == PAYLOAD_COLOR) {
         vec3 behind = params.frame.background;
@@ -33,5 +34,5 @@ void main() {
         float largest = max(abs(sum.r), max(abs(sum.g), abs(sum.b)));
         sum.rgb = largest > 0.0 ? normalize(sum.rgb / largest) : vec3(0.0);
     }
-    picture.at[pixel.y * size.x + pixel.x] = sum;
+    imageStore(picture, at, sum);
 }

@@ -66,4 +66,8 @@ void MpiExchange::add(std::span<glm::vec4> pixels) {
     reduce(pixels.data(), mpi_count(4 * pixels.size()), MPI_FLOAT, MPI_SUM, part_.index);
 }
 
+void MpiExchange::share(std::span<std::uint32_t> words) {
+    MPI_Bcast(words.data(), mpi_count(words.size()), MPI_UINT32_T, 0, MPI_COMM_WORLD);
+}
+
 }  // namespace ranks

@@ -24,6 +24,7 @@ class MpiExchange : public edgesplat::PartExchange {
     void pass_back(std::span<float> transmittance) override;
     void fold(std::span<glm::vec4> pixels) override;
     void add(std::span<glm::vec4> pixels) override;
+    void share(std::span<std::uint32_t> words) override;
 
   private:
     edgesplat::SheetPart part_;

@@ -12,7 +12,7 @@ vk::BufferCreateInfo create_info(std::size_t bytes) {
     return {{},
             std::max<std::size_t>(bytes, 16),
             Usage::eStorageBuffer | Usage::eShaderDeviceAddress | Usage::eIndirectBuffer | Usage::eIndexBuffer |
-                Usage::eUniformBuffer | Usage::eTransferSrc | Usage::eTransferDst};
+                Usage::eUniformBuffer | Usage::eStorageTexelBuffer | Usage::eTransferSrc | Usage::eTransferDst};
 }
 
 }  // namespace

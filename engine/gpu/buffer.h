@@ -28,7 +28,8 @@ class Buffer {
 
     vk::Buffer handle() const { return *buffer_; }
     std::size_t bytes() const { return bytes_; }
-    shader::Address address() const { return address_; }
+    /// Of the byte `offset`.
+    shader::Address address(std::uint64_t offset = 0) const { return address_ + offset; }
     explicit operator bool() const { return device_ != nullptr; }
 
     /// The mapped memory (Place::Host only) as `count` elements.

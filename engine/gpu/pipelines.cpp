@@ -57,9 +57,10 @@ Pipelines::Pipelines(const Device& device, const std::filesystem::path& cache_fo
         vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eVertex | vk::ShaderStageFlagBits::eFragment;
     std::array<vk::DescriptorSetLayoutBinding, shader::BIND_COUNT> bindings;
     for (std::uint32_t i = 0; i < shader::BIND_COUNT; ++i) {
-        const auto type = i < shader::BIND_SHEETS  ? Type::eStorageImage
-                          : i < shader::BIND_SCENE ? Type::eCombinedImageSampler
-                                                   : Type::eUniformBuffer;
+        const auto type = i < shader::BIND_SHEETS    ? Type::eStorageImage
+                          : i < shader::BIND_SCENE   ? Type::eCombinedImageSampler
+                          : i < shader::BIND_PICTURE ? Type::eUniformBuffer
+                                                     : Type::eStorageTexelBuffer;
         bindings.at(i) = {i, type, 1, stages};
     }
     set_layout_ = vk::raii::DescriptorSetLayout(device.handle(), {{}, bindings});

@@ -1,4 +1,4 @@
-// What a buffer on the device holds. Waits; for tests and for finding faults.
+// What a buffer on the device holds. Waits.
 #pragma once
 
 #include <vector>

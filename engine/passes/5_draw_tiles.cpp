@@ -2,17 +2,25 @@
 
 namespace edgesplat::passes {
 
+std::uint32_t tile_group(TileDraw how) {
+    if (!how.refined) return shader::TILE * shader::TILE;
+    // Rounds are for lavapipe, whose subgroups are 8 invocations; elsewhere one is up to 64.
+    return how.rounds ? 16 : 64;
+}
+
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
     gpu::Specialization constants = draw_constants(variant);
     constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_COUNT, how.count ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_GROUP, tile_group(how));
     return constants;
 }
 
-void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, std::uint64_t tiles, TileDraw how,
-                std::uint32_t round) {
-    commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), round, gpu::groups_for(tiles, 1));
+void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
+    const std::uint32_t what = round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U);
+    commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), what, gpu::groups_for(round.groups, 1));
     commands.barrier();
 }
 

@@ -11,14 +11,24 @@ struct TileDraw {
     bool count = false;    ///< FrameParams::drawn counts footprints
     bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
     bool part = false;     ///< some of the sheets: the picture is not finished with them
+    bool refined = false;  ///< only the pixels of `tile_pixels`, or every REFINE_STEP-th
+};
+
+/// Invocations of a workgroup, a pixel each. Lists of pixels are of very different length.
+std::uint32_t tile_group(TileDraw how);
+
+/// What one of these dispatches draws.
+struct TileRound {
+    std::uint64_t groups = 0;       ///< workgroups: with rounds of `tile_order`, else `tile_groups` of every tile
+    std::uint32_t round = 0;        ///< of the lists of entries
+    std::uint32_t tile_groups = 1;  ///< of a tile: groups are numbered tile * tile_groups + group of the tile
+    bool first_pixels = false;      ///< of refined ones: every REFINE_STEP-th, not those that are listed
 };
 
 /// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats, puts the chunk's sheets behind
 /// what `output_pixels` holds (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum), and counts closed
-/// pixels in `tile_closed`. `tile_sheets` holds what a round leaves unfinished. `tiles`: how many; with rounds the
-/// first so many of `tile_order`, else all.
-void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, std::uint64_t tiles, TileDraw how,
-                std::uint32_t round);
+/// pixels in `tile_closed`. `tile_sheets` holds what a round leaves unfinished.
+void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 /// Specialization of 5_draw_tiles.comp.
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how);

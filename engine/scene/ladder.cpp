@@ -179,6 +179,13 @@ std::vector<Knob> make_ladder() {
          .high = 8,
          .get = get_number<&Settings::detail>,
          .assign = set_number<&Settings::detail>});
+    knobs.push_back({.name = "pixels",
+                     .help = "Which are drawn: some where the picture is smooth, the others following, or every one",
+                     .kind = KnobKind::Method,
+                     .steps = all(pixel_choice_names()),
+                     .others = {},
+                     .get = get_name<&Settings::pixels>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.pixels = pixel_choice_named(v); }});
     knobs.push_back({.name = "saturation",
                      .help = "Opacity at which a pixel is finished; 1: never",
                      .kind = KnobKind::Method,
@@ -228,6 +235,7 @@ std::span<const Preset> presets() {
         accurate.edge_shape = EdgeShape::Curved;
         accurate.sheet_spacing = 0.125;
         accurate.saturation = 0.9999;
+        accurate.pixels = PixelChoice::Every;
         return std::vector<Preset>{
             {"draft", "within 2 % of the model: slices of half a voxel", draft},
             {"balanced", "within 0.5 %: slices of a quarter voxel", balanced},

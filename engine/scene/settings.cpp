@@ -20,6 +20,7 @@ constexpr std::array<std::string_view, 3> kNormalisations{"off", "edge", "voxel"
 constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
 constexpr std::array<std::string_view, 3> kSheetFormats{"half", "float", "tiles"};
+constexpr std::array<std::string_view, 2> kPixelChoices{"refined", "every"};
 
 template <typename Enum>
 Enum named(std::string_view name, const char* what, std::span<const std::string_view> names) {
@@ -66,6 +67,9 @@ SheetCut sheet_cut_named(std::string_view name) {
 SheetFormat sheet_format_named(std::string_view name) {
     return named<SheetFormat>(name, "sheet format", kSheetFormats);
 }
+PixelChoice pixel_choice_named(std::string_view name) {
+    return named<PixelChoice>(name, "choice of pixels", kPixelChoices);
+}
 
 std::string_view name_of(EdgeEstimator value) {
     return spelled(value, kEdgeEstimators);
@@ -91,6 +95,9 @@ std::string_view name_of(SheetCut value) {
 std::string_view name_of(SheetFormat value) {
     return spelled(value, kSheetFormats);
 }
+std::string_view name_of(PixelChoice value) {
+    return spelled(value, kPixelChoices);
+}
 
 std::span<const std::string_view> edge_estimator_names() {
     return kEdgeEstimators;
@@ -115,6 +122,9 @@ std::span<const std::string_view> sheet_cut_names() {
 }
 std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;
+}
+std::span<const std::string_view> pixel_choice_names() {
+    return kPixelChoices;
 }
 std::span<const std::string_view> accumulation_names() {
     return std::span(kSheetFormats).first(2);
@@ -164,6 +174,7 @@ Settings drawn_as(const Settings& settings, bool clipped) {
         s.footprints = FootprintMode::Procedural;
     }
     if (!asks_for_table(s)) s.table_size = usual.table_size;
+    if (s.sheet_format != SheetFormat::Tiles) s.pixels = usual.pixels;
     // Registers hold floats.
     if (s.sheet_format == SheetFormat::Tiles) s.accumulation = usual.accumulation;
     return s;

@@ -23,6 +23,8 @@ enum class TableSize { Coarse, Medium, Fine };
 enum class SheetCut { Whole, Sliced };  ///< a kernel lies in one sheet whole, or is cut at the sheets' planes
 /// Where sheets are summed: in layers of 16 or 32 bit a channel, or in registers, tile of pixels by tile.
 enum class SheetFormat { Half, Float, Tiles };
+/// Which pixels are drawn: where a picture is smooth some, between which the others follow, or every one.
+enum class PixelChoice { Refined, Every };
 
 struct Settings {
     EdgeEstimator edges = EdgeEstimator::March;
@@ -37,6 +39,7 @@ struct Settings {
     double sheet_spacing = 0.25;  ///< voxels along the view axis, [0.05, 16]
     SheetFormat sheet_format = SheetFormat::Tiles;
     SheetFormat accumulation = SheetFormat::Float;  ///< of the picture that layers are composited into; not Tiles
+    PixelChoice pixels = PixelChoice::Refined;      ///< of sheets that are summed tile by tile
     double saturation = 0.999;  ///< opacity at which a pixel takes no more splats, (0, 1]; 1 = never
     double detail = 0;          ///< pixels that voxels of a coarser level may be wide, [0, 8]; 0: never coarser
     bool cull_buried = true;    ///< drop voxels that opaque ones hide from every side
@@ -52,6 +55,7 @@ Normalisation normalisation_named(std::string_view name);
 TableSize table_size_named(std::string_view name);
 SheetCut sheet_cut_named(std::string_view name);
 SheetFormat sheet_format_named(std::string_view name);
+PixelChoice pixel_choice_named(std::string_view name);
 std::string_view name_of(EdgeEstimator value);
 std::string_view name_of(FootprintMode value);
 std::string_view name_of(WarpFamily value);
@@ -60,6 +64,7 @@ std::string_view name_of(Normalisation value);
 std::string_view name_of(TableSize value);
 std::string_view name_of(SheetCut value);
 std::string_view name_of(SheetFormat value);
+std::string_view name_of(PixelChoice value);
 std::span<const std::string_view> edge_estimator_names();
 std::span<const std::string_view> footprint_mode_names();
 std::span<const std::string_view> warp_family_names();
@@ -68,6 +73,7 @@ std::span<const std::string_view> normalisation_names();
 std::span<const std::string_view> table_size_names();
 std::span<const std::string_view> sheet_cut_names();
 std::span<const std::string_view> sheet_format_names();
+std::span<const std::string_view> pixel_choice_names();
 std::span<const std::string_view> accumulation_names();
 
 /// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.

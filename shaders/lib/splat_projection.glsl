@@ -24,9 +24,11 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
+uint support_cell(float d) { return min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u); }
+
 // Centre (along n) and radius of a sphere that holds what is warped around a face.
 vec2 face_support(float d) {
-    vec2 s = params.frame.support_table[min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u)];
+    vec2 s = params.frame.support_table[support_cell(d)];
     return vec2(d < 0.0 ? -s.x : s.x, s.y);
 }
 
@@ -39,9 +41,7 @@ vec2 splat_support(Edge e) {
 }
 
 // Rows of `extents` for the first face and the second, as seen along n: row | mirrored << 7.
-uint extent_row(float d) {
-    return min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u) | (d < 0.0 ? 128u : 0u);
-}
+uint extent_row(float d) { return support_cell(d) | (d < 0.0 ? 128u : 0u); }
 
 uint splat_extents(Edge e) {
     if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return EXTENT_PLAIN | (EXTENT_PLAIN << 8);

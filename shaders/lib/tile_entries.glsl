@@ -27,10 +27,7 @@ uvec4 tiles_of(uint number) {
 }
 
 // Whether no pixel of a tile takes more.
-bool is_closed(uint x, uint y) {
-    uvec2 pixels = min(uvec2(TILE), uvec2(params.frame.size) - TILE * uvec2(x, y));
-    return UintsRef(params.frame.tile_closed).at[y * uint(params.frame.tiles.x) + x] == pixels.x * pixels.y;
-}
+bool is_closed(uint tile) { return UintsRef(params.frame.tile_closed).at[tile] == UintsRef(params.frame.tile_todo).at[tile]; }
 
 // The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
 // size lie in one chunk, so that a column may have many times the pairs of another.

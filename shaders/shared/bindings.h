@@ -15,8 +15,9 @@ EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 6u;   // rgba32f, premultiplied colou
 EDGESPLAT_CONSTANT uint BIND_TABLE = 7u;         // r16f, footprint layers
 EDGESPLAT_CONSTANT uint BIND_SCENE = 8u;         // SceneParams
 EDGESPLAT_CONSTANT uint BIND_FRAME = 9u;         // FrameParams
-EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 10u;     // OcclusionParams
-EDGESPLAT_CONSTANT uint BIND_COUNT = 11u;
+EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 10u;    // OcclusionParams
+EDGESPLAT_CONSTANT uint BIND_PICTURE = 11u;      // rgba32f (height, width), FrameParams::output_pixels once more: lavapipe loads texels faster
+EDGESPLAT_CONSTANT uint BIND_COUNT = 12u;
 
 EDGESPLAT_SHARED_END
 #endif

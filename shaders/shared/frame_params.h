@@ -75,7 +75,7 @@ struct FrameParams {
     Address order;          // (drawn) uint: splat numbers sorted by sheet
     Address groups;         // (group_count) SheetGroup
     Address draws;          // (group_count) DrawCommand
-    Address drawn;          // (4) uint: splats drawn; entries of the longest list of a tile; footprints evaluated, and those of open pixels
+    Address drawn;          // (3) uint: splats drawn; footprints evaluated, and those of open pixels
     Address output_pixels;  // (size.y, size.x) vec4
     Address traits;         // (splat_count) uint: curvature and weight (edge_record.glsl); edges curved or kernels normalised
     Address splat_shadows;    // (splat_count) uint: unorm16 of what reaches the splat of either light with shadows
@@ -96,7 +96,9 @@ struct FrameParams {
     Address tile_ranges;    // (tiles) uvec2: parts of tile_entries, half open
     Address tile_order;     // (tiles) uint: tiles by the length of their lists, longest first; with rounds only
     Address tile_entries;   // (pairs of the chunk) uvec2: place in `order`, sheet; by tile, sheet, number
-    Address tile_closed;    // (tiles) uint: pixels that take no more
+    Address tile_closed;    // (tiles) uint: pixels that take no more, of those that are drawn
+    Address tile_todo;      // (tiles) uint: pixels that are drawn
+    Address tile_pixels;    // (tiles, TILE * TILE) uint: which, x | y << 8 in the tile; with refined pixels only
     Address tile_sheets;    // (size.y, size.x) vec4: sums of a sheet whose entries go on in the next round
     ivec2 tiles;
     uint tile_blocks;       // columns of the tiles' histogram
@@ -111,7 +113,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 9864);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 10464);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 10480);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

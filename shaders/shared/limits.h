@@ -31,9 +31,14 @@ EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are
 EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
 EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
 EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column
-EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 96 bytes each by default
+EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 80 bytes each by default
 EDGESPLAT_CONSTANT uint PREPARED_ROW = 4096u;  // texels of the image that holds them: lavapipe loads those fastest
 EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
+// Of refined pixels (5_refine_pixels): every REFINE_STEP-th is drawn first, then those between which samples differ in the second
+// order by more than REFINE_TOLERANCE, a step of a picture of 8 bits.
+EDGESPLAT_CONSTANT uint REFINE_PIXELS = 33554432u;  // larger pictures may have no room for the lists
+EDGESPLAT_CONSTANT uint REFINE_STEP = 4u;
+EDGESPLAT_CONSTANT float REFINE_TOLERANCE = 1.0f / 255.0f;
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
 EDGESPLAT_CONSTANT uint EDGE_WEIGHT_STEPS = 12u;     // of a kernel's weight by its distance to the edge
@@ -71,6 +76,9 @@ EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from on
 EDGESPLAT_CONSTANT uint SPEC_ROUNDS = 26u;     // 1: a tile's list is drawn TILE_ROUND entries at a time
 EDGESPLAT_CONSTANT uint SPEC_COUNT = 27u;      // 1: footprints are counted
 EDGESPLAT_CONSTANT uint SPEC_PREPARED = 28u;   // 1: entries are prepared, 0: by whoever draws them
+EDGESPLAT_CONSTANT uint SPEC_REFINED = 29u;    // 1: pixels are those of their tile's list
+EDGESPLAT_CONSTANT uint SPEC_GROUP = 30u;      // invocations of a workgroup
+EDGESPLAT_CONSTANT uint SPEC_STEP = 31u;       // pixels between those that are there already
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "tests/passes/pass_fixture.h"
@@ -282,6 +283,28 @@ TEST(DrawTiles, ManyChunksMakeTheSamePicture) {
     EXPECT_GT(in_chunks(state, 1), 3U);
     const auto pixels = state.targets.output.mapped<glm::vec4>(once.size());
     EXPECT_TRUE(std::ranges::equal(pixels, once));
+}
+
+TEST(RefinePixels, ManyChunksMakeTheSamePicture) {
+    // Seen through and not, so that tiles close or stay open behind chunks whose lists are kept, or have to make room.
+    for (const double extinction : {0.05, 3.0}) {
+        PassScene s = pass_scenes()[2];
+        s.scene.materials[1].extinction = extinction;
+        RendererState& state = prepared(s);
+        const glm::ivec2 size(150, 121);
+        state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+        ASSERT_TRUE(state.plan.refined);
+        const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+        const std::vector<glm::vec4> once(pixels.begin(), pixels.end());
+        for (const std::uint64_t limit : {1U, 500U, 20000U}) {
+            EXPECT_GT(in_chunks(state, limit), limit > 500 ? 0U : 3U);
+            float most = 0;
+            for (std::size_t i = 0; i < once.size(); ++i)
+                for (int c = 0; c < 4; ++c)
+                    most = std::max(most, std::abs(pixels[i][c] - once[i][c]));
+            EXPECT_LE(most, 2e-6F) << "chunks of " << limit << " pairs, extinction " << extinction;
+        }
+    }
 }
 
 }  // namespace

@@ -183,7 +183,8 @@ TEST(PixelsBehind, CloseWhereTheWholePictureCloses) {
             open += pixels[i].a < kSaturation ? 1U : 0U;
             pixels[i] = folded(pixels[i], own(i), kSaturation);
         }
-        for (const std::uint32_t tile : behind.closed_pixels(size, tiles))
+        const std::vector<std::uint32_t> drawn{256, 256, 80, 64, 64, 20};  // pixels of the tiles
+        for (const std::uint32_t tile : behind.closed_pixels(size, tiles, drawn))
             closed += tile;
         EXPECT_EQ(open + closed, count);
         drawn_again += open;
@@ -210,11 +211,16 @@ class ThreadExchange : public PartExchange {
   public:
     struct Table {
         explicit Table(int parts)
-            : all(parts), values(static_cast<std::size_t>(parts)), floats(values.size()), pixels(values.size()) {}
+            : all(parts),
+              values(static_cast<std::size_t>(parts)),
+              floats(values.size()),
+              pixels(values.size()),
+              words(values.size()) {}
         std::barrier<> all;
         std::vector<int> values;
         std::vector<std::span<float>> floats;
         std::vector<std::span<glm::vec4>> pixels;
+        std::vector<std::span<std::uint32_t>> words;
     };
     ThreadExchange(Table& table, const SheetPart& part, bool turned) : table_(&table), part_(part), turned_(turned) {}
 
@@ -240,6 +246,12 @@ class ThreadExchange : public PartExchange {
         collect(pixels, [this](const glm::vec4& a, const glm::vec4& b) { return turned_ ? over(b, a) : over(a, b); });
     }
     void add(std::span<glm::vec4> pixels) override { collect(pixels, std::plus<>()); }
+    void share(std::span<std::uint32_t> words) override {
+        table_->words[own()] = words;
+        wait();
+        if (part_.index > 0) std::ranges::copy(table_->words[0], words.begin());
+        wait();
+    }
 
   private:
     std::size_t own() const { return static_cast<std::size_t>(part_.index); }
@@ -260,7 +272,7 @@ class ThreadExchange : public PartExchange {
 constexpr AovRequest kAllOutputs{.tau = true, .depth = true, .normal = true, .distance = true};
 
 std::vector<RenderResult> in_parts(std::vector<Renderer>& renderers, const PassScene& s, const Settings& settings,
-                                   bool turned = false) {
+                                   bool turned = false, const glm::ivec2& size = {48, 32}) {
     const int count = static_cast<int>(renderers.size());
     ThreadExchange::Table table(count);
     std::vector<RenderResult> results(renderers.size());
@@ -270,7 +282,7 @@ std::vector<RenderResult> in_parts(std::vector<Renderer>& renderers, const PassS
             const auto own = static_cast<std::size_t>(i);
             ThreadExchange exchange(table, {i, count}, turned);
             renderers[own].divide_sheets(&exchange);
-            results[own] = renderers[own].render(s.scene, s.camera, settings, 48, 32, kAllOutputs);
+            results[own] = renderers[own].render(s.scene, s.camera, settings, size.x, size.y, kAllOutputs);
             renderers[own].divide_sheets(nullptr);
         });
     }
@@ -328,6 +340,36 @@ TEST(DividedSheets, PicturesAreThoseOfOneRenderer) {
             // Alone again, nothing is left of the parts.
             EXPECT_EQ(renderers[0].render(s.scene, s.camera, settings, 48, 32).color.pixels, one.color.pixels);
         }
+    }
+}
+
+bool is_refined(const RenderResult& result) {
+    return std::ranges::any_of(result.stats.passes,
+                               [](const PassTime& pass) { return pass.name == "5_refine_pixels"; });
+}
+
+TEST(DividedSheets, RefinedPicturesToo) {
+    const glm::ivec2 size(203, 154);
+    std::vector<Renderer> renderers;
+    for (int i = 0; i < 3; ++i)
+        renderers.emplace_back(DeviceChoice{.validation = true});
+    const PassScene s = pass_scenes()[2];
+    for (Renderer& renderer : renderers)
+        renderer.set_volume(std::make_shared<const Volume>(s.volume));
+    for (const double extinction : {0.3, 2.0}) {  // of which nothing and much closes
+        PassScene seen = s;
+        seen.scene.materials[1].extinction = extinction;
+        const RenderResult one = renderers[0].render(seen.scene, seen.camera, seen.settings, size.x, size.y);
+        EXPECT_TRUE(is_refined(one));
+        const RenderResult parts = in_parts(renderers, seen, seen.settings, false, size)[0];
+        EXPECT_TRUE(is_refined(parts));
+        const double psnr = compare_images(one.color, parts.color).psnr;
+        std::printf("extinction %g: %.1f dB\n", extinction, psnr);
+        EXPECT_GE(psnr, 90);
+        EXPECT_EQ(parts.stats.validation_messages, 0U);
+        Settings every = seen.settings;
+        every.pixels = PixelChoice::Every;
+        EXPECT_NE(renderers[0].render(seen.scene, seen.camera, every, size.x, size.y).color.pixels, one.color.pixels);
     }
 }
 

@@ -1,0 +1,15 @@
+#include "engine/passes/5_refine_pixels.h"
+
+namespace edgesplat::passes {
+
+gpu::Specialization refine_constants(std::uint32_t step) {
+    const std::uint32_t across = shader::TILE / step;
+    return {{shader::SPEC_STEP, step}, {shader::SPEC_GROUP, across * across}};
+}
+
+void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step) {
+    commands.dispatch("5_refine_pixels.comp", refine_constants(step), 0, gpu::groups_for(tiles, 1));
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes
