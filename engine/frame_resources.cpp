@@ -40,7 +40,8 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
     no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder block");
     no_texels_ =
-        vk::raii::BufferView(device.handle(), {{}, no_block_.handle(), vk::Format::eR32G32B32A32Sfloat, 0, 16});
+        gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder texels", vk::Format::eR32G32B32A32Sfloat);
+    no_counts_ = gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder counts", vk::Format::eR32Uint);
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 
@@ -74,9 +75,15 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
             *set_, slot.binding, 0,
             slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
     }
-    const vk::BufferView texels = *targets.output_texels ? *targets.output_texels : *no_texels_;
-    writes.emplace_back(*set_, shader::BIND_PICTURE, 0, 1, vk::DescriptorType::eStorageTexelBuffer, nullptr, nullptr,
-                        &texels);
+    const std::array texels{std::pair{&targets.output, &no_texels_}, std::pair{&targets.tile_counters, &no_counts_},
+                            std::pair{&targets.tile_closed, &no_counts_}, std::pair{&targets.tile_todo, &no_counts_}};
+    std::array<vk::BufferView, texels.size()> views;
+    for (std::uint32_t i = 0; i < texels.size(); ++i) {
+        const auto& [buffer, otherwise] = texels.at(i);
+        views.at(i) = *buffer ? buffer->texels() : otherwise->texels();
+        writes.emplace_back(*set_, shader::BIND_PICTURE + i, 0, 1, vk::DescriptorType::eStorageTexelBuffer, nullptr,
+                            nullptr, &views.at(i));
+    }
     device_->handle().updateDescriptorSets(writes, nullptr);
     write_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
     write_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);

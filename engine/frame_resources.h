@@ -69,7 +69,6 @@ struct TargetResources {
     gpu::Buffer tile_pixels;   ///< (tiles, TILE * TILE) uint: which; 5 -> 5; with refined pixels only
     gpu::Buffer tile_sheets;   ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
     gpu::Buffer output;        ///< (height, width) vec4, mapped; 5, 7 -> host
-    vk::raii::BufferView output_texels = nullptr;  ///< the same as texels
 };
 
 /// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image or
@@ -92,7 +91,7 @@ class Bindings {
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;
-    vk::raii::BufferView no_texels_ = nullptr;
+    gpu::Buffer no_texels_, no_counts_;
 };
 
 /// Size of the staging buffer that upload_image uses for such an image.

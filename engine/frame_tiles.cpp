@@ -95,7 +95,8 @@ bool worth_refining(const Chunks& chunks) {
 }
 
 std::uint64_t tile_order_items(const FramePlan& plan) {
-    return tile_count(plan) * tile_groups({.rounds = true, .refined = plan.refined}, 1);
+    const std::uint64_t items = tile_count(plan) * tile_groups({.rounds = true, .refined = plan.refined}, 1);
+    return items + items / 65535 + 1;  // groups_for() may make so many groups too many
 }
 
 std::uint64_t tile_entry_pairs(const FramePlan& plan) {
@@ -182,7 +183,10 @@ class TileFrame {
                     ++round;
                 };
                 while (between && order.in_round(round) > 0) {
-                    run(draw_round);
+                    run([&] {
+                        draw_round();
+                        see_tiles();
+                    });
                     between();
                 }
                 const auto draw_rest = [&] {

@@ -130,7 +130,6 @@ struct RendererState : DeviceState, SplatSet {
     void provide_tiles(FramePlan& plan);
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);
-    void provide_output(std::size_t pixels);
     /// Of the splats that are there.
     FramePlan plan_picture(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
                            std::uint32_t payload) const;

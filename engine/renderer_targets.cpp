@@ -15,10 +15,11 @@ using Usage = vk::ImageUsageFlagBits;
 constexpr std::size_t kWord = sizeof(std::uint32_t);
 
 /// Makes `buffer` at least `bytes` long; what it held is lost if it grows.
-void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name) {
+void grow(const gpu::Device& device, gpu::Buffer& buffer, std::size_t bytes, Place place, const char* name,
+          vk::Format texels = vk::Format::eUndefined) {
     if (buffer && buffer.bytes() >= bytes) return;
     buffer = {};
-    buffer = gpu::Buffer(device, bytes, place, name);
+    buffer = gpu::Buffer(device, bytes, place, name, texels);
 }
 
 bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& size, int layers) {
@@ -36,7 +37,8 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * kWord, Place::Device,
          "sort counters");
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    provide_output(pixels);
+    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels",
+         vk::Format::eR32G32B32A32Sfloat);
 
     p.splats = volume_resources.splats.address();
     p.traits = volume_resources.traits ? volume_resources.traits.address() : 0;
@@ -58,17 +60,6 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     std::ranges::copy(footprint_resources.extents, p.extents);
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
     bindings.write(volume_resources, footprint_resources, targets);
-}
-
-void RendererState::provide_output(std::size_t pixels) {
-    const std::size_t bytes = pixels * sizeof(glm::vec4);
-    if (targets.output && targets.output.bytes() >= bytes) return;
-    const std::uint32_t most = device.physical().getProperties().limits.maxTexelBufferElements;
-    if (pixels > most) fail("size: {} pixels, expected at most {} on this device", pixels, most);
-    targets.output_texels = nullptr;
-    grow(device, targets.output, bytes, Place::Host, "output pixels");
-    targets.output_texels =
-        vk::raii::BufferView(device.handle(), {{}, targets.output.handle(), vk::Format::eR32G32B32A32Sfloat, 0, bytes});
 }
 
 void RendererState::provide_layers(FramePlan& plan_in_use) {
@@ -128,13 +119,14 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     grow(device, targets.sheet_pairs, p.sheet_count * kWord, Place::Host, "pairs of sheets");
     grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Host, "sheet starts");
     grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
-    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
+    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
+         vk::Format::eR32Uint);
     // The host sees which tiles a round is for.
     grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges");
     grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order");
     grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries");
-    grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles");
-    grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles");
+    grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles", vk::Format::eR32Uint);
+    grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles", vk::Format::eR32Uint);
     if (plan_in_use.refined) {
         grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device,
              "lists of pixels");
@@ -181,9 +173,11 @@ void RendererState::provide_chunks(const Chunks& chunks) {
         }
         plan.params.tile_blocks = p.tile_blocks = blocks;
     }
-    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters");
+    grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
+         vk::Format::eR32Uint);
     p.tile_counters = targets.tile_counters.address();
     p.tile_entries = targets.tile_entries.address();
+    bindings.write(volume_resources, footprint_resources, targets);
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
 }
 

@@ -5,12 +5,12 @@
 
 void main() {
     Block block = block_of_invocation();
-    UintsRef counters = UintsRef(params.frame.tile_counters);
     Pairs pairs = begin_pairs(block, 0u);
     for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
         uvec2 at = tile_of(pairs);
         uint tile = at.y * uint(params.frame.tiles.x) + at.x;
-        counters.at[tile * params.frame.tile_blocks + block.column] += is_closed(tile) ? 0u : 1u;
+        uint place = tile * params.frame.tile_blocks + block.column;
+        set_count(place, count_at(place) + (is_closed(tile) ? 0u : 1u));
         next_pair(pairs, block);
     }
     end_pairs(pairs, block, 0u);

@@ -6,11 +6,11 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
+layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/lib/workgroup_sums.glsl"
 
 void main() {
-    UintsRef counters = UintsRef(params.frame.tile_counters);
     PairsRef ranges = PairsRef(params.frame.tile_ranges);
     uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;
     uint tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
@@ -18,13 +18,13 @@ void main() {
     uint first = min(me * per_run, tiles), last = min(first + per_run, tiles);
 
     uint sum = 0u;
-    for (uint i = first * blocks; i < last * blocks; ++i) sum += counters.at[i];
+    for (uint i = first * blocks; i < last * blocks; ++i) sum += imageLoad(counters, int(i)).x;
     uint offset = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
         for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
-            uint n = counters.at[i];
-            counters.at[i] = offset;
+            uint n = imageLoad(counters, int(i)).x;
+            imageStore(counters, int(i), uvec4(offset));
             offset += n;
         }
         ranges.at[tile] = uvec2(begin, offset);

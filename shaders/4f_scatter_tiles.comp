@@ -6,7 +6,6 @@
 
 void main() {
     Block block = block_of_invocation();
-    UintsRef counters = UintsRef(params.frame.tile_counters);
     UintsRef starts = UintsRef(params.frame.sheet_starts);
     PairsRef entries = PairsRef(params.frame.tile_entries);
     Pairs pairs = begin_pairs(block, 1u);
@@ -15,8 +14,11 @@ void main() {
         while (starts.at[sheet + 1u] <= pairs.entry) ++sheet;
         uvec2 at = tile_of(pairs);
         uint tile = at.y * uint(params.frame.tiles.x) + at.x;
-        if (!is_closed(tile))
-            entries.at[counters.at[tile * params.frame.tile_blocks + block.column]++] = uvec2(pairs.entry, sheet);
+        if (!is_closed(tile)) {
+            uint place = tile * params.frame.tile_blocks + block.column, pair = count_at(place);
+            set_count(place, pair + 1u);
+            entries.at[pair] = uvec2(pairs.entry, sheet);
+        }
         next_pair(pairs, block);
     }
     end_pairs(pairs, block, 1u);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/error.h"
+
 namespace edgesplat::gpu {
 
 namespace {
@@ -24,7 +26,7 @@ std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
         .memoryRequirements.size;
 }
 
-Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name)
+Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name, vk::Format texels)
     : device_(&device),
       buffer_(device.handle(), create_info(bytes)),
       name_(name),
@@ -37,6 +39,12 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     buffer_.bindMemory(*memory_, 0);
     if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});
+    if (texels != vk::Format::eUndefined) {
+        const std::uint64_t most = device.physical().getProperties().limits.maxTexelBufferElements;
+        const std::uint64_t count = bytes_ / (texels == vk::Format::eR32Uint ? 4 : 16);
+        if (count > most) fail("{}: {} texels, expected at most {} on this device", name_, count, most);
+        texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
+    }
     allocated_ = requirements.size;
     device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
 }
@@ -47,6 +55,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     device_ = std::exchange(other.device_, nullptr);
     memory_ = std::move(other.memory_);
     buffer_ = std::move(other.buffer_);
+    texels_ = std::move(other.texels_);
     name_ = std::move(other.name_);
     bytes_ = std::exchange(other.bytes_, 0);
     allocated_ = std::exchange(other.allocated_, 0);
@@ -58,6 +67,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
     device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
+    texels_ = nullptr;
     buffer_ = nullptr;
     memory_ = nullptr;
     device_ = nullptr;

@@ -15,8 +15,10 @@ class Buffer {
     enum class Place { Device, Host };  ///< Host: mapped, coherent, for what the CPU writes or reads
 
     Buffer() = default;
-    /// `bytes` > 0 (0 becomes 16, so that an empty list still has an address).
-    Buffer(const Device& device, std::size_t bytes, Place place, const char* name);
+    /// `bytes` > 0 (0 becomes 16, so that an empty list still has an address). With `texels` it can be bound as texels
+    /// of that format; throws Error when it has more than the device allows.
+    Buffer(const Device& device, std::size_t bytes, Place place, const char* name,
+           vk::Format texels = vk::Format::eUndefined);
     ~Buffer() { release(); }
     Buffer(Buffer&& other) noexcept { *this = std::move(other); }
     Buffer& operator=(Buffer&& other) noexcept;
@@ -30,6 +32,7 @@ class Buffer {
     std::size_t bytes() const { return bytes_; }
     /// Of the byte `offset`.
     shader::Address address(std::uint64_t offset = 0) const { return address_ + offset; }
+    vk::BufferView texels() const { return *texels_; }
     explicit operator bool() const { return device_ != nullptr; }
 
     /// The mapped memory (Place::Host only) as `count` elements.
@@ -43,6 +46,7 @@ class Buffer {
     const Device* device_ = nullptr;
     vk::raii::DeviceMemory memory_ = nullptr;
     vk::raii::Buffer buffer_ = nullptr;
+    vk::raii::BufferView texels_ = nullptr;
     std::string name_;
     std::size_t bytes_ = 0, allocated_ = 0;
     void* map_ = nullptr;

@@ -6,7 +6,7 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint3
                 std::uint32_t steps) {
     const auto go_through = [&](const char* shader) {
         for (std::uint32_t step = 0; step < steps; ++step) {
-            commands.dispatch(shader, {}, chunk, gpu::groups_for(blocks, 64));
+            commands.dispatch(shader, {}, chunk, gpu::groups_for(blocks, 16));
             commands.barrier();
         }
     };

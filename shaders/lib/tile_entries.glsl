@@ -3,8 +3,11 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 16) in;  // columns are few: a larger workgroup would leave processors idle
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
+layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
+layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
 layout(push_constant) uniform Push { uint chunk; };
 
 struct Block {
@@ -27,7 +30,10 @@ uvec4 tiles_of(uint number) {
 }
 
 // Whether no pixel of a tile takes more.
-bool is_closed(uint tile) { return UintsRef(params.frame.tile_closed).at[tile] == UintsRef(params.frame.tile_todo).at[tile]; }
+bool is_closed(uint tile) { return imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x; }
+
+uint count_at(uint place) { return imageLoad(counters, int(place)).x; }
+void set_count(uint place, uint value) { imageStore(counters, int(place), uvec4(value)); }
 
 // The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
 // size lie in one chunk, so that a column may have many times the pairs of another.
@@ -51,14 +57,13 @@ uint column_state(uint column, uint part) {
 
 // `part`: 0 counting, 1 scattering.
 Pairs begin_pairs(Block block, uint part) {
-    UintsRef counters = UintsRef(params.frame.tile_counters);
     uint at = column_state(block.column, part);
     Pairs pairs;
     pairs.entry = block.first;
     pairs.k = 0u;
     for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
-        pairs.entry += counters.at[at];
-        pairs.k = counters.at[at + 1u];
+        pairs.entry += count_at(at);
+        pairs.k = count_at(at + 1u);
         load_entry(pairs, block);
     }
     return pairs;
@@ -76,10 +81,9 @@ void next_pair(inout Pairs pairs, Block block) {
 }
 
 void end_pairs(Pairs pairs, Block block, uint part) {
-    UintsRef counters = UintsRef(params.frame.tile_counters);
     uint at = column_state(block.column, part);
     for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
-        counters.at[at] = pairs.entry - block.first;
-        counters.at[at + 1u] = pairs.k;
+        set_count(at, pairs.entry - block.first);
+        set_count(at + 1u, pairs.k);
     }
 }

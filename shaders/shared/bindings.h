@@ -16,8 +16,12 @@ EDGESPLAT_CONSTANT uint BIND_TABLE = 7u;         // r16f, footprint layers
 EDGESPLAT_CONSTANT uint BIND_SCENE = 8u;         // SceneParams
 EDGESPLAT_CONSTANT uint BIND_FRAME = 9u;         // FrameParams
 EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 10u;    // OcclusionParams
-EDGESPLAT_CONSTANT uint BIND_PICTURE = 11u;      // rgba32f (height, width), FrameParams::output_pixels once more: lavapipe loads texels faster
-EDGESPLAT_CONSTANT uint BIND_COUNT = 12u;
+// Buffers that have an address, too, as texels, which lavapipe loads and stores faster.
+EDGESPLAT_CONSTANT uint BIND_PICTURE = 11u;        // rgba32f, FrameParams::output_pixels
+EDGESPLAT_CONSTANT uint BIND_TILE_COUNTERS = 12u;  // r32ui, FrameParams::tile_counters
+EDGESPLAT_CONSTANT uint BIND_TILE_CLOSED = 13u;    // r32ui, FrameParams::tile_closed
+EDGESPLAT_CONSTANT uint BIND_TILE_TODO = 14u;      // r32ui, FrameParams::tile_todo
+EDGESPLAT_CONSTANT uint BIND_COUNT = 15u;
 
 EDGESPLAT_SHARED_END
 #endif
