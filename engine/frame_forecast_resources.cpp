@@ -224,6 +224,7 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     if (plan.refined) {
         out.push_back(growing(buffer("lists of pixels", tiles * shader::TILE * shader::TILE * word,
                                      "(tiles, pixels) x, y in the tile", "5", "5")));
+        out.push_back(growing(buffer("finest splats of tiles", tiles * word, "(tiles) uint", "5", "5")));
         out.push_back(on_host(growing(buffer("closed pixels, seen", tiles * word, "(tiles) uint", "5", "host"))));
     }
     const glm::u64vec2 size(plan.params.size);

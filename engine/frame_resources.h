@@ -66,6 +66,7 @@ struct TargetResources {
     gpu::Buffer tile_closed;   ///< (tiles) uint: pixels that take no more; 5 -> 4
     gpu::Buffer tile_todo;     ///< (tiles) uint, mapped: pixels that are drawn; host, 5 -> 4, 5, host
     gpu::Buffer tiles_seen;    ///< (tiles) uint, mapped: tile_closed; 5 -> host; with refined pixels only
+    gpu::Buffer tile_finest;   ///< (tiles) uint: FrameParams::tile_finest; 5 -> 5; with refined pixels only
     gpu::Buffer tile_pixels;   ///< (tiles, TILE * TILE) uint: which; 5 -> 5; with refined pixels only
     gpu::Buffer tile_sheets;   ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
     gpu::Buffer output;        ///< (height, width) vec4, mapped; 5, 7 -> host

@@ -1,6 +1,7 @@
 #include "engine/frame_tiles.h"
 
 #include <algorithm>
+#include <bit>
 #include <functional>
 #include <numeric>
 
@@ -114,6 +115,9 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
         for (const gpu::Buffer* zeroed :
              {&targets.counters, &targets.sheet_pairs, &targets.tile_closed, &targets.output})
             commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
+        if (plan.refined)
+            commands.raw().fillBuffer(targets.tile_finest.handle(), 0, VK_WHOLE_SIZE,
+                                      std::bit_cast<std::uint32_t>(1e30F));
         commands.barrier();
         commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.splat_count, plan.variant); });
         commands.span("4_sort_sheets",

@@ -2,6 +2,7 @@
 #include "engine/renderer_parts.h"
 
 #include <algorithm>
+#include <bit>
 #include <chrono>
 #include <ctime>
 #include <functional>
@@ -47,6 +48,16 @@ void write(gpu::Commands& commands, const gpu::Buffer& buffer, std::span<const s
     });
 }
 
+/// Tiles of which what is in front leaves some of the first pixels open.
+void mark_reached(const FramePlan& plan, std::span<const float> in_front, std::vector<bool>& reached) {
+    constexpr std::size_t kStep = shader::REFINE_STEP, kTile = shader::TILE;
+    const glm::u64vec2 size(plan.params.size), tiles(plan.params.tiles);
+    for (std::size_t y = 0; y < size.y; y += kStep)
+        for (std::size_t x = 0; x < size.x; x += kStep)
+            if (1.0F - in_front[y * size.x + x] < plan.params.saturation)
+                reached[y / kTile * tiles.x + x / kTile] = true;
+}
+
 }  // namespace
 
 void Renderer::divide_sheets(PartExchange* exchange) {
@@ -68,18 +79,28 @@ bool RendererState::parts_refine(const Chunks& own) {
     return said[0] == 1;
 }
 
-void RendererState::share_pixels(std::uint32_t step, std::span<glm::vec4> whole) {
+void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole) {
     const std::size_t tiles = tile_count(plan), of_tile = std::size_t{shader::TILE} * shader::TILE;
     const auto todo = targets.tile_todo.mapped<std::uint32_t>(tiles);
     const bool first = exchange->part().index == 0;
     std::vector<std::uint32_t> lists(tiles * of_tile), counts(tiles);
+    const auto finest = gpu::read_back<std::uint32_t>(device, commands, targets.tile_finest, 0, tiles);
+    std::vector<glm::vec4> too_fine(tiles);
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+        too_fine[tile].x = reached[tile] && std::bit_cast<float>(finest[tile]) < static_cast<float>(step) ? 1 : 0;
+    exchange->add(too_fine);
     if (first) {
+        std::vector<std::uint32_t> of_all = finest;
+        for (std::size_t tile = 0; tile < tiles; ++tile)
+            if (too_fine[tile].x > 0) of_all[tile] = 0;
+        write(commands, targets.tile_finest, of_all);
         const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
         std::ranges::copy(whole, pixels.begin());
         add_times(draw_times, refine_frame(commands, plan, step));
         std::ranges::copy(pixels, whole.begin());
         lists = gpu::read_back<std::uint32_t>(device, commands, targets.tile_pixels, 0, lists.size());
         std::ranges::copy(todo, counts.begin());
+        write(commands, targets.tile_finest, finest);
     }
     exchange->share(counts);
     exchange->share(lists);
@@ -107,17 +128,19 @@ void RendererState::draw_part(passes::TileDraw how) {
     }
     std::vector<glm::vec4> whole(static_cast<std::size_t>(plan.params.size.x) *
                                  static_cast<std::size_t>(plan.params.size.y));
+    std::vector<bool> reached(tile_count(plan), exchange->part().index == 0);
     for (std::uint32_t step = first_step(plan); step > 0; step /= 2) {
-        const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step);
+        const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step, reached);
         std::ranges::transform(whole, drawn, whole.begin(), std::plus{});
-        if (step > 1) share_pixels(step, whole);
+        if (step > 1) share_pixels(step, reached, whole);
     }
     if (exchange->part().index > 0) return;
     std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
     add_times(draw_times, resolve_frame(commands, plan));
 }
 
-std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step) {
+std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
+                                                     std::vector<bool>& reached) {
     const bool sums = plan.variant.payload == shader::PAYLOAD_TAU;
     const auto& size = plan.params.size;
     const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
@@ -141,6 +164,7 @@ std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::
         }
         if (exchange->part().index > 0) {
             const AddedTime time(share.redraw_milliseconds, &share.processor_milliseconds);
+            if (step == shader::REFINE_STEP) mark_reached(plan, in_front, reached);
             const PixelsBehind behind(in_front, plan.params.saturation, part, pixels);
             if (behind.any()) {
                 const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));

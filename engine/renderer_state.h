@@ -149,9 +149,11 @@ struct RendererState : DeviceState, SplatSet {
     /// Whether the whole picture is refined: what a part knows of its splats is its own.
     bool parts_refine(const Chunks& own);
     /// This part's pixels of a step; the whole ones with the first part.
-    std::vector<glm::vec4> draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step);
+    std::vector<glm::vec4> draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
+                                          std::vector<bool>& reached);
     /// After a step: the first part fills in what follows, and says which pixels all are to draw next.
-    void share_pixels(std::uint32_t step, std::span<glm::vec4> whole);
+    /// `reached`: tiles that what is in front leaves open.
+    void share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole);
 
     /// Throws Interrupted if that is wanted.
     void heed_interruption() const {

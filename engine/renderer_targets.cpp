@@ -68,7 +68,7 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
     for (gpu::Buffer* unused :
          {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
           &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_closed, &targets.tile_todo,
-          &targets.tile_pixels, &targets.tiles_seen, &targets.tile_sheets})
+          &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets})
         *unused = {};
     targets.prepared = {};
     if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
@@ -131,7 +131,9 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
         grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device,
              "lists of pixels");
         grow(device, targets.tiles_seen, tiles * kWord, Place::Host, "closed pixels, seen");
+        grow(device, targets.tile_finest, tiles * kWord, Place::Device, "finest splats of tiles");
     } else {
+        targets.tile_finest = {};
         targets.tiles_seen = {};
         targets.tile_pixels = {};
     }
@@ -155,6 +157,7 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     p.tile_entries = targets.tile_entries.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_todo = targets.tile_todo.address();
+    p.tile_finest = targets.tile_finest ? targets.tile_finest.address() : 0;
     p.tile_pixels = targets.tile_pixels ? targets.tile_pixels.address() : 0;
     p.tile_sheets = targets.tile_sheets.address();
 }

@@ -61,6 +61,14 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
     open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
 }
 
+const float TOO_WIDE = 1e30;
+
+// The least distance of two voxels, mm.
+float least_voxel() {
+    mat3 m = params.frame.index_to_world;
+    return min(length(m[0]), min(length(m[1]), length(m[2])));
+}
+
 // Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
 const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 
@@ -96,6 +104,7 @@ void main() {
     bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
     bool open = was_open;
     uint evaluated = 0u, shaded = 0u;
+    float finest = TOO_WIDE;
     for (uint run = subgroupAny(open) ? 1u : 0u; run > 0u; --run) {
         vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
         vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
@@ -156,6 +165,7 @@ void main() {
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(drawn, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[drawn], sheet);
+                if (REFINED == 1u) finest = min(finest, least_voxel() / (h.plane * 2.0 * params.frame.tan_half_x / float(size.x)));
                 color_sigma = h.inputs.color_sigma;
                 normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
                 shape = vec4(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, CURVED == 1u ? h.inputs.shape.y : 0.0,
@@ -187,6 +197,11 @@ void main() {
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) unfinished.at[held.y * size.x + held.x] = sheet_sum;
         for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
+    }
+    if (REFINED == 1u) {
+        // Also of those that no pixel was under: what is drawn between the pixels depends on it.
+        float least = subgroupMin(finest);
+        if (subgroupElect()) atomicMin(UintsRef(params.frame.tile_finest).at[tile], floatBitsToUint(least));
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {

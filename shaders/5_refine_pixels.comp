@@ -46,8 +46,9 @@ void main() {
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x)
             bend = max(bend, abs(seen[y][x] - seen[y][x + 1] - seen[y + 1][x] + seen[y + 1][x + 1]));
-    // Not a number is not smooth, nor is what has nothing beyond it.
-    bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last));
+    // Not a number is not smooth, nor is what has nothing beyond it. What a voxel narrower than a step shows may lie unseen.
+    float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
+    bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
 
     const int half_step = int(STEP / 2u);
     bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;

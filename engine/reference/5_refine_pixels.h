@@ -12,7 +12,8 @@ struct RefinedPicture {
     std::size_t drawn = 0;  ///< pixels that had to be
 };
 
-/// `every`: (height, width, 4) premultiplied colour and opacity, all pixels drawn. docs/method.md, 5_refine_pixels.
+/// `every`: (height, width, 4) premultiplied colour and opacity, all pixels drawn, of splats whose voxels are all wider
+/// than REFINE_STEP pixels. docs/method.md, 5_refine_pixels.
 RefinedPicture refine_pixels(const Image& every);
 
 }  // namespace edgesplat::reference

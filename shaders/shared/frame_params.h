@@ -98,6 +98,7 @@ struct FrameParams {
     Address tile_entries;   // (pairs of the chunk) uvec2: place in `order`, sheet; by tile, sheet, number
     Address tile_closed;    // (tiles) uint: pixels that take no more, of those that are drawn
     Address tile_todo;      // (tiles) uint: pixels that are drawn
+    Address tile_finest;    // (tiles) uint: bits of the least width of a voxel of the splats over it, pixels; with refined pixels only
     Address tile_pixels;    // (tiles, TILE * TILE) uint: which, x | y << 8 in the tile; with refined pixels only
     Address tile_sheets;    // (size.y, size.x) vec4: sums of a sheet whose entries go on in the next round
     ivec2 tiles;
@@ -113,7 +114,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 9864);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 10480);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 10488);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
