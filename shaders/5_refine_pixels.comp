@@ -11,7 +11,7 @@ layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
 #include "shaders/lib/pixel_in_tile.glsl"
 
-shared uint listed;
+shared uvec2 rough;  // cells that are listed, a bit each: lists are the same whoever comes first
 
 // Differences of what is shown, not of light: near enough to sRGB, and of finite slope.
 vec4 shown(vec4 c) { return vec4(sqrt(max(c.rgb, 0.0) + 0.0015), c.a); }
@@ -52,7 +52,6 @@ void main() {
 
     const int half_step = int(STEP / 2u);
     bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;
-    bool beyond = right && below;
     if (smooth_here) {
         vec4 rows[4];
         for (int y = 0; y < 4; ++y) rows[y] = between(at[y][0], at[y][1], at[y][2], at[y][3]);
@@ -60,19 +59,24 @@ void main() {
         keep(first + ivec2(0, half_step), between(at[0][1], at[1][1], at[2][1], at[3][1]));
         keep(first + half_step, between(rows[0], rows[1], rows[2], rows[3]));
     }
-    if (gl_LocalInvocationIndex == 0u) listed = 0u;
+    uint me = gl_LocalInvocationIndex;
+    if (me == 0u) rough = uvec2(0u);
     barrier();
-    if (!smooth_here) {
-        uint place = tile * TILE * TILE + atomicAdd(listed, uint(right) + uint(below) + uint(beyond));
+    bool is_rough = !smooth_here && (right || below);
+    if (is_rough) atomicOr(rough[me / 32u], 1u << (me % 32u));
+    barrier();
+    uvec2 before = rough & uvec2(me < 32u ? (1u << me) - 1u : 0xffffffffu, me < 32u ? 0u : (1u << (me - 32u)) - 1u);
+    if (is_rough) {
+        // Beyond the picture's sides there is nothing to draw; a list that names it does not.
+        uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
         UintsRef pixels = UintsRef(params.frame.tile_pixels);
         uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
-        if (right) pixels.at[place] = code + half_code;
-        if (below) pixels.at[place + uint(right)] = code + (half_code << 8);
-        if (beyond) pixels.at[place + 2u] = code + half_code + (half_code << 8);
+        pixels.at[place] = code + half_code;
+        pixels.at[place + 1u] = code + (half_code << 8);
+        pixels.at[place + 2u] = code + half_code + (half_code << 8);
     }
-    barrier();
-    if (gl_LocalInvocationIndex == 0u) {
-        UintsRef(params.frame.tile_todo).at[tile] = listed;
+    if (me == 0u) {
+        UintsRef(params.frame.tile_todo).at[tile] = 3u * uint(bitCount(rough.x) + bitCount(rough.y));
         UintsRef(params.frame.tile_closed).at[tile] = 0u;
     }
 }

@@ -1,5 +1,6 @@
 // Where the picture is trouble: its size, splats smaller than a pixel or larger than the picture, sheets that begin on
 // a layer of voxels, matter in the plane of the eye.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/reference/3_select_footprints.h"
@@ -100,6 +101,40 @@ TEST(ViewPicture, Of8192By8192Pixels) {
     const Image want = render(middle_part(large, large.height, part)).color;
     EXPECT_GT(middle_of(want, 3).most, 0.2);
     EXPECT_LE(compare_images(cut_out(all, part), want).max, 2e-3) << "rays of 8192 pixels, in single precision";
+}
+
+/// A near wall with a hole in it, and specks of one voxel far behind.
+Shot specks_shot() {
+    Volume volume;
+    volume.geometry.dims = {64, 64, 320};
+    for (int z = 0; z < 320; ++z)
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const bool wall = z < 4 && std::hypot(x - 31.5, y - 31.5) > 2.2;
+                const bool speck = z == 316 && x % 13 == 5 && y % 15 == 7;
+                volume.values.push_back(wall || speck ? 1.0F : 0.0F);
+            }
+    finish_volume(volume);
+    Shot shot = shot_of(std::make_shared<const Volume>(std::move(volume)));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 0.9, 0.8}, 3}};
+    shot.scene.lights = {Light{}};
+    shot.camera = look(*shot.volume, {31.5, 31.5, -7}, {31.5, 31.5, 100}, 50, {0, 1, 0});
+    shot.width = shot.height = 300;
+    return shot;
+}
+
+TEST(ViewPicture, SpecksSmallerThanAStepOfRefinedPixels) {
+    Shot shot = specks_shot();
+    const RenderResult refined = render(shot);
+    EXPECT_TRUE(
+        std::ranges::any_of(refined.stats.passes, [](const PassTime& p) { return p.name == "5_refine_pixels"; }));
+    shot.settings.pixels = PixelChoice::Every;
+    const Image every = render(shot).color;
+    EXPECT_NE(refined.color.pixels, every.pixels) << "some follow";
+    // The specks are what the middle of the picture shows.
+    EXPECT_GT(middle_of(every, 3).most, 0.5);
+    EXPECT_LE(compare_images(refined.color, every).max, 2e-3);
 }
 
 TEST(ViewPicture, SplatsOfAThousandthOfAPixel) {
