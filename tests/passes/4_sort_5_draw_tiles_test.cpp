@@ -137,8 +137,9 @@ TEST(DrawTiles, PicturesAreThoseOfLayers) {
          {shader::PAYLOAD_COLOR, shader::PAYLOAD_TAU, shader::PAYLOAD_DEPTH_DISTANCE, shader::PAYLOAD_NORMAL}) {
         for (PassScene s : pass_scenes()) {
             SCOPED_TRACE(s.name);
-            // Layers close pixels group by group, tiles sheet by sheet.
+            // Layers close pixels group by group, tiles sheet by sheet; layers draw every pixel.
             s.settings.saturation = 1;
+            s.settings.pixels = PixelChoice::Every;
             RendererState& state = prepared(s);
             const auto layers = picture(state, s, layered(s.settings), payload);
             const auto tiles = picture(state, s, s.settings, payload);
