@@ -42,6 +42,7 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     no_texels_ =
         gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder texels", vk::Format::eR32G32B32A32Sfloat);
     no_counts_ = gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder counts", vk::Format::eR32Uint);
+    no_entries_ = gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder entries", vk::Format::eR32G32Uint);
     no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
 }
 
@@ -75,8 +76,10 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
             *set_, slot.binding, 0,
             slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
     }
-    const std::array texels{std::pair{&targets.output, &no_texels_}, std::pair{&targets.tile_counters, &no_counts_},
-                            std::pair{&targets.tile_closed, &no_counts_}, std::pair{&targets.tile_todo, &no_counts_}};
+    const std::array texels{
+        std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
+        std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},
+        std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_}};
     std::array<vk::BufferView, texels.size()> views;
     for (std::uint32_t i = 0; i < texels.size(); ++i) {
         const auto& [buffer, otherwise] = texels.at(i);

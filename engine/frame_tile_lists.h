@@ -10,7 +10,7 @@
 
 namespace edgesplat {
 
-/// Groups of pixels of tiles by the length of their tile's list, so that a round goes to those alone that it has
+/// Tiles, and groups of their pixels, by the length of the tile's list, so that a round goes to those alone that it has
 /// something for: FrameParams::tile_order.
 class TileOrder {
   public:
@@ -21,8 +21,9 @@ class TileOrder {
     void sort(std::uint32_t groups);
     void clear();
 
-    /// Groups whose lists go on in that round of TILE_ROUND entries: the first so many.
-    std::size_t in_round(std::uint32_t round) const;
+    /// Groups whose lists go on in that round of TILE_ROUND entries: the first so many; and their tiles.
+    std::size_t groups_in(std::uint32_t round) const;
+    std::size_t tiles_in(std::uint32_t round) const;
 
     /// Whether any pixel is to be drawn.
     bool any_todo() const;
@@ -31,7 +32,7 @@ class TileOrder {
     std::uint32_t length(std::uint32_t tile) const { return ranges_[tile].y - ranges_[tile].x; }
     std::span<const glm::uvec2> ranges_;
     std::span<const std::uint32_t> todo_;
-    std::span<std::uint32_t> order_;
+    std::span<std::uint32_t> tiles_, order_;
     std::uint32_t group_;
     std::vector<std::uint32_t> sorted_;  ///< tiles that something is drawn of, longest list first
     std::vector<std::size_t> ends_;      ///< of their groups in `order_`
@@ -50,7 +51,6 @@ class KeptLists {
     bool take(std::uint32_t chunk);
 
   private:
-    static constexpr std::uint64_t kPair = sizeof(glm::uvec2);
     struct Lists {
         std::uint64_t begin = 0, end = 0;  ///< pairs in `tile_entries`
         std::vector<glm::uvec2> ranges;    ///< empty: not kept

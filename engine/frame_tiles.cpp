@@ -8,6 +8,7 @@
 #include "engine/frame.h"
 #include "engine/frame_tile_lists.h"
 #include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_mark_blocks.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/4_sort_tiles.h"
@@ -20,6 +21,11 @@ std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
     const auto count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
     const std::uint64_t most = std::uint64_t{tile_blocks(tiles)} * shader::BLOCK_PAIRS;
     return std::min(most, std::max(256 * count, std::uint64_t{1} << 14U));
+}
+
+std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles) {
+    constexpr std::uint64_t kPart = shader::MARKED_AT_ONCE;
+    return (pairs / kPart + 1 + static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y)) * kPart;
 }
 
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit,
@@ -98,11 +104,11 @@ bool worth_refining(const Chunks& chunks) {
 
 std::uint64_t tile_order_items(const FramePlan& plan) {
     const std::uint64_t items = tile_count(plan) * tile_groups({.rounds = true, .refined = plan.refined}, 1);
-    return items + items / 65535 + 1;  // groups_for() may make so many groups too many
+    return tile_count(plan) + items + items / 65535 + 1;  // groups_for() may make so many groups too many
 }
 
 std::uint64_t tile_entry_pairs(const FramePlan& plan) {
-    return chunk_pairs(plan.params.tiles) * (plan.refined ? 2 : 1);
+    return padded_pairs(chunk_pairs(plan.params.tiles), plan.params.tiles) * (plan.refined ? 2 : 1);
 }
 
 std::uint32_t first_step(const FramePlan& plan) {
@@ -161,6 +167,7 @@ class TileFrame {
                     // The lists of a single chunk stand until the picture is there.
                     if (step == first_ || parts_.size() > 1) sort(chunk);
                     prepare(chunk);
+                    mark(chunk, tile_count(plan_), 0);
                     draw(chunk, step, tile_count(plan_) * groups, 0);
                 }
                 finish(step);
@@ -184,10 +191,11 @@ class TileFrame {
                 std::uint32_t round = 0;
                 const auto draw_round = [&] {
                     if (round == 0) prepare(chunk - 1);
-                    draw(chunk - 1, step, order.in_round(round), round);
+                    mark(chunk - 1, order.tiles_in(round), round);
+                    draw(chunk - 1, step, order.groups_in(round), round);
                     ++round;
                 };
-                while (between && order.in_round(round) > 0) {
+                while (between && order.groups_in(round) > 0) {
                     run([&] {
                         draw_round();
                         see_tiles();
@@ -195,7 +203,7 @@ class TileFrame {
                     between();
                 }
                 const auto draw_rest = [&] {
-                    while (order.in_round(round) > 0)
+                    while (order.groups_in(round) > 0)
                         draw_round();
                 };
                 if (chunk == count) {
@@ -207,14 +215,14 @@ class TileFrame {
                 }
                 // Whether lists that were kept still serve is seen once the chunk before is drawn, and others lie
                 // elsewhere.
-                if (how_.refined && order.in_round(round) > 0) {
+                if (how_.refined && order.groups_in(round) > 0) {
                     run([&] {
                         draw_rest();
                         see_tiles();
                     });
                 }
                 if (!how_.refined || !kept.take(chunk)) {
-                    if (how_.refined) kept.place(chunk, most_pairs(chunk));
+                    if (how_.refined) kept.place(chunk, padded_pairs(most_pairs(chunk), plan_.params.tiles));
                     run([&] {
                         draw_rest();
                         sort(chunk);
@@ -247,6 +255,13 @@ class TileFrame {
         const std::uint32_t blocks = plan_.params.tile_blocks;
         const std::uint64_t most = most_column_pairs(parts_[chunk], blocks, pairs(), starts());
         const auto steps = static_cast<std::uint32_t>((most + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
+        if (how_.refined) {
+            const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
+            const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
+            commands_.raw().fillBuffer(targets_.tile_marks.handle(), first * sizeof(std::uint32_t),
+                                       room * sizeof(std::uint32_t), ~0U);
+            commands_.barrier();
+        }
         commands_.span("4_sort_tiles",
                        [&] { passes::sort_tiles(commands_, targets_.tile_counters, blocks, chunk, steps); });
     }
@@ -260,6 +275,12 @@ class TileFrame {
         prepared_[chunk] = true;
         commands_.span("4_prepare_splats",
                        [&] { passes::prepare_splats(commands_, plan_.variant, chunk, entries(chunk)); });
+    }
+
+    void mark(std::uint32_t chunk, std::uint64_t tiles, std::uint32_t round) {
+        passes::TileDraw of_chunk = how_;
+        of_chunk.prepared = is_prepared(chunk);
+        commands_.span("4_mark_blocks", [&] { passes::mark_blocks(commands_, plan_.variant, of_chunk, tiles, round); });
     }
 
     void draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t groups, std::uint32_t round) {

@@ -16,6 +16,9 @@ namespace edgesplat {
 /// costs four dispatches.
 std::uint64_t chunk_pairs(const glm::ivec2& tiles);
 
+/// Room that lists of so many pairs take, each from a multiple of MARKED_AT_ONCE on.
+std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles);
+
 std::uint64_t tile_count(const FramePlan& plan);
 
 /// What FrameParams::tile_order holds at most.

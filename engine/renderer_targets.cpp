@@ -67,8 +67,8 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
     const auto layers = static_cast<int>(p.sheets_per_group);
     for (gpu::Buffer* unused :
          {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
-          &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_closed, &targets.tile_todo,
-          &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets})
+          &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_marks, &targets.tile_closed,
+          &targets.tile_todo, &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets})
         *unused = {};
     targets.prepared = {};
     if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
@@ -124,7 +124,10 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     // The host sees which tiles a round is for.
     grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges");
     grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order");
-    grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries");
+    grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries",
+         vk::Format::eR32G32Uint);
+    grow(device, targets.tile_marks, tile_entry_pairs(plan_in_use) * kWord, Place::Device, "marks of tile entries",
+         vk::Format::eR32Uint);
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles", vk::Format::eR32Uint);
     grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles", vk::Format::eR32Uint);
     if (plan_in_use.refined) {
@@ -154,7 +157,6 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     p.tile_counters = targets.tile_counters.address();
     p.tile_ranges = targets.tile_ranges.address();
     p.tile_order = targets.tile_order.address();
-    p.tile_entries = targets.tile_entries.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_todo = targets.tile_todo.address();
     p.tile_finest = targets.tile_finest ? targets.tile_finest.address() : 0;
@@ -163,8 +165,10 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
 }
 
 void RendererState::provide_chunks(const Chunks& chunks) {
-    grow(device, targets.tile_entries, chunks.most_pairs * 2 * kWord, Place::Device, "tile entries");
     auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
+    const std::uint64_t room = padded_pairs(chunks.most_pairs, p.tiles);
+    grow(device, targets.tile_entries, room * 2 * kWord, Place::Device, "tile entries", vk::Format::eR32G32Uint);
+    grow(device, targets.tile_marks, room * kWord, Place::Device, "marks of tile entries", vk::Format::eR32Uint);
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
     if (blocks > p.tile_blocks) {
@@ -179,7 +183,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
          vk::Format::eR32Uint);
     p.tile_counters = targets.tile_counters.address();
-    p.tile_entries = targets.tile_entries.address();
+    p.entries_first = 0;
     bindings.write(volume_resources, footprint_resources, targets);
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
 }

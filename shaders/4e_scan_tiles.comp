@@ -10,6 +10,9 @@ layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/lib/workgroup_sums.glsl"
 
+// The next list may begin there or after.
+uint begin_of_list(uint at) { return (at + MARKED_AT_ONCE - 1u) / MARKED_AT_ONCE * MARKED_AT_ONCE; }
+
 void main() {
     PairsRef ranges = PairsRef(params.frame.tile_ranges);
     uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;
@@ -18,7 +21,10 @@ void main() {
     uint first = min(me * per_run, tiles), last = min(first + per_run, tiles);
 
     uint sum = 0u;
-    for (uint i = first * blocks; i < last * blocks; ++i) sum += imageLoad(counters, int(i)).x;
+    for (uint tile = first; tile < last; ++tile) {
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += imageLoad(counters, int(i)).x;
+        sum = begin_of_list(sum);
+    }
     uint offset = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
@@ -28,5 +34,6 @@ void main() {
             offset += n;
         }
         ranges.at[tile] = uvec2(begin, offset);
+        offset = begin_of_list(offset);
     }
 }

@@ -3,11 +3,11 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/lib/tile_entries.glsl"
 #include "shaders/lib/sheet_of_entry.glsl"
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform writeonly uimageBuffer entries;
 
 void main() {
     Block block = block_of_invocation();
     UintsRef starts = UintsRef(params.frame.sheet_starts);
-    PairsRef entries = PairsRef(params.frame.tile_entries);
     Pairs pairs = begin_pairs(block, 1u);
     uint sheet = sheet_of_entry(pairs.entry);
     for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
@@ -17,7 +17,7 @@ void main() {
         if (!is_closed(tile)) {
             uint place = tile * params.frame.tile_blocks + block.column, pair = count_at(place);
             set_count(place, pair + 1u);
-            entries.at[pair] = uvec2(pairs.entry, sheet);
+            imageStore(entries, int(params.frame.entries_first + pair), uvec4(pairs.entry, sheet, 0u, 0u));
         }
         next_pair(pairs, block);
     }

@@ -1,12 +1,9 @@
 // A chunk of sheets, tile by tile: each pixel adds the splats of a sheet, folds the sheet behind what it has, and stops when it
-// is opaque. A subgroup takes as many splats of its tile's list as it has invocations, each invocation looks whether one of them
-// touches the subgroup's pixels; those that do are then drawn one after another by all of them.
+// is opaque. Of its tile's list it draws what is marked for its block of pixels.
 // docs/method.md, 5_draw_tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
-#extension GL_KHR_shader_subgroup_vote : require
-#extension GL_KHR_shader_subgroup_ballot : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
@@ -32,6 +29,8 @@ layout(binding = BIND_TABLE) uniform sampler2DArray table;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
+layout(binding = BIND_TILE_MARKS, r32ui) uniform readonly uimageBuffer marks;
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
@@ -54,19 +53,14 @@ FaceBand band;
 #include "shaders/lib/splat_value.glsl"
 #include "shaders/lib/fold_sheet.glsl"
 #include "shaders/lib/pixel_in_tile.glsl"
+#include "shaders/lib/tile_blocks.glsl"
+
+uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
 
 // A pixel takes no more once it is opaque.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
     sum = open ? folded(sum, sheet) : sum;
     open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
-}
-
-const float TOO_WIDE = 1e30;
-
-// The least distance of two voxels, mm.
-float least_voxel() {
-    mat3 m = params.frame.index_to_world;
-    return min(length(m[0]), min(length(m[1]), length(m[2])));
 }
 
 // Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
@@ -84,13 +78,13 @@ ivec2 place_of(uint tile, uint place) {
 void main() {
     uint draw_round = what & 0xfffffu;
     uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) item = UintsRef(params.frame.tile_order).at[item];
+    if (ROUNDS == 1u) item = UintsRef(params.frame.tile_order).at[tile_count() + item];
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : 1u;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
-    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
+    if (tile >= tile_count()) return;
     uvec2 range = PairsRef(params.frame.tile_ranges).at[tile];
     uint whole_end = range.y;
-    if (ROUNDS == 1u) range = uvec2(range.x + draw_round * TILE_ROUND, min(range.x + (draw_round + 1u) * TILE_ROUND, range.y));
+    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     if (range.x >= range.y) return;
     // The sheet of the first entry may have begun in the round before, that of the last may go on in the next.
     bool goes_on = ROUNDS == 1u && range.y < whole_end, went_on = ROUNDS == 1u && draw_round > 0u;
@@ -104,54 +98,30 @@ void main() {
     bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
     bool open = was_open;
     uint evaluated = 0u, shaded = 0u;
-    float finest = TOO_WIDE;
-    for (uint run = subgroupAny(open) ? 1u : 0u; run > 0u; --run) {
+    for (uint run = open ? 1u : 0u; run > 0u; --run) {
         vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
         vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
         vec3 way = params.frame.ray_z + across;
         float way_length = length(way);
         vec3 u = way / way_length;
         float mm = length(params.frame.index_to_world * u);
-        // The subgroup's pixels look along `middle`, or up to `spread` off it along two axes across.
-        vec3 middle = normalize(subgroupAdd(u));
-        vec3 aside = normalize(params.frame.ray_x - dot(params.frame.ray_x, middle) * middle), upward = cross(middle, aside);
-        vec3 astray = u / dot(u, middle);
-        vec2 spread = 1.01 * vec2(subgroupMax(abs(dot(astray, aside))), subgroupMax(abs(dot(astray, upward)))) + 1e-6;
-
         normal_distance = vec4(0.0);
+        int at = int(params.frame.entries_first + range.x), block = int(block_of(pixel));
         PixelsRef unfinished = PixelsRef(params.frame.tile_sheets);
         vec4 sheet_sum = vec4(0.0);
-        uint current = PairsRef(params.frame.tile_entries).at[range.x].y;
+        uint current = imageLoad(entries, at).y;
         if (ROUNDS == 1u) {
-            bool same = went_on && PairsRef(params.frame.tile_entries).at[range.x - (went_on ? 1u : 0u)].y == current;
+            bool same = went_on && imageLoad(entries, at - (went_on ? 1 : 0)).y == current;
             sheet_sum = same ? unfinished.at[held.y * size.x + held.x] : vec4(0.0);
             // A sheet that ended with the round before.
             for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, unfinished.at[held.y * size.x + held.x]);
         }
-        for (uint base = range.x; base < range.y && subgroupAny(open); base += gl_SubgroupSize) {
-            uint mine = base + gl_SubgroupInvocationID;
-            uvec2 entry = PairsRef(params.frame.tile_entries).at[min(mine, range.y - 1u)];
-            PreparedSplat s;
-            if (PREPARED == 1u) load_place(entry.x, s);
-            else s = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
-            // From the support's centre to the rays: how far off the nearest of them is, and how far the support reaches that way.
-            float along = dot(s.centre, middle);
-            vec3 away = along * middle - s.centre;
-            float apart = length(away);
-            away /= max(apart, 1e-6);
-            apart -= (abs(dot(away, aside)) * spread.x + abs(dot(away, upward)) * spread.y) * max(along + s.around, 0.0);
-            float reach = s.around;
-            if (!SPHERES) {
-                float towards = support_towards(s.extents, dot(away, s.inputs.normal_distance.xyz));
-                reach = s.is_sphere ? reach : towards;
-            }
-            bool touches = mine < range.y && along > -s.around && apart <= reach;
-
-            uvec4 hits = subgroupBallot(touches);
-            for (uint word = 0u; word * 32u < gl_SubgroupSize; ++word)
-            for (uint bits = hits[word]; bits != 0u; bits &= bits - 1u) {
-                uint lane = word * 32u + uint(findLSB(bits));
-                uint sheet = subgroupBroadcast(entry.y, lane);
+        for (uint base = 0u; base < range.y - range.x && open; base += MARKED_AT_ONCE) {
+            uint left = range.y - range.x - base;
+            uint bits = imageLoad(marks, at + int(base) + block).x & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
+            for (; bits != 0u && open; bits &= bits - 1u) {
+                uvec2 entry = imageLoad(entries, at + int(base) + findLSB(bits)).xy;
+                uint sheet = entry.y;
                 vec4 with_sheet = sum;
                 bool still_open = open;
                 fold(with_sheet, still_open, sheet_sum);
@@ -160,12 +130,9 @@ void main() {
                 open = ended ? still_open : open;
                 sheet_sum = ended ? vec4(0.0) : sheet_sum;
                 current = sheet;
-                // All load the same record: on lavapipe handing its numbers over one by one takes longer.
-                uint drawn = subgroupBroadcast(entry.x, lane);
                 PreparedSplat h;
-                if (PREPARED == 1u) load_kernel(drawn, h);
-                else h = prepared_splat(UintsRef(params.frame.order).at[drawn], sheet);
-                if (REFINED == 1u) finest = min(finest, least_voxel() / (h.plane * 2.0 * params.frame.tan_half_x / float(size.x)));
+                if (PREPARED == 1u) load_kernel(entry.x, h);
+                else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], sheet);
                 color_sigma = h.inputs.color_sigma;
                 normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
                 shape = vec4(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, CURVED == 1u ? h.inputs.shape.y : 0.0,
@@ -190,18 +157,13 @@ void main() {
             }
         }
         // What the next round may go on with is the sheet of the last entry, whether or not it was here.
-        bool kept = goes_on && PairsRef(params.frame.tile_entries).at[range.y - 1u].y == current;
+        bool kept = goes_on && imageLoad(entries, at + int(range.y - range.x) - 1).y == current;
         for (uint run = kept ? 0u : 1u; run > 0u; --run) {
             fold(sum, open, sheet_sum);
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) unfinished.at[held.y * size.x + held.x] = sheet_sum;
         for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
-    }
-    if (REFINED == 1u) {
-        // Also of those that no pixel was under: what is drawn between the pixels depends on it.
-        float least = subgroupMin(finest);
-        if (subgroupElect()) atomicMin(UintsRef(params.frame.tile_finest).at[tile], floatBitsToUint(least));
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {

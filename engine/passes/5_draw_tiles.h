@@ -7,7 +7,7 @@ namespace edgesplat::passes {
 
 /// What of drawing is no matter of the picture.
 struct TileDraw {
-    bool rounds = true;    ///< only entries [round * TILE_ROUND, (round + 1) * TILE_ROUND) of each list
+    bool rounds = true;    ///< only entries [round_begin(round), round_begin(round + 1)) of each list
     bool count = false;    ///< FrameParams::drawn counts footprints
     bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
     bool part = false;     ///< some of the sheets: the picture is not finished with them
@@ -16,6 +16,10 @@ struct TileDraw {
 
 /// Invocations of a workgroup, a pixel each. Lists of pixels are of very different length.
 std::uint32_t tile_group(TileDraw how);
+
+constexpr std::uint32_t round_begin(std::uint32_t round) {
+    return round == 0 ? 0 : shader::TILE_FIRST_ROUND + (round - 1) * shader::TILE_ROUND;
+}
 
 /// What one of these dispatches draws.
 struct TileRound {

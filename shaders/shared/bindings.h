@@ -21,7 +21,9 @@ EDGESPLAT_CONSTANT uint BIND_PICTURE = 11u;        // rgba32f, FrameParams::outp
 EDGESPLAT_CONSTANT uint BIND_TILE_COUNTERS = 12u;  // r32ui, FrameParams::tile_counters
 EDGESPLAT_CONSTANT uint BIND_TILE_CLOSED = 13u;    // r32ui, FrameParams::tile_closed
 EDGESPLAT_CONSTANT uint BIND_TILE_TODO = 14u;      // r32ui, FrameParams::tile_todo
-EDGESPLAT_CONSTANT uint BIND_COUNT = 15u;
+EDGESPLAT_CONSTANT uint BIND_TILE_ENTRIES = 15u;   // rg32ui (pairs at once): place in `order`, sheet; by tile, sheet, number
+EDGESPLAT_CONSTANT uint BIND_TILE_MARKS = 16u;     // r32ui (pairs at once): for 32 of them a word for each block of 4 x 2 pixels
+EDGESPLAT_CONSTANT uint BIND_COUNT = 17u;
 
 EDGESPLAT_SHARED_END
 #endif

@@ -67,7 +67,7 @@ struct FrameParams {
     float silhouette_sharpness;
     vec2 pixel;            // slopes from one sample of the picture to the next; with antialias only
     uint prepared_mask;    // slots for prepared splats less one; a power of two of them
-    uint pad;
+    uint entries_first;    // where the chunk's lists begin in BIND_TILE_ENTRIES, and their marks; a multiple of MARKED_AT_ONCE
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
     Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
@@ -93,9 +93,8 @@ struct FrameParams {
     Address sheet_starts;   // (sheet_count + 1) uint: where each sheet begins in `order`
     Address chunks;         // (chunks) uvec2: the part of `order` that is drawn at once, half open
     Address tile_counters;  // (tiles, tile_blocks) uint: counts, then offsets
-    Address tile_ranges;    // (tiles) uvec2: parts of tile_entries, half open
-    Address tile_order;     // (tiles) uint: tiles by the length of their lists, longest first; with rounds only
-    Address tile_entries;   // (pairs of the chunk) uvec2: place in `order`, sheet; by tile, sheet, number
+    Address tile_ranges;    // (tiles) uvec2: parts of BIND_TILE_ENTRIES, half open, counted from entries_first
+    Address tile_order;     // (tiles, then groups of their pixels) uint: by the length of lists, longest first; with rounds only
     Address tile_closed;    // (tiles) uint: pixels that take no more, of those that are drawn
     Address tile_todo;      // (tiles) uint: pixels that are drawn
     Address tile_finest;    // (tiles) uint: bits of the least width of a voxel of the splats over it, pixels; with refined pixels only
@@ -114,7 +113,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 9864);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 10488);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 10480);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

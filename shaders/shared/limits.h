@@ -28,6 +28,8 @@ EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on l
 // keeps them below.
 EDGESPLAT_CONSTANT uint MOST_ITERATIONS = 50000u;
 EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are drawn at once, each good for 128 at most
+EDGESPLAT_CONSTANT uint TILE_FIRST_ROUND = 128u;  // likewise, of the first round, after which near views have most pixels closed
+EDGESPLAT_CONSTANT uint MARKED_AT_ONCE = 32u;  // entries that a word of marks is for; lists begin at multiples of it
 EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
 EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
 EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column

@@ -43,6 +43,15 @@ Lists lists_of(RendererState& state) {
     Lists lists;
     lists.ranges = download<glm::uvec2>(state, state.targets.tile_ranges, tiles);
     lists.entries = download<glm::uvec2>(state, state.targets.tile_entries, lists.ranges.back().y);
+    // Each list begins at a multiple of what a word of marks is for.
+    std::vector<glm::uvec2> packed;
+    for (glm::uvec2& range : lists.ranges) {
+        EXPECT_EQ(range.x % shader::MARKED_AT_ONCE, 0U);
+        const auto first = static_cast<std::uint32_t>(packed.size());
+        packed.insert(packed.end(), lists.entries.begin() + range.x, lists.entries.begin() + range.y);
+        range = {first, packed.size()};
+    }
+    lists.entries = std::move(packed);
     const std::uint32_t most = std::ranges::max(lists.entries, {}, &glm::uvec2::x).x + 1;
     const auto order = download<std::uint32_t>(state, state.targets.order, most);
     for (glm::uvec2& entry : lists.entries)

@@ -1,0 +1,20 @@
+#include "engine/passes/4_mark_blocks.h"
+
+namespace edgesplat::passes {
+
+gpu::Specialization mark_block_constants(const DrawVariant& variant, TileDraw how) {
+    gpu::Specialization constants = draw_constants(variant);
+    constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_GROUP, how.rounds ? 8U : 32U);
+    return constants;
+}
+
+void mark_blocks(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
+                 std::uint32_t round) {
+    commands.dispatch("4h_mark_blocks.comp", mark_block_constants(variant, how), round, gpu::groups_for(tiles, 1));
+    commands.barrier();
+}
+
+}  // namespace edgesplat::passes
