@@ -81,6 +81,7 @@ void add_placeholders(std::vector<PlannedResource>& out) {
 
     out.push_back(buffer("placeholder texels", 16, "zeros", "-", "-"));
     out.push_back(buffer("placeholder counts", 16, "zeros", "-", "-"));
+    out.push_back(buffer("placeholder entries", 16, "zeros", "-", "-"));
     out.push_back(on_host(buffer("placeholder block", sizeof(shader::FrameParams), "zeros", "-", "-")));
     const auto add = [&](vk::Format format, bool volume, bool array, Usage usage) {
         out.push_back(image("placeholder",
