@@ -42,7 +42,7 @@ std::vector<Effect> settings_effects() {
                        {shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS"},
                        {shader::SPEC_EDGES, "SPEC_EDGES"},
                        {shader::SPEC_SMOOTH, "SPEC_SMOOTH"}},
-         .frame_fields = {"footprint", "support_table", "extents"}});
+         .frame_fields = {"footprint", "support_table", "spheroids"}});
     rows.push_back({.name = "spline edges",
                     .help = "edges are found on the cubic B-spline through the samples",
                     .call = "settings.edges = \"cubic\"; --edges cubic",

@@ -216,7 +216,7 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
         growing(buffer("tile order", tile_order_items(plan) * word, "(tiles) uint, longest list first", "host", "5"))));
     out.push_back(growing(buffer("tile entries", tile_entry_pairs(plan) * 2 * word,
                                  "(pairs at once) place in the order, sheet", "4", "5")));
-    out.push_back(growing(buffer("marks of tile entries", tile_entry_pairs(plan) * word,
+    out.push_back(growing(buffer("marks of tile entries", tile_mark_words(plan, chunk_pairs(plan.params.tiles)) * word,
                                  "(pairs at once) blocks of the tile's pixels", "4", "5")));
     const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
     out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),

@@ -175,19 +175,18 @@ SupportSpheres support_spheres(const Settings& drawn) {
     return out;
 }
 
-std::vector<float> support_extents(const Settings& drawn, const SupportSpheres& spheres) {
-    std::vector<float> out;
+std::vector<glm::vec4> support_spheroids(const Settings& drawn, const SupportSpheres& spheres) {
+    std::vector<glm::vec4> out;
     // Tables and short cuts leave something where the kernel they stand for is zero.
     if (drawn.edge_shape == EdgeShape::Plane && drawn.warp == WarpFamily::Edge &&
         drawn.footprints == FootprintMode::Procedural) {
-        out = covering_extents({drawn.edge_half_width, drawn.edge_strength}, shader::SUPPORT_STEPS,
-                               shader::EXTENT_DIRECTIONS);
+        const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
+        for (const Spheroid& s : covering_spheroids(band, shader::SUPPORT_STEPS))
+            out.emplace_back(s.shift, s.along, s.across, 0);
     } else {
         for (const Support& s : spheres.by_distance)
-            out.insert(out.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(std::abs(s.shift) + s.radius));
+            out.emplace_back(s.shift, s.radius, s.radius, 0);
     }
-    out.insert(out.end(), shader::EXTENT_DIRECTIONS, static_cast<float>(kKernelRadius));
-    out.insert(out.end(), shader::EXTENT_DIRECTIONS, 0.0F);
     return out;
 }
 

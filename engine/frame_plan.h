@@ -82,8 +82,8 @@ struct SupportSpheres {
 };
 SupportSpheres support_spheres(const Settings& drawn);
 
-/// FrameParams::extents of settings that draw warped kernels, with their spheres.
-std::vector<float> support_extents(const Settings& drawn, const SupportSpheres& spheres);
+/// FrameParams::spheroids of settings that draw warped kernels, with their spheres.
+std::vector<glm::vec4> support_spheroids(const Settings& drawn, const SupportSpheres& spheres);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

@@ -35,9 +35,9 @@ struct VolumeResources {
 struct FootprintResources {
     gpu::GpuImage table;  ///< (layers, height, width) r16f; host -> 5, modes `table` and `table-lerp` of family `edge`
     shader::FootprintParams params{};
-    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};                            ///< FrameParams::support_table
-    std::array<float, sizeof(shader::FrameParams::extents) / sizeof(float)> extents{};  ///< FrameParams::extents
-    double farthest_reach = 0;                                                          ///< of any kernel, voxels
+    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};   ///< FrameParams::support_table
+    std::array<glm::vec4, shader::SUPPORT_STEPS> spheroids{};  ///< FrameParams::spheroids
+    double farthest_reach = 0;                                 ///< of any kernel, voxels
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes. A picture whose sheets are layers

@@ -111,6 +111,11 @@ std::uint64_t tile_entry_pairs(const FramePlan& plan) {
     return padded_pairs(chunk_pairs(plan.params.tiles), plan.params.tiles) * (plan.refined ? 2 : 1);
 }
 
+std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs) {
+    // A picture that is planned to be refined may be drawn whole.
+    return padded_pairs(pairs, plan.params.tiles) * (shader::TILE * shader::TILE / shader::MARKED_AT_ONCE);
+}
+
 std::uint32_t first_step(const FramePlan& plan) {
     return plan.refined ? shader::REFINE_STEP : 1;
 }

@@ -26,6 +26,9 @@ std::uint64_t tile_order_items(const FramePlan& plan);
 /// Pairs that FrameParams::tile_entries has room for. Of a refined picture, the lists of several chunks are kept.
 std::uint64_t tile_entry_pairs(const FramePlan& plan);
 
+/// Words that mark for which pixels lists of so many pairs are.
+std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs);
+
 /// Consecutive sheets that are drawn at once.
 struct Chunks {
     std::vector<glm::uvec2> parts;  ///< of the sorted order, half open; empty ones are left out

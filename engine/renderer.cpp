@@ -112,7 +112,7 @@ void RendererState::choose_supports(const Settings& settings) {
     const SupportSpheres spheres = support_spheres(settings);
     std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
                            [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-    std::ranges::copy(support_extents(settings, spheres), footprint_resources.extents.begin());
+    std::ranges::copy(support_spheroids(settings, spheres), footprint_resources.spheroids.begin());
     footprint_resources.farthest_reach = spheres.farthest;
     supports_made_for = wanted;
 }

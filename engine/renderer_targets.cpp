@@ -57,7 +57,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
         provide_layers(plan_in_use);
     p.footprint = footprint_resources.params;
     std::ranges::copy(footprint_resources.supports, p.support_table);
-    std::ranges::copy(footprint_resources.extents, p.extents);
+    std::ranges::copy(footprint_resources.spheroids, p.spheroids);
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
     bindings.write(volume_resources, footprint_resources, targets);
 }
@@ -126,8 +126,8 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order");
     grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries",
          vk::Format::eR32G32Uint);
-    grow(device, targets.tile_marks, tile_entry_pairs(plan_in_use) * kWord, Place::Device, "marks of tile entries",
-         vk::Format::eR32Uint);
+    grow(device, targets.tile_marks, tile_mark_words(plan_in_use, chunk_pairs(p.tiles)) * kWord, Place::Device,
+         "marks of tile entries", vk::Format::eR32Uint);
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles", vk::Format::eR32Uint);
     grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles", vk::Format::eR32Uint);
     if (plan_in_use.refined) {
@@ -168,7 +168,8 @@ void RendererState::provide_chunks(const Chunks& chunks) {
     auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
     const std::uint64_t room = padded_pairs(chunks.most_pairs, p.tiles);
     grow(device, targets.tile_entries, room * 2 * kWord, Place::Device, "tile entries", vk::Format::eR32G32Uint);
-    grow(device, targets.tile_marks, room * kWord, Place::Device, "marks of tile entries", vk::Format::eR32Uint);
+    grow(device, targets.tile_marks, tile_mark_words(plan, chunks.most_pairs) * kWord, Place::Device,
+         "marks of tile entries", vk::Format::eR32Uint);
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
     if (blocks > p.tile_blocks) {

@@ -1,8 +1,11 @@
 #include "footprints/edge_warp.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "footprints/kernel.h"
@@ -166,34 +169,63 @@ std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
     return spheres;
 }
 
-std::vector<float> covering_extents(const EdgeBand& band, int cells, int directions) {
-    if (cells < 1 || directions < 1)
-        throw std::invalid_argument("covering_extents: cells and directions must be at least 1");
+namespace {
+
+/// Least half-axis across n with which a spheroid of that centre and half-axis along n holds the rims (t, e); infinite
+/// where one lies beyond it.
+double half_axis_across(std::span<const std::array<double, 2>> rims, double shift, double along) {
+    double across2 = 0;
+    for (const auto& [t, e] : rims) {
+        const double u = (t - shift) / along, rest = 1 - u * u;
+        if (rest <= 0) return std::numeric_limits<double>::infinity();
+        across2 = std::max(across2, e * e / rest);
+    }
+    return std::sqrt(across2);
+}
+
+Spheroid smallest_spheroid(std::span<const std::array<double, 2>> rims) {
+    const auto [low, high] = std::ranges::minmax(rims, {}, [](const auto& rim) { return rim[0]; });
+    const double middle = (low[0] + high[0]) / 2, half = (high[0] - low[0]) / 2;
+    Spheroid best;
+    double least = std::numeric_limits<double>::infinity();
+    for (int i = -20; i <= 20; ++i) {
+        for (int j = 1; j <= 40; ++j) {
+            const double shift = middle + 0.02 * i * half, along = half * (1 + 0.02 * std::abs(i)) + 0.02 * j * half;
+            const double across = half_axis_across(rims, shift, along);
+            // About what it covers of the screen, seen from anywhere.
+            if (const double cover = across * (across + along); cover < least) {
+                least = cover;
+                best = {shift, along, across};
+            }
+        }
+    }
+    return best;
+}
+
+}  // namespace
+
+std::vector<Spheroid> covering_spheroids(const EdgeBand& band, int cells) {
+    if (cells < 1) throw std::invalid_argument("covering_spheroids: cells must be at least 1");
     constexpr int kPerCell = 4, kRims = 96;
     const double R = kKernelRadius, step = (R + band.half_width) / (cells * kPerCell);
     // The kernel's ball as discs across n, evenly spaced in angle: between two of them it bulges, between two distances
     // they move.
     const double margin = 2e-3 + step / 2;
-    std::vector<float> table;
+    std::vector<Spheroid> out;
+    std::vector<std::array<double, 2>> rims;
     for (int cell = 0; cell < cells; ++cell) {
-        std::vector<double> row(static_cast<std::size_t>(directions), 0.0);
+        rims.clear();
         for (int i = 0; i <= kRims * (kPerCell + 1); ++i) {
             const Edge edge{step * (cell * kPerCell + i % (kPerCell + 1)), band};
             const double angle = std::numbers::pi * (i / (kPerCell + 1)) / kRims;
-            // t c + e s is largest where c = t / |(t, e)|.
-            const double t = unwarped_coordinate(R * std::cos(angle), edge), e = R * std::sin(angle);
-            const double best = t / std::max(std::hypot(t, e), 1e-12);
-            for (int direction = 0; direction < directions; ++direction) {
-                const double c =
-                    std::clamp(best, 2.0 * direction / directions - 1, 2.0 * (direction + 1) / directions - 1);
-                double& extent = row[static_cast<std::size_t>(direction)];
-                extent = std::max(extent, t * c + e * std::sqrt(std::max(1 - c * c, 0.0)));
-            }
+            rims.push_back({unwarped_coordinate(R * std::cos(angle), edge), R * std::sin(angle)});
         }
-        for (const double extent : row)
-            table.push_back(static_cast<float>(extent + margin));
+        Spheroid spheroid = smallest_spheroid(rims);
+        spheroid.along += margin;
+        spheroid.across += margin;
+        out.push_back(spheroid);
     }
-    return table;
+    return out;
 }
 
 std::vector<Support> covering_supports_of_curved(const EdgeBand& band, int cells) {

@@ -69,14 +69,19 @@ std::vector<Support> warped_support_table(const EdgeBand& band, int entries);
 /// off.
 std::vector<Support> covering_supports(const EdgeBand& band, int cells);
 
-/// How far that support reaches in a direction at an angle to n, voxels from the voxel's centre: `directions` cells of
-/// the angle's cosine c in [-1, 1], one row of them for every cell of |D|. Entry min(int((c + 1) / 2 * directions),
-/// directions - 1) of the row serves c, that of -c where D < 0: no point x of the support has x . u beyond it, u the
-/// direction. Nearer than the spheres, for the support near an edge is a disc that thins out on either side.
-std::vector<float> covering_extents(const EdgeBand& band, int cells, int directions);
+/// An ellipsoid of revolution about n that holds a support: its centre is x_i + shift n. Voxels.
+struct Spheroid {
+    double shift = 0;
+    double along = 0;   ///< half-axis along n
+    double across = 0;  ///< half-axis across n
+};
 
-/// Such spheres for edges of any curvature: spheres around the voxel (shift 0) of radius R + the farthest that W moves
-/// a point of the kernel's ball.
+/// One for every cell of |D| as above. Nearer than the spheres, for the support near an edge is a disc that thins out
+/// on either side.
+std::vector<Spheroid> covering_spheroids(const EdgeBand& band, int cells);
+
+/// Spheres as above for edges of any curvature: spheres around the voxel (shift 0) of radius R + the farthest that W
+/// moves a point of the kernel's ball.
 std::vector<Support> covering_supports_of_curved(const EdgeBand& band, int cells);
 
 /// The largest radius_about_voxel over every D, walls included: a bound that needs no look-up.

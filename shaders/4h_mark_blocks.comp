@@ -1,11 +1,11 @@
-// For every entry of a tile's list: which of the tile's blocks of 4 x 2 pixels its support reaches, found once for the
-// entry instead of by each block for all entries. docs/method.md, 4_mark_blocks.
+// For every entry of a tile's list: which of the tile's pixels its support reaches, row by row, kept as a word a pixel of
+// what each 32 entries have for it. docs/method.md, 4_mark_blocks.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x_id = SPEC_GROUP) in;
+layout(local_size_x = 8, local_size_y_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -37,37 +37,14 @@ layout(push_constant) uniform Push { uint draw_round; };
 
 #include "shaders/lib/tile_blocks.glsl"
 
-// The rays of a block's pixels: none is further off `middle` than `spread`, along `aside` and along what is across both.
-struct Rays {
-    vec3 middle, aside;
-    vec2 spread;
-};
-
-Rays rays_of(uint tile, uint block) {
-    vec2 scale = 2.0 * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
-    vec2 place = vec2(uvec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * TILE + block_corner(block));
-    vec2 slope = (place + 0.5 * vec2(BLOCK)) * scale - vec2(params.frame.tan_half_x, params.frame.tan_half_y);
-    vec2 reach = 0.5 * (vec2(BLOCK) - 1.0) * scale;
-    vec3 x = params.frame.ray_x, y = params.frame.ray_y;
-    vec3 way = params.frame.ray_z + slope.x * x + slope.y * y;
-    float way_length = length(way);
-    Rays r;
-    r.middle = way / way_length;
-    r.aside = normalize(x - dot(x, r.middle) * r.middle);
-    vec3 upward = cross(r.middle, r.aside);
-    float least = way_length - reach.x * abs(dot(x, r.middle)) - reach.y * abs(dot(y, r.middle));
-    r.spread = 1.01 * vec2(reach.x * dot(x, r.aside) + reach.y * abs(dot(y, r.aside)), reach.y * abs(dot(y, upward))) /
-                   max(least, 1e-3 * way_length) + 1e-6;
-    return r;
-}
-
 // The least distance of two voxels, mm.
 float least_voxel() {
     mat3 m = params.frame.index_to_world;
     return min(length(m[0]), min(length(m[1]), length(m[2])));
 }
 
-const uint EACH = BLOCKS / gl_WorkGroupSize.x;
+const uint ROWS = TILE / gl_WorkGroupSize.x;  // of an invocation
+const uint OWN = ROWS * TILE / (CELL_X * CELL_Y);
 const float TOO_WIDE = 1e30;
 
 void main() {
@@ -78,47 +55,40 @@ void main() {
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     bool closed = imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x;
     if (range.x >= range.y || closed) return;
-    uint own = gl_LocalInvocationIndex * EACH;
-    Rays rays[BLOCKS];
-    for (uint j = 0u; j < EACH; ++j) rays[j] = rays_of(tile, own + j);
+    ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
+    int row = corner.y + int(gl_LocalInvocationID.x * ROWS);
     float finest = TOO_WIDE;
-    for (uint base = range.x; base < range.y; base += MARKED_AT_ONCE) {
-        int at = int(params.frame.entries_first + base);
+    for (uint base = range.x + MARKED_AT_ONCE * gl_LocalInvocationID.y; base < range.y; base += MARKED_AT_ONCE * gl_WorkGroupSize.y) {
+        int marks_at = first_mark(base) + int(gl_LocalInvocationID.x * OWN);
         uint count = min(MARKED_AT_ONCE, range.y - base);
         // Lists that are kept from step to step are marked already, where tiles were not closed.
-        if (REFINED == 1u) count = imageLoad(marks, at + int(own)).x == ~0u ? count : 0u;
-        uint marked[BLOCKS];
-        for (uint j = 0u; j < EACH; ++j) marked[j] = 0u;
+        if (REFINED == 1u) count = imageLoad(marks, marks_at).x == ~0u ? count : 0u;
+        uint marked[2u * TILE];
+        for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
         for (uint k = 0u; k < count; ++k) {
-            uvec2 entry = imageLoad(entries, at + int(k)).xy;
-            PreparedSplat s;
-            if (PREPARED == 1u) load_place(entry.x, s);
-            else s = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
+            uvec2 entry = imageLoad(entries, int(params.frame.entries_first + base + k)).xy;
+            SplatConic conic;
+            if (PREPARED == 1u) conic = load_conic(entry.x);
+            else conic = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y).conic;
             if (REFINED == 1u) {
-                float depth = max(dot(params.frame.view_z, s.centre), params.frame.near_depth);
+                float depth = max(conic.depth, params.frame.near_depth);
                 finest = min(finest, least_voxel() / (depth * 2.0 * params.frame.tan_half_x / float(params.frame.size.x)));
             }
-            for (uint j = 0u; j < EACH; ++j) {
-                // From the support's centre to the rays: how far off the nearest is, and how far the support reaches that way.
-                float along = dot(s.centre, rays[j].middle);
-                vec3 away = along * rays[j].middle - s.centre;
-                float apart = length(away);
-                away /= max(apart, 1e-6);
-                float aside = abs(dot(away, rays[j].aside));
-                apart -= (aside * rays[j].spread.x + sqrt(max(1.0 - aside * aside, 0.0)) * rays[j].spread.y) *
-                         max(along + s.around, 0.0);
-                float reach = s.around;
-                if (!SPHERES) {
-                    float towards = support_towards(s.extents, dot(away, s.inputs.normal_distance.xyz));
-                    reach = s.is_sphere ? reach : towards;
-                }
-                marked[j] |= along > -s.around && apart <= reach ? 1u << k : 0u;
+            uint covered = 0u;
+            for (uint r = 0u; r < ROWS; ++r) {
+                ivec2 ends = clamp(row_of_conic(conic, row + int(r)) - corner.x, 0, int(TILE));
+                uint own = (1u << ends.y) - 1u & ~((1u << ends.x) - 1u);
+                covered = REFINED == 1u ? covered | own : own;
+                if (REFINED == 0u)
+                    for (uint x = 0u; x < TILE; ++x) marked[r * TILE + x] |= (own >> x & 1u) << k;
             }
+            if (REFINED == 1u)
+                for (uint c = 0u; c < OWN; ++c) marked[c] |= (covered >> c * CELL_X & (1u << CELL_X) - 1u) != 0u ? 1u << k : 0u;
         }
         for (uint store = count > 0u ? 1u : 0u; store > 0u; --store)
-            for (uint j = 0u; j < EACH; ++j) imageStore(marks, at + int(own + j), uvec4(marked[j]));
+            for (uint c = 0u; c < OWN; ++c) imageStore(marks, marks_at + int(c), uvec4(marked[c]));
     }
     // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.
-    if (REFINED == 1u && gl_LocalInvocationIndex == 0u)
+    if (REFINED == 1u && gl_LocalInvocationID.x == 0u)
         atomicMin(UintsRef(params.frame.tile_finest).at[tile], floatBitsToUint(finest));
 }

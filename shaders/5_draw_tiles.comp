@@ -1,5 +1,5 @@
 // A chunk of sheets, tile by tile: each pixel adds the splats of a sheet, folds the sheet behind what it has, and stops when it
-// is opaque. Of its tile's list it draws what is marked for its block of pixels.
+// is opaque. Of its tile's list it draws what is marked for it.
 // docs/method.md, 5_draw_tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -106,7 +106,7 @@ void main() {
         vec3 u = way / way_length;
         float mm = length(params.frame.index_to_world * u);
         normal_distance = vec4(0.0);
-        int at = int(params.frame.entries_first + range.x), block = int(block_of(pixel));
+        int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         PixelsRef unfinished = PixelsRef(params.frame.tile_sheets);
         vec4 sheet_sum = vec4(0.0);
         uint current = imageLoad(entries, at).y;
@@ -116,11 +116,22 @@ void main() {
             // A sheet that ended with the round before.
             for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, unfinished.at[held.y * size.x + held.x]);
         }
-        for (uint base = 0u; base < range.y - range.x && open; base += MARKED_AT_ONCE) {
-            uint left = range.y - range.x - base;
-            uint bits = imageLoad(marks, at + int(base) + block).x & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
-            for (; bits != 0u && open; bits &= bits - 1u) {
-                uvec2 entry = imageLoad(entries, at + int(base) + findLSB(bits)).xy;
+        uint length = range.y - range.x;
+        for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
+            uvec4 words;
+            for (uint i = 0u; i < 4u; ++i) {
+                uint begin = base + i * MARKED_AT_ONCE, left = length - min(begin, length);
+                words[i] = imageLoad(marks, marks_at + int(begin / MARKED_AT_ONCE * CELLS)).x;
+                words[i] = left == 0u ? 0u : words[i] & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
+            }
+            while ((words.x | words.y | words.z | words.w) != 0u && open) {
+                bvec3 done = equal(words.xyz, uvec3(0u));
+                uint first = !done.x ? 0u : !done.y ? 1u : !done.z ? 2u : 3u;
+                uint bits = !done.x ? words.x : !done.y ? words.y : !done.z ? words.z : words.w;
+                uint rest = bits & bits - 1u;
+                words = uvec4(first == 0u ? rest : words.x, first == 1u ? rest : words.y, first == 2u ? rest : words.z,
+                              first == 3u ? rest : words.w);
+                uvec2 entry = imageLoad(entries, at + int(base + first * MARKED_AT_ONCE) + findLSB(bits)).xy;
                 uint sheet = entry.y;
                 vec4 with_sheet = sum;
                 bool still_open = open;

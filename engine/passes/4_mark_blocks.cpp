@@ -7,7 +7,7 @@ gpu::Specialization mark_block_constants(const DrawVariant& variant, TileDraw ho
     constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
-    constants.emplace_back(shader::SPEC_GROUP, how.rounds ? 8U : 32U);
+    constants.emplace_back(shader::SPEC_GROUP, how.rounds ? 1U : 8U);
     return constants;
 }
 

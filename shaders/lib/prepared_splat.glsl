@@ -3,6 +3,7 @@
 // shader declares `FaceBand` footprints (shaders/lib/footprint.glsl).
 #ifndef EDGESPLAT_PREPARED_SPLAT_GLSL
 #define EDGESPLAT_PREPARED_SPLAT_GLSL
+#include "shaders/lib/splat_conic.glsl"
 
 const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
 
@@ -10,10 +11,7 @@ const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated
 const bool SPHERES = FOOTPRINTS == 0u || SLICED == 1u;
 
 struct PreparedSplat {
-    bool is_sphere;  // the support
-    vec3 centre;     // of the support where it is a sphere, else of the voxel; minus the eye, index space
-    float around;    // that sphere's radius, voxels, across the ray
-    uint extents;    // else: how far the support reaches which way (support_towards)
+    SplatConic conic;
     vec3 start;      // a point of the ray with slopes (0, 0), relative to the voxel, index space
     float plane;     // its depth, mm: other rays pass plane * (x ray_x + y ray_y) beside it
     vec2 slopes;     // of the voxel; with antialias only
@@ -33,11 +31,9 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
         cut_support(p, depths);
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
-    s.is_sphere = SPHERES;
-    if (ANTIALIAS == 1u) s.is_sphere = s.is_sphere || p.filtered.share > 0.0;
-    s.centre = s.inputs.from_eye + (s.is_sphere ? p.centre : vec3(0.0));
-    s.around = s.is_sphere ? reach_across(p) : params.frame.band;
-    s.extents = splat_extents(e);
+    bool is_sphere = SPHERES;
+    if (ANTIALIAS == 1u) is_sphere = is_sphere || p.filtered.share > 0.0;
+    s.conic = splat_conic(p, e, is_sphere);
     // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
     bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
     s.plane = at_eye ? params.frame.near_depth : p.view.z;
@@ -48,8 +44,8 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     return s;
 }
 
-const uint PREPARED_KERNEL = 1u;
-const uint PREPARED_START = FOOTPRINTS != 0u ? 3u : 1u;
+const uint PREPARED_KERNEL = 2u;
+const uint PREPARED_START = FOOTPRINTS != 0u ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
 const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
@@ -63,7 +59,8 @@ ivec2 prepared_texel(uint at) { return ivec2(at % PREPARED_ROW, at / PREPARED_RO
 #ifdef KEEPS_PREPARED
 void keep_prepared(uint entry, PreparedSplat s) {
     uint at = prepared_slot(entry);
-    imageStore(prepared, prepared_texel(at), vec4(s.centre, s.is_sphere ? s.around : -1.0 - float(s.extents)));
+    imageStore(prepared, prepared_texel(at), vec4(s.conic.centre, s.conic.form.xy));
+    imageStore(prepared, prepared_texel(at + 1u), vec4(s.conic.form.z, s.conic.linear, s.conic.depth));
     if (FOOTPRINTS != 0u) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
         vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
@@ -83,19 +80,13 @@ void keep_prepared(uint entry, PreparedSplat s) {
 }
 
 #else
-// What an invocation needs of its own entry, to see whether it is drawn.
-void load_place(uint entry, inout PreparedSplat s) {
+SplatConic load_conic(uint entry) {
     uint at = prepared_slot(entry);
-    vec4 v = imageLoad(prepared, prepared_texel(at));
-    s.centre = v.xyz;
-    s.is_sphere = SPHERES;
-    if (ANTIALIAS == 1u) s.is_sphere = v.w >= 0.0;
-    s.around = s.is_sphere ? v.w : params.frame.band;
-    s.extents = uint(max(-1.0 - v.w, 0.0));
-    if (FOOTPRINTS != 0u) s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
+    vec4 u = imageLoad(prepared, prepared_texel(at)), v = imageLoad(prepared, prepared_texel(at + 1u));
+    return SplatConic(u.xy, vec3(u.zw, v.x), v.yz, v.w);
 }
 
-// What all need of an entry that is.
+// What draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);
     if (FOOTPRINTS != 0u) {

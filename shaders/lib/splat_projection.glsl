@@ -40,23 +40,19 @@ vec2 splat_support(Edge e) {
     return e.d2 < params.frame.band ? vec2(0.0, both) : first;
 }
 
-// Rows of `extents` for the first face and the second, as seen along n: row | mirrored << 7.
-uint extent_row(float d) { return support_cell(d) | (d < 0.0 ? 128u : 0u); }
-
-uint splat_extents(Edge e) {
-    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return EXTENT_PLAIN | (EXTENT_PLAIN << 8);
-    return extent_row(e.d) | (e.d2 < params.frame.band ? extent_row(-e.d2) : EXTENT_PLAIN + 1u) << 8;
-}
-
-float extent_of(uint row, uint direction) {
-    return params.frame.extents[(row & 127u) * EXTENT_DIRECTIONS + ((row & 128u) != 0u ? EXTENT_DIRECTIONS - 1u - direction : direction)];
-}
-
-// How far a kernel reaches from its voxel in a direction with that cosine to n.
-float support_towards(uint rows, float cosine) {
-    uint direction = min(uint(clamp(cosine * 0.5 + 0.5, 0.0, 1.0) * float(EXTENT_DIRECTIONS)), EXTENT_DIRECTIONS - 1u);
-    float first = extent_of(rows & 255u, direction), second = extent_of(rows >> 8, direction);
-    return max(first, second > 0.0 ? max(second, params.frame.support) : 0.0);
+// A spheroid about n that holds the splat's kernel: its centre's shift along n, half-axes along n and across.
+vec3 splat_spheroid(Edge e) {
+    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return vec3(0.0, vec2(params.frame.support));
+    vec3 first = params.frame.spheroids[support_cell(e.d)].xyz;
+    if (e.d2 >= params.frame.band) return vec3(e.d < 0.0 ? -first.x : first.x, first.yz);
+    // What the faces let in lies within the supports of either alone and of the plain kernel. One that holds all three reaches
+    // from the first to the last of them along n, and is wider by what they are off its middle.
+    vec3 second = params.frame.spheroids[support_cell(e.d2)].xyz;
+    vec3 shifts = vec3(e.d < 0.0 ? -first.x : first.x, -second.x, 0.0), halves = vec3(first.y, second.y, params.frame.support);
+    vec3 low = shifts - halves, high = shifts + halves;
+    float begin = min(low.x, min(low.y, low.z)), end = max(high.x, max(high.y, high.z)), along = 0.5 * (end - begin);
+    vec3 across = vec3(first.z, second.z, params.frame.support) * inversesqrt(1.0 - abs(shifts - 0.5 * (begin + end)) / along);
+    return vec3(0.5 * (begin + end), along, max(across.x, max(across.y, across.z)));
 }
 
 // Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from

@@ -1,13 +1,13 @@
 // After shaders that declare REFINED.
-// Blocks that entries are marked for, row by row. Refined pixels lie apart.
-const uvec2 BLOCK = uvec2(4u, REFINED == 1u ? 4u : 2u);
-const uint BLOCKS = TILE * TILE / (BLOCK.x * BLOCK.y);
+// Cells of a tile that entries are marked for, row by row: pixels, or of refined pixels, which lie apart, 4 x 2 of them.
+const uint CELL_X = REFINED == 1u ? 4u : 1u;
+const uint CELL_Y = REFINED == 1u ? 2u : 1u;
+const uint CELLS = TILE * TILE / (CELL_X * CELL_Y);
 
-uvec2 block_corner(uint block) { return BLOCK * uvec2(block % (TILE / BLOCK.x), block / (TILE / BLOCK.x)); }
-uint block_of(ivec2 pixel) {
-    uvec2 in_tile = uvec2(pixel) % TILE / BLOCK;
-    return in_tile.x + TILE / BLOCK.x * in_tile.y;
-}
+// Where a list's marks begin, one word a cell for every 32 entries; `entry` is a multiple of them.
+int first_mark(uint entry) { return int((params.frame.entries_first + entry) / MARKED_AT_ONCE * CELLS); }
+
+uint cell_of(ivec2 pixel) { return uint(pixel.y) % TILE / CELL_Y * (TILE / CELL_X) + uint(pixel.x) % TILE / CELL_X; }
 
 // Of a list's entries, the first that a round draws.
 uint round_begin(uint draw_round) { return draw_round == 0u ? 0u : TILE_FIRST_ROUND + (draw_round - 1u) * TILE_ROUND; }

@@ -51,7 +51,7 @@ struct FrameParams {
     vec4 fog;                // rgb, density per mm
     vec4 silhouette;         // rgb, strength
     vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
-    float extents[66 * 32];  // how far supports reach, voxels, by |D| as above and the direction's cosine to n (EXTENT_PLAIN)
+    vec4 spheroids[64];      // by |D| as above: shift of a covering spheroid along n, its half-axes along n and across; voxels
     ivec3 dims;
     uint splat_count;
     ivec2 size;  // pixels
@@ -112,8 +112,8 @@ static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
-static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 9864);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 10480);
+static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 2440);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 3056);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -21,8 +21,6 @@ EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
 EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
-EDGESPLAT_CONSTANT uint EXTENT_DIRECTIONS = 32u;  // cells of the cosine to n, each with how far those supports reach there
-EDGESPLAT_CONSTANT uint EXTENT_PLAIN = 64u;       // the row of a kernel that is not warped; one of zeros comes after it
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 // lavapipe ends every loop of an invocation once all of them together have gone round 65535 times, without a word. What follows
 // keeps them below.
