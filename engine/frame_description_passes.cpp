@@ -9,7 +9,7 @@
 #include "engine/passes/2_collect_splats.h"
 #include "engine/passes/2b_occlude_ambient.h"
 #include "engine/passes/3_select_footprints.h"
-#include "engine/passes/4_mark_blocks.h"
+#include "engine/passes/4_mark_pixels.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/5_draw_tiles.h"
 #include "engine/passes/5_refine_pixels.h"
@@ -142,9 +142,9 @@ class Passes {
                 {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
-            add(name, "4_mark_blocks", kRates.draw_entry * entries,
-                {variant("4h_mark_blocks.comp",
-                         passes::mark_block_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});
+            add(name, "4_mark_pixels", kRates.draw_entry * entries,
+                {variant("4h_mark_pixels.comp",
+                         passes::mark_pixels_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});
             add(name, "5_draw_tiles", drawing,
                 {variant("5_draw_tiles.comp",
                          passes::tile_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});

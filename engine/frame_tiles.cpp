@@ -8,7 +8,7 @@
 #include "engine/frame.h"
 #include "engine/frame_tile_lists.h"
 #include "engine/passes/3_select_footprints.h"
-#include "engine/passes/4_mark_blocks.h"
+#include "engine/passes/4_mark_pixels.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/passes/4_sort_sheets.h"
 #include "engine/passes/4_sort_tiles.h"
@@ -285,7 +285,7 @@ class TileFrame {
     void mark(std::uint32_t chunk, std::uint64_t tiles, std::uint32_t round) {
         passes::TileDraw of_chunk = how_;
         of_chunk.prepared = is_prepared(chunk);
-        commands_.span("4_mark_blocks", [&] { passes::mark_blocks(commands_, plan_.variant, of_chunk, tiles, round); });
+        commands_.span("4_mark_pixels", [&] { passes::mark_pixels(commands_, plan_.variant, of_chunk, tiles, round); });
     }
 
     void draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t groups, std::uint32_t round) {

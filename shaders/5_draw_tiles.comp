@@ -53,7 +53,7 @@ FaceBand band;
 #include "shaders/lib/splat_value.glsl"
 #include "shaders/lib/fold_sheet.glsl"
 #include "shaders/lib/pixel_in_tile.glsl"
-#include "shaders/lib/tile_blocks.glsl"
+#include "shaders/lib/tile_marks.glsl"
 
 uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
 

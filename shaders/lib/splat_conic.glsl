@@ -1,5 +1,5 @@
 // The image of a splat's support: pixels whose rays meet a spheroid that holds it lie in a conic. After
-// shaders/lib/splat_projection.glsl. docs/method.md, 4_mark_blocks.
+// shaders/lib/splat_projection.glsl. docs/method.md, 4_mark_pixels.
 #ifndef EDGESPLAT_SPLAT_CONIC_GLSL
 #define EDGESPLAT_SPLAT_CONIC_GLSL
 
@@ -52,7 +52,6 @@ ivec2 row_of_conic(SplatConic s, int row) {
     // Centres of pixels, with a little more for rounding.
     vec2 ends = vec2(middle - half_width, middle + half_width) + vec2(-0.51, 0.51);
     ends = root < 0.0 ? vec2(0.0) : clamp(ends, -1e6, 1e6);
-    ivec2 pixels = ivec2(ceil(ends.x), floor(ends.y) + (root < 0.0 ? 0.0 : 1.0));
-    return s.form.x > 0.0 ? pixels : ivec2(-1000000, 1000000);
+    return s.form.x > 0.0 ? ivec2(ceil(ends.x), floor(ends.y)) : ivec2(-1000000, 1000000);
 }
 #endif

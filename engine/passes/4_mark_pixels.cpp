@@ -1,8 +1,8 @@
-#include "engine/passes/4_mark_blocks.h"
+#include "engine/passes/4_mark_pixels.h"
 
 namespace edgesplat::passes {
 
-gpu::Specialization mark_block_constants(const DrawVariant& variant, TileDraw how) {
+gpu::Specialization mark_pixels_constants(const DrawVariant& variant, TileDraw how) {
     gpu::Specialization constants = draw_constants(variant);
     constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
@@ -11,9 +11,9 @@ gpu::Specialization mark_block_constants(const DrawVariant& variant, TileDraw ho
     return constants;
 }
 
-void mark_blocks(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
+void mark_pixels(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
                  std::uint32_t round) {
-    commands.dispatch("4h_mark_blocks.comp", mark_block_constants(variant, how), round, gpu::groups_for(tiles, 1));
+    commands.dispatch("4h_mark_pixels.comp", mark_pixels_constants(variant, how), round, gpu::groups_for(tiles, 1));
     commands.barrier();
 }
 

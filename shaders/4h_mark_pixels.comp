@@ -1,5 +1,5 @@
 // For every entry of a tile's list: which of the tile's pixels its support reaches, row by row, kept as a word a pixel of
-// what each 32 entries have for it. docs/method.md, 4_mark_blocks.
+// what each 32 entries have for it. docs/method.md, 4_mark_pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -35,7 +35,7 @@ layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/prepared_splat.glsl"
 
-#include "shaders/lib/tile_blocks.glsl"
+#include "shaders/lib/tile_marks.glsl"
 
 // The least distance of two voxels, mm.
 float least_voxel() {

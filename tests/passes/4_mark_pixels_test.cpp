@@ -1,0 +1,121 @@
+// Which pixels the entries of tiles are marked for, against footprints in double precision.
+#include <gtest/gtest.h>
+
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr std::uint32_t kTile = shader::TILE;
+
+struct Marked {
+    std::size_t touched = 0;  ///< pairs of an entry and a pixel that has something of it
+    std::size_t marked = 0;   ///< that are marked
+    std::size_t missed = 0;   ///< touched and not marked
+    double peak = 0;          ///< of an entry's optical depth
+    double most_missed = 0;   ///< of it where it is not marked
+};
+
+/// Of the last chunk that was drawn. `cell`: pixels that one mark is for.
+Marked count_marks(RendererState& state, const PassScene& s, const glm::ivec2& size, const glm::uvec2& cell) {
+    const auto records = device_records(state);
+    const Oracle oracle(s, records, size);
+    const glm::uvec2 tiles(state.plan.params.tiles), cells = kTile / cell;
+    const auto ranges = download<glm::uvec2>(state, state.targets.tile_ranges, std::size_t{tiles.x} * tiles.y);
+    const std::size_t entries = ranges.back().y;
+    const auto list = download<glm::uvec2>(state, state.targets.tile_entries, entries);
+    const auto order =
+        download<std::uint32_t>(state, state.targets.order, state.targets.drawn.mapped<std::uint32_t>(1)[0]);
+    const std::size_t words = std::size_t{cells.x} * cells.y;
+    const auto marks =
+        download<std::uint32_t>(state, state.targets.tile_marks, (entries / shader::MARKED_AT_ONCE + 1) * words);
+    Marked out;
+    for (std::uint32_t tile = 0; tile < ranges.size(); ++tile) {
+        for (std::uint32_t i = ranges[tile].x; i < ranges[tile].y; ++i) {
+            const std::uint32_t splat = order[list[i].x];
+            for (std::uint32_t y = 0; y < kTile; ++y) {
+                for (std::uint32_t x = 0; x < kTile; ++x) {
+                    const glm::uvec2 pixel(tile % tiles.x * kTile + x, tile / tiles.x * kTile + y);
+                    if (pixel.x >= static_cast<std::uint32_t>(size.x) || pixel.y >= static_cast<std::uint32_t>(size.y))
+                        continue;
+                    const double tau = oracle.drawer.tau(splat, static_cast<int>(pixel.x), static_cast<int>(pixel.y));
+                    const bool touched = tau > 0;
+                    const std::size_t word = i / shader::MARKED_AT_ONCE * words + y / cell.y * cells.x + x / cell.x;
+                    const bool marked = (marks[word] >> i % shader::MARKED_AT_ONCE & 1U) != 0;
+                    out.touched += touched ? 1 : 0;
+                    out.marked += marked ? 1 : 0;
+                    out.missed += touched && !marked ? 1 : 0;
+                    out.peak = std::max(out.peak, tau);
+                    if (!marked) out.most_missed = std::max(out.most_missed, tau);
+                }
+            }
+        }
+    }
+    return out;
+}
+
+TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
+    const glm::ivec2 size(70, 45);  // neither side is a multiple of a tile's
+    for (const auto& [edges, footprints, shape] :
+         {std::tuple{EdgeEstimator::March, FootprintMode::Procedural, EdgeShape::Plane},
+          std::tuple{EdgeEstimator::March, FootprintMode::Procedural, EdgeShape::Curved},
+          std::tuple{EdgeEstimator::Taylor, FootprintMode::Warp2d, EdgeShape::Plane},
+          std::tuple{EdgeEstimator::Off, FootprintMode::Isotropic, EdgeShape::Plane}}) {
+        for (PassScene s : pass_scenes()) {
+            SCOPED_TRACE(fmt::format("{} {} {}", s.name, name_of(footprints), name_of(shape)));
+            s.settings.edges = edges;
+            s.settings.footprints = footprints;
+            s.settings.edge_shape = shape;
+            s.settings.pixels = PixelChoice::Every;
+            s.settings.saturation = 1;  // no tile closes
+            s.settings = drawn_as(s.settings);
+            RendererState& state = prepared(s);
+            state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+            ASSERT_EQ(state.targets.chunks.mapped<glm::uvec2>(1)[0].y, state.targets.drawn.mapped<std::uint32_t>(1)[0]);
+            const Marked marks = count_marks(state, s, size, {1, 1});
+            EXPECT_GT(marks.touched, 10000U);
+            // What is warped in two dimensions leaves traces outside the kernel's own support.
+            if (footprints == FootprintMode::Warp2d)
+                EXPECT_LE(marks.most_missed, 5e-4 * marks.peak);
+            else
+                EXPECT_EQ(marks.missed, 0U);
+            const double share = static_cast<double>(marks.marked) / static_cast<double>(marks.touched);
+            std::printf("%-18s %-10s %-6s marked per pixel with something: %.3f\n", s.name.c_str(),
+                        std::string(name_of(footprints)).c_str(), std::string(name_of(shape)).c_str(), share);
+            const bool spheres = footprints == FootprintMode::Warp2d || shape == EdgeShape::Curved;
+            EXPECT_LE(share, footprints == FootprintMode::Isotropic ? 1.1 : spheres ? 2.6 : 1.4);
+        }
+    }
+}
+
+TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        const glm::ivec2 size(150, 121);
+        s.settings.saturation = 1;
+        RendererState& state = prepared(s);
+        state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+        ASSERT_TRUE(state.plan.refined);
+        const Marked marks = count_marks(state, s, size, {4, 2});
+        EXPECT_GT(marks.touched, 10000U);
+        EXPECT_EQ(marks.missed, 0U);
+        EXPECT_LT(static_cast<double>(marks.marked), 1.9 * static_cast<double>(marks.touched));
+    }
+}
+
+TEST(MarkPixels, SplatsAroundTheEyeAreForAll) {
+    // The eye inside a voxel: the conic of a support that may reach the eye is none.
+    PassScene s = pass_scenes()[2];
+    look_at(s, {11.6, 12.4, 11.3}, {13, 13, 12}, 100);
+    s.settings.pixels = PixelChoice::Every;
+    s.settings.saturation = 1;
+    const glm::ivec2 size(48, 33);
+    RendererState& state = prepared(s);
+    state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    const Marked marks = count_marks(state, s, size, {1, 1});
+    EXPECT_GT(marks.touched, 10000U);
+    EXPECT_EQ(marks.missed, 0U);
+}
+
+}  // namespace
+}  // namespace edgesplat::test
