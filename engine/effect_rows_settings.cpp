@@ -161,7 +161,7 @@ std::vector<Effect> settings_effects() {
                     .resources = {"lists of pixels", "closed pixels, seen", "finest splats of tiles"},
                     .resized = {"tile order", "tile entries"},
                     .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}, {shader::SPEC_GROUP, "SPEC_GROUP", 256}},
-                    .frame_fields = {"tile_pixels", "tile_finest"}});
+                    .frame_fields = {"tile_finest"}});
     rows.push_back({.name = "buried voxels",
                     .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
                     .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",

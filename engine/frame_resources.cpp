@@ -79,7 +79,9 @@ void Bindings::write(const VolumeResources& volume, const FootprintResources& fo
     const std::array texels{
         std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
         std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},
-        std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_}};
+        std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_},
+        std::pair{&targets.tile_ranges, &no_entries_},  std::pair{&targets.tile_order, &no_counts_},
+        std::pair{&targets.tile_pixels, &no_counts_},   std::pair{&targets.tile_sheets, &no_texels_}};
     std::array<vk::BufferView, texels.size()> views;
     for (std::uint32_t i = 0; i < texels.size(); ++i) {
         const auto& [buffer, otherwise] = texels.at(i);

@@ -122,8 +122,9 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
          vk::Format::eR32Uint);
     // The host sees which tiles a round is for.
-    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges");
-    grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order");
+    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges", vk::Format::eR32G32Uint);
+    grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order",
+         vk::Format::eR32Uint);
     grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries",
          vk::Format::eR32G32Uint);
     grow(device, targets.tile_marks, tile_mark_words(plan_in_use, chunk_pairs(p.tiles)) * kWord, Place::Device,
@@ -131,8 +132,8 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles", vk::Format::eR32Uint);
     grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles", vk::Format::eR32Uint);
     if (plan_in_use.refined) {
-        grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device,
-             "lists of pixels");
+        grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device, "lists of pixels",
+             vk::Format::eR32Uint);
         grow(device, targets.tiles_seen, tiles * kWord, Place::Host, "closed pixels, seen");
         grow(device, targets.tile_finest, tiles * kWord, Place::Device, "finest splats of tiles");
     } else {
@@ -141,7 +142,8 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
         targets.tile_pixels = {};
     }
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets");
+    grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets",
+         vk::Format::eR32G32B32A32Sfloat);
     const std::uint32_t slots = passes::prepared_slots(std::uint64_t{p.splat_count} * plan_in_use.sheets_per_splat);
     const gpu::ImageShape records = passes::prepared_shape(plan_in_use.variant, slots);
     if (!targets.prepared || targets.prepared.shape().size.y < records.size.y) {
@@ -155,13 +157,9 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     p.sheet_starts = targets.sheet_starts.address();
     p.chunks = targets.chunks.address();
     p.tile_counters = targets.tile_counters.address();
-    p.tile_ranges = targets.tile_ranges.address();
-    p.tile_order = targets.tile_order.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_todo = targets.tile_todo.address();
     p.tile_finest = targets.tile_finest ? targets.tile_finest.address() : 0;
-    p.tile_pixels = targets.tile_pixels ? targets.tile_pixels.address() : 0;
-    p.tile_sheets = targets.tile_sheets.address();
 }
 
 void RendererState::provide_chunks(const Chunks& chunks) {

@@ -8,13 +8,13 @@
 layout(local_size_x = 256) in;
 layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform writeonly uimageBuffer ranges;
 #include "shaders/lib/workgroup_sums.glsl"
 
 // The next list may begin there or after.
 uint begin_of_list(uint at) { return (at + MARKED_AT_ONCE - 1u) / MARKED_AT_ONCE * MARKED_AT_ONCE; }
 
 void main() {
-    PairsRef ranges = PairsRef(params.frame.tile_ranges);
     uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;
     uint tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
     uint per_run = (tiles + 255u) / 256u;
@@ -33,7 +33,7 @@ void main() {
             imageStore(counters, int(i), uvec4(offset));
             offset += n;
         }
-        ranges.at[tile] = uvec2(begin, offset);
+        imageStore(ranges, int(tile), uvec4(begin, offset, 0u, 0u));
         offset = begin_of_list(offset);
     }
 }

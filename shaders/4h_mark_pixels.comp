@@ -27,6 +27,8 @@ layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_p
 layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
 layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
 layout(binding = BIND_TILE_MARKS, r32ui) uniform uimageBuffer marks;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
+layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
 layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
@@ -49,9 +51,9 @@ const float TOO_WIDE = 1e30;
 
 void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) tile = UintsRef(params.frame.tile_order).at[tile];
+    if (ROUNDS == 1u) tile = imageLoad(order, int(tile)).x;
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    uvec2 range = PairsRef(params.frame.tile_ranges).at[tile];
+    uvec2 range = imageLoad(ranges, int(tile)).xy;
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     bool closed = imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x;
     if (range.x >= range.y || closed) return;

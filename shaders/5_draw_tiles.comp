@@ -31,6 +31,11 @@ layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
 layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
 layout(binding = BIND_TILE_MARKS, r32ui) uniform readonly uimageBuffer marks;
+layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
+layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
+layout(binding = BIND_TILE_PIXELS, r32ui) uniform readonly uimageBuffer listed_pixels;
+layout(binding = BIND_TILE_SHEETS, rgba32f) uniform imageBuffer unfinished;
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/lib/splat_projection.glsl"
 #include "shaders/lib/shading.glsl"
@@ -67,22 +72,22 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
 const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 
 // Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
-uint pixels_of(uint tile) { return mix(UintsRef(params.frame.tile_todo).at[tile], FIRST_PIXELS, what >> 31 == 1u); }
+uint pixels_of(uint tile) { return mix(imageLoad(todo_pixels, int(tile)).x, FIRST_PIXELS, what >> 31 == 1u); }
 
 ivec2 place_of(uint tile, uint place) {
     if (REFINED == 0u) return pixel_in_tile(place);
-    uint listed = UintsRef(params.frame.tile_pixels).at[tile * TILE * TILE + place];
+    uint listed = imageLoad(listed_pixels, int(tile * TILE * TILE + place)).x;
     return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
 }
 
 void main() {
     uint draw_round = what & 0xfffffu;
     uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) item = UintsRef(params.frame.tile_order).at[tile_count() + item];
+    if (ROUNDS == 1u) item = imageLoad(order, int(tile_count() + item)).x;
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : 1u;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
-    uvec2 range = PairsRef(params.frame.tile_ranges).at[tile];
+    uvec2 range = imageLoad(ranges, int(tile)).xy;
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     if (range.x >= range.y) return;
@@ -107,14 +112,13 @@ void main() {
         float mm = length(params.frame.index_to_world * u);
         normal_distance = vec4(0.0);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
-        PixelsRef unfinished = PixelsRef(params.frame.tile_sheets);
         vec4 sheet_sum = vec4(0.0);
         uint current = imageLoad(entries, at).y;
         if (ROUNDS == 1u) {
             bool same = went_on && imageLoad(entries, at - (went_on ? 1 : 0)).y == current;
-            sheet_sum = same ? unfinished.at[held.y * size.x + held.x] : vec4(0.0);
+            sheet_sum = same ? imageLoad(unfinished, held.y * size.x + held.x) : vec4(0.0);
             // A sheet that ended with the round before.
-            for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, unfinished.at[held.y * size.x + held.x]);
+            for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, imageLoad(unfinished, held.y * size.x + held.x));
         }
         uint length = range.y - range.x;
         for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
@@ -173,7 +177,7 @@ void main() {
             fold(sum, open, sheet_sum);
             sheet_sum = vec4(0.0);
         }
-        for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) unfinished.at[held.y * size.x + held.x] = sheet_sum;
+        for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
         for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);

@@ -9,6 +9,7 @@ layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(binding = BIND_TILE_PIXELS, r32ui) uniform writeonly uimageBuffer pixels;
 #include "shaders/lib/pixel_in_tile.glsl"
 
 shared uvec2 rough;  // cells that are listed, a bit each: lists are the same whoever comes first
@@ -69,11 +70,10 @@ void main() {
     if (is_rough) {
         // Beyond the picture's sides there is nothing to draw; a list that names it does not.
         uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
-        UintsRef pixels = UintsRef(params.frame.tile_pixels);
         uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
-        pixels.at[place] = code + half_code;
-        pixels.at[place + 1u] = code + (half_code << 8);
-        pixels.at[place + 2u] = code + half_code + (half_code << 8);
+        imageStore(pixels, int(place), uvec4(code + half_code));
+        imageStore(pixels, int(place + 1u), uvec4(code + (half_code << 8)));
+        imageStore(pixels, int(place + 2u), uvec4(code + half_code + (half_code << 8)));
     }
     if (me == 0u) {
         UintsRef(params.frame.tile_todo).at[tile] = 3u * uint(bitCount(rough.x) + bitCount(rough.y));

@@ -23,7 +23,11 @@ EDGESPLAT_CONSTANT uint BIND_TILE_CLOSED = 13u;    // r32ui, FrameParams::tile_c
 EDGESPLAT_CONSTANT uint BIND_TILE_TODO = 14u;      // r32ui, FrameParams::tile_todo
 EDGESPLAT_CONSTANT uint BIND_TILE_ENTRIES = 15u;   // rg32ui (pairs at once): place in `order`, sheet; by tile, sheet, number
 EDGESPLAT_CONSTANT uint BIND_TILE_MARKS = 16u;     // r32ui (pairs at once): for 32 of them a word for each block of 4 x 2 pixels
-EDGESPLAT_CONSTANT uint BIND_COUNT = 17u;
+EDGESPLAT_CONSTANT uint BIND_TILE_RANGES = 17u;    // rg32ui (tiles): parts of the entries, half open, counted from entries_first
+EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 18u;     // r32ui (tiles, then groups of their pixels): longest list first; with rounds only
+EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 19u;    // r32ui (tiles, TILE * TILE): which, x | y << 8 in the tile; with refined pixels only
+EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 20u;    // rgba32f (size.y, size.x): sums of a sheet whose entries go on in the next round
+EDGESPLAT_CONSTANT uint BIND_COUNT = 21u;
 
 EDGESPLAT_SHARED_END
 #endif

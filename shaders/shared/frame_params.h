@@ -93,13 +93,9 @@ struct FrameParams {
     Address sheet_starts;   // (sheet_count + 1) uint: where each sheet begins in `order`
     Address chunks;         // (chunks) uvec2: the part of `order` that is drawn at once, half open
     Address tile_counters;  // (tiles, tile_blocks) uint: counts, then offsets
-    Address tile_ranges;    // (tiles) uvec2: parts of BIND_TILE_ENTRIES, half open, counted from entries_first
-    Address tile_order;     // (tiles, then groups of their pixels) uint: by the length of lists, longest first; with rounds only
     Address tile_closed;    // (tiles) uint: pixels that take no more, of those that are drawn
     Address tile_todo;      // (tiles) uint: pixels that are drawn
     Address tile_finest;    // (tiles) uint: bits of the least width of a voxel of the splats over it, pixels; with refined pixels only
-    Address tile_pixels;    // (tiles, TILE * TILE) uint: which, x | y << 8 in the tile; with refined pixels only
-    Address tile_sheets;    // (size.y, size.x) vec4: sums of a sheet whose entries go on in the next round
     ivec2 tiles;
     uint tile_blocks;       // columns of the tiles' histogram
     uint sort_segment;      // splats of a block that are sorted at once
@@ -113,7 +109,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 2440);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 3056);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 3024);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
