@@ -133,17 +133,15 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, cons
     });
 }
 
-std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Commands& commands,
-                                            const CollectionPlan& plan, const CollectionBlock& block, bool exact,
-                                            std::uint64_t most_splats, VolumeResources& resources) {
-    passes::CollectSplats collect = collect_inputs(plan);
-    collect.core_size = block.core_size;
-    const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
+namespace {
+
+/// Points the passes at a block. What is known of the lists stays.
+void place_block(const CollectionPlan& plan, const CollectionBlock& block, VolumeResources& resources) {
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     const shader::SceneParams lists = params;
     params = plan.params;
     params.dims = block.size;
-    params.core_low = region.core_low;
+    params.core_low = block.core_low - block.low;
     params.core_size = block.core_size;
     params.block_origin = block.low;
     params.volume_dims = plan.dims;
@@ -154,18 +152,25 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
     params.traits = lists.traits;
     params.values = lists.values;
     if (resources.transfer) params.transfer = resources.transfer.address();
+}
 
-    commands.run([&] {
-        if (plan.buried)
-            commands.span("1a_mark_buried",
-                          [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
-        if (plan.edge_field) {
-            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
-        }
-        commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
-    });
+void mark_block(gpu::Commands& commands, const CollectionPlan& plan, const CollectionBlock& block) {
+    if (!plan.buried) return;
+    commands.span("1a_mark_buried",
+                  [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
+}
+
+void count_block(gpu::Commands& commands, const passes::CollectSplats& collect) {
+    commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
+}
+
+/// After its edges were found and its splats counted: the block's splats, behind those in the list.
+std::optional<CollectedBlock> list_block(const gpu::Device& device, gpu::Commands& commands, const CollectionPlan& plan,
+                                         const CollectionBlock& block, bool exact, std::uint64_t most_splats,
+                                         VolumeResources& resources) {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
     CollectedBlock out;
-    out.times = commands.span_times();
     scan_runs(block, resources, out);
     const std::uint64_t total = out.first + out.count;
     if (total > most_splats) return std::nullopt;
@@ -177,17 +182,87 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
     const std::uint64_t runs = passes::collect_runs(block.core_size);
     std::uint32_t& with_edge = resources.run_offsets.mapped<std::uint32_t>(runs + 1).back();
     with_edge = 0;
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     params.list_first = static_cast<std::uint32_t>(out.first);
     params.list_count = static_cast<std::uint32_t>(out.count);
     params.edge_count_at = static_cast<std::uint32_t>(runs);
     commands.run(
         [&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect, out.count); }); });
     out.with_edge = with_edge;
-    for (const auto& writing : commands.span_times())
-        out.times.back().milliseconds += writing.milliseconds;
+    out.times = commands.span_times();
     resources.splat_count = total;
     resources.edge_splat_count += out.with_edge;
     return out;
+}
+
+}  // namespace
+
+std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Commands& commands,
+                                            const CollectionPlan& plan, const CollectionBlock& block, bool exact,
+                                            std::uint64_t most_splats, VolumeResources& resources) {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
+    place_block(plan, block, resources);
+    commands.run([&] {
+        mark_block(commands, plan, block);
+        if (plan.edge_field) {
+            const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
+            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
+        }
+        count_block(commands, collect);
+    });
+    std::vector<PassTime> times = commands.span_times();
+    auto out = list_block(device, commands, plan, block, exact, most_splats, resources);
+    if (!out) return std::nullopt;
+    add_times(times, out->times);
+    out->times = std::move(times);
+    return out;
+}
+
+std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
+    const glm::ivec3 low = glm::max(changed.low - shader::CHANGE_MARGIN, 0);
+    const glm::u64vec3 size(glm::min(changed.low + changed.size + shader::CHANGE_MARGIN, dims) - low);
+    return size.x * size.y * size.z;
+}
+
+std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                                       const CollectionPlan& plan, const VoxelBox& changed,
+                                       VolumeResources& resources) {
+    const CollectionBlock whole = whole_block(plan.dims);
+    resources.splat_count = resources.edge_splat_count = 0;
+    bindings.write(resources, {}, {});
+    place_block(plan, whole, resources);
+    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
+    // Estimates and adoptions are both made where either may be others: what is estimated anew has nothing adopted.
+    // The passes go further than the core, each as far as it does in a block.
+    const auto core_of = [&](int margin) {
+        const int around = shader::CHANGE_MARGIN - margin;
+        params.core_low = changed.low - around;
+        params.core_size = changed.size + 2 * around;
+        return passes::EdgeRegion{plan.dims, params.core_low, params.core_size};
+    };
+    std::vector<PassTime> times;
+    const auto run = [&](const auto& body) {
+        commands.run(body);
+        add_times(times, commands.span_times());
+    };
+    run([&] { mark_block(commands, plan, whole); });
+    if (plan.edge_field) {
+        const passes::EstimateEdges in = estimate_inputs(plan);
+        const passes::EdgeRegion estimated = core_of(shader::ESTIMATE_MARGIN);
+        run([&] { commands.span("1_estimate_edges", [&] { passes::estimate_only(commands, estimated, in); }); });
+        if (marches(plan.estimator)) {
+            const passes::EdgeRegion adopting = core_of(shader::ADOPT_MARGIN);
+            run([&] { commands.span("1_estimate_edges", [&] { passes::adopt_edges(commands, adopting, in); }); });
+        }
+    }
+    place_block(plan, whole, resources);
+    run([&] { count_block(commands, collect_inputs(plan)); });
+    const auto collected = list_block(device, commands, plan, whole, true, kMostSplats, resources);
+    add_times(times, collected->times);
+    resources.box_low = collected->low;
+    resources.box_high = collected->high;
+    return times;
 }
 
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,

@@ -7,6 +7,7 @@
 #include "engine/frame_resources.h"
 #include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
+#include "engine/volume/changed_box.h"
 
 namespace edgesplat {
 
@@ -39,6 +40,13 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, cons
 std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Commands& commands,
                                             const CollectionPlan& plan, const CollectionBlock& block, bool exact,
                                             std::uint64_t most_splats, VolumeResources& resources);
+
+/// Voxels whose edges renew_collection() finds.
+std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims);
+
+/// After run_collection with the same plan, the samples in `changed` having become others: as if it were run again.
+std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+                                       const CollectionPlan& plan, const VoxelBox& changed, VolumeResources& resources);
 
 /// The whole volume at once; fills `splat_count` and the box.
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,

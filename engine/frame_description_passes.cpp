@@ -143,11 +143,14 @@ class Passes {
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "4_mark_pixels", kRates.draw_entry * entries,
-                {variant("4h_mark_pixels.comp",
-                         passes::mark_pixels_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});
+                {variant(
+                    "4h_mark_pixels.comp",
+                    passes::mark_pixels_constants(
+                        plan.variant, {.rounds = software_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
             add(name, "5_draw_tiles", drawing,
-                {variant("5_draw_tiles.comp",
-                         passes::tile_constants(plan.variant, {.rounds = software_, .refined = plan.refined}))});
+                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_,
+                                                                                    .refined = plan.refined,
+                                                                                    .wide_marks = plan.wide_marks}))});
             // A picture whose splats turn out to be small is drawn without.
             if (plan.refined) {
                 std::vector<std::string> steps;

@@ -204,8 +204,11 @@ std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks) 
 }
 
 std::uint32_t tile_blocks(const glm::ivec2& tiles) {
+    constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
     const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, 64));
+    // Of very large pictures, whose lists begin in very many places, fewer pairs at once.
+    const std::uint64_t most = count > kManyTiles ? 8 : 64;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, most));
 }
 
 std::uint32_t light_code(const Scene& scene) {
@@ -319,6 +322,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                              : settings.warp == WarpFamily::Paper                 ? 10U
                                                                                   : 8U};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
+    plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
     plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.variant.transfer = !scene.transfer.empty();

@@ -54,6 +54,7 @@ struct FramePlan {
     vk::Format sheet_format{};
     vk::Format accumulated_format{};
     bool gradient = false;               ///< colour over a background of two colours
+    bool wide_marks = false;             ///< of tiles' entries, for 4 x 2 pixels at once (4_mark_pixels)
     bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided

@@ -132,13 +132,18 @@ void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu:
 
 void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image,
                   const glm::ivec3& size, const void* bytes, std::size_t texel_bytes) {
+    commands.run([&] { commands.prepare({&image}); });
+    upload_box(commands, device, image, glm::ivec3(0), size, bytes, texel_bytes);
+}
+
+void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const glm::ivec3& low,
+                const glm::ivec3& size, const void* bytes, std::size_t texel_bytes) {
     auto shape = image.shape();
     shape.size = size;
     const auto [row, rows_at_once, slices_at_once] = upload_band(shape, texel_bytes);
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
     const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, "staging buffer");
-    commands.run([&] { commands.prepare({&image}); });
     for (std::size_t z = 0; z < slices; z += slices_at_once) {
         const std::size_t depth = std::min(slices_at_once, slices - z);
         for (std::size_t y = 0; y < static_cast<std::size_t>(shape.size.y); y += rows_at_once) {
@@ -148,10 +153,10 @@ void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu:
             const auto layer = static_cast<std::uint32_t>(shape.volume ? 0 : z);
             const vk::ImageSubresourceLayers layers(image.aspect(), 0, layer,
                                                     static_cast<std::uint32_t>(shape.volume ? 1 : depth));
-            const vk::BufferImageCopy copy(0, 0, 0, layers,
-                                           {0, static_cast<int>(y), static_cast<int>(shape.volume ? z : 0)},
-                                           {static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(rows),
-                                            static_cast<std::uint32_t>(shape.volume ? depth : 1)});
+            const vk::BufferImageCopy copy(
+                0, 0, 0, layers, {low.x, low.y + static_cast<int>(y), low.z + static_cast<int>(shape.volume ? z : 0)},
+                {static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(rows),
+                 static_cast<std::uint32_t>(shape.volume ? depth : 1)});
             commands.run([&] {
                 commands.raw().copyBufferToImage(staging.handle(), image.handle(), vk::ImageLayout::eGeneral, copy);
             });

@@ -106,5 +106,8 @@ void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu:
 /// The same for the first `size` texels of a volume along each axis; what the others hold is lost.
 void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image,
                   const glm::ivec3& size, const void* bytes, std::size_t texel_bytes);
+/// The same from texel `low` on; what the others hold stays.
+void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const glm::ivec3& low,
+                const glm::ivec3& size, const void* bytes, std::size_t texel_bytes);
 
 }  // namespace edgesplat

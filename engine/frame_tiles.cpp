@@ -20,12 +20,13 @@ namespace edgesplat {
 std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
     const auto count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
     const std::uint64_t most = std::uint64_t{tile_blocks(tiles)} * shader::BLOCK_PAIRS;
-    return std::min(most, std::max(256 * count, std::uint64_t{1} << 14U));
+    return std::min(most, std::max(256 * count, std::uint64_t{1} << 12U));
 }
 
 std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles) {
     constexpr std::uint64_t kPart = shader::MARKED_AT_ONCE;
-    return (pairs / kPart + 1 + static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y)) * kPart;
+    const std::uint64_t lists = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    return (pairs / kPart + 1 + std::min(lists, pairs)) * kPart;
 }
 
 Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit,
@@ -112,8 +113,10 @@ std::uint64_t tile_entry_pairs(const FramePlan& plan) {
 }
 
 std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs) {
-    // A picture that is planned to be refined may be drawn whole.
-    return padded_pairs(pairs, plan.params.tiles) * (shader::TILE * shader::TILE / shader::MARKED_AT_ONCE);
+    // A picture that is planned to be refined may be drawn whole; then fewer lists are kept.
+    const std::uint64_t cells = plan.wide_marks ? shader::TILE * shader::TILE / 8 : shader::TILE * shader::TILE;
+    return padded_pairs(pairs, plan.params.tiles) *
+           std::max(cells / shader::MARKED_AT_ONCE, std::uint64_t{plan.refined ? 2U : 1U});
 }
 
 std::uint32_t first_step(const FramePlan& plan) {
@@ -162,6 +165,7 @@ class TileFrame {
           parts_(targets.chunks.mapped<glm::uvec2>(chunks)),
           prepared_(chunks) {
         how_.refined = plan.refined;
+        how_.wide_marks = plan.wide_marks;
     }
 
     std::vector<PassTime> at_once() {

@@ -78,14 +78,34 @@ double RendererState::collect(const Scene& scene, const Settings& settings, bool
     const CollectionPlan wanted = plan_collection(*volume, scene, settings, keep_buried);
     const auto start = Clock::now();
     collection_times.clear();
-    const bool anew = !collected || *collected != wanted;
-    if (anew) collect_anew(wanted);
+    const bool anew = changed || !collected || *collected != wanted;
+    const bool global =
+        wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic;  // coefficients depend on all samples
+    if (changed && collected == wanted && !global)
+        collect_changes();
+    else if (anew)
+        collect_anew(wanted);
     const bool occluded_anew = occlude(scene), shadowed_anew = cast_shadows(scene, settings);
     return anew || occluded_anew || shadowed_anew ? milliseconds_since(start) : 0;
 }
 
+void RendererState::collect_changes() {
+    const CollectionPlan plan_kept = *collected;
+    const VoxelBox box = *changed;
+    collected.reset();
+    occluded.reset();
+    shadowed.reset();
+    volume_resources.occlusion = {};
+    volume_resources.shadows = {};
+    collection_times = renew_collection(device, commands, bindings, plan_kept, box, volume_resources);
+    if (plan_kept.edge_field) voxels_estimated += voxels_that_depend_on(box, plan_kept.dims);
+    collected = plan_kept;
+    changed.reset();
+}
+
 void RendererState::collect_anew(const CollectionPlan& wanted) {
     collected.reset();
+    if (changed) volume_resources.coefficients = {};
     occluded.reset();
     shadowed.reset();
     volume_resources.occlusion = {};
@@ -101,7 +121,9 @@ void RendererState::collect_anew(const CollectionPlan& wanted) {
         upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
     }
     collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
+    if (wanted.edge_field) voxels_estimated += volume->geometry.voxel_count();
     collected = wanted;
+    changed.reset();
 }
 
 void RendererState::choose_supports(const Settings& settings) {
@@ -211,6 +233,8 @@ std::uint64_t Renderer::validation_messages() const {
 
 void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
     auto& self = *state_;
+    if (self.take_changes(volume)) return;
+    self.changed.reset();
     self.drop_targets();
     self.levels.clear();
     self.other = {};
@@ -254,7 +278,9 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     self.release_unused(settings);
     self.device.forget_peaks();
     const gpu::PipelineCreation made = self.pipelines.creation();
+    self.voxels_estimated = 0;
     self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
+    result.stats.voxels_estimated = self.voxels_estimated;
     if (result.stats.setup_milliseconds > 0) result.stats.passes = self.collection_times;
 
     const auto pixels = [&] {

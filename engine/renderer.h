@@ -80,6 +80,7 @@ struct RenderStats {
     std::vector<PassTime> passes;
     double setup_milliseconds = 0;  ///< upload, estimation, collection: 0 when nothing changed since the last frame
     double frame_milliseconds = 0;  ///< wall clock from submit to finish
+    std::uint64_t voxels_estimated = 0;  ///< whose edges were found for this picture, those around blocks among them
     std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
     std::uint32_t sheets = 0, sheet_groups = 0;
     int level = 0;         ///< resolution of the volume that was drawn: voxels of 2^level along each axis
@@ -138,6 +139,9 @@ class Renderer {
     const DeviceInfo& device() const;
 
     /// The volume of the pictures to come, which the first of them uploads; what is held for the one before is freed.
+    /// Where that is on the device as a whole, and this one has its grid and its range of values, and other samples in
+    /// a box only (a step of a simulation, a stroke of a brush), no more than that box is uploaded and its edges found
+    /// again (but with `edges = cubic`): pictures are the same as if all were.
     void set_volume(std::shared_ptr<const Volume> volume);
 
     /// The most that may be held on the device, bytes; 0: as much as it has. A picture that needs more is refused

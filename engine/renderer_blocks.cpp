@@ -306,6 +306,8 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         if (!held && drop_blocks(needed, false)) held = collect();
         if (!held) return Gathered::TooMany;
         add_times(collection_times, held->times);
+        const glm::u64vec3 size(block.size);
+        if (wanted.edge_field) voxels_estimated += size.x * size.y * size.z;
     }
     bound_held_blocks();
     return Gathered::All;

@@ -6,7 +6,23 @@
 namespace edgesplat {
 
 void RendererState::provide_volume() {
-    if (!volume_resources.volume) upload_volume(*this);
+    if (!volume_resources.volume) return upload_volume(*this);
+    if (!changed) return;
+    const std::vector<float> samples = scaled_box(*volume, *changed);
+    upload_box(commands, device, volume_resources.volume, changed->low, changed->size, samples.data(), sizeof(float));
+}
+
+bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
+    // The same object's samples may have been written to meanwhile.
+    if (!next || !original || next == original || in_blocks || volume != original || !volume_resources.volume || !collected) return false;
+    const auto box = changed_box(*original, *next);
+    if (!box) return false;
+    other = {};
+    raycast.reset();
+    original = volume = next;
+    levels = {next};
+    if (box->size.x > 0) changed = changed ? around(*changed, *box) : *box;
+    return true;
 }
 
 double RendererState::reach_of(const Settings& drawn) {
@@ -15,7 +31,7 @@ double RendererState::reach_of(const Settings& drawn) {
 }
 
 std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& wanted) const {
-    if (!collected || !(*collected == wanted)) return std::nullopt;
+    if (changed || !collected || !(*collected == wanted)) return std::nullopt;
     return SplatCount{SplatCount::From::Frame, volume_resources.splat_count, volume_resources.box_low,
                       volume_resources.box_high};
 }

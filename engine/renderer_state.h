@@ -35,6 +35,7 @@ struct SplatSet {
     std::optional<CollectionPlan> collected;  ///< what the splat list was made with
     std::optional<OcclusionPlan> occluded;    ///< what the splats' ambient light was found with
     std::optional<ShadowPlan> shadowed;       ///< what their shadows were found with
+    std::optional<VoxelBox> changed;          ///< samples that are others since; a volume that is held as a whole
 };
 
 /// What became of the splats that a picture takes.
@@ -104,6 +105,11 @@ struct RendererState : DeviceState, SplatSet {
     /// The same block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
     void collect_anew(const CollectionPlan& wanted);
+    /// The same where only samples in `changed` are others than those that it was done with.
+    void collect_changes();
+    /// Goes on with a volume that differs from the present one in a box at most, all that was found of it being kept.
+    /// False, and nothing done, where that is not so.
+    bool take_changes(const std::shared_ptr<const Volume>& next);
     /// Pass 2b, if the scene calls for it and what was found differs. Whether it ran.
     bool occlude(const Scene& scene);
     /// Passes 2c and 2d, likewise; the picture's targets are dropped then.
@@ -184,6 +190,7 @@ struct RendererState : DeviceState, SplatSet {
     std::optional<SupportsMadeFor> supports_made_for;
     FramePlan plan;  ///< of the last draw
     std::vector<PassTime> collection_times;
+    std::uint64_t voxels_estimated = 0;                          ///< for this picture
     std::vector<PassTime> draw_times;                            ///< of the last draw
     PartExchange* exchange = nullptr;                            ///< see Renderer::divide_sheets
     bool divides_blocks = false;                                 ///< all of them hold the volume block by block

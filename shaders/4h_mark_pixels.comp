@@ -5,7 +5,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 8, local_size_y_id = SPEC_GROUP) in;
+layout(local_size_x = 8, local_size_y_id = SPEC_LIST_PARTS) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
 layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -20,6 +20,7 @@ layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
@@ -80,11 +81,11 @@ void main() {
             for (uint r = 0u; r < ROWS; ++r) {
                 ivec2 ends = clamp(row_of_conic(conic, row + int(r)) - corner.x, 0, int(TILE));
                 uint own = (1u << ends.y) - 1u & ~((1u << ends.x) - 1u);
-                covered = REFINED == 1u ? covered | own : own;
-                if (REFINED == 0u)
+                covered = WIDE_MARKS == 1u ? covered | own : own;
+                if (WIDE_MARKS == 0u)
                     for (uint x = 0u; x < TILE; ++x) marked[r * TILE + x] |= (own >> x & 1u) << k;
             }
-            if (REFINED == 1u)
+            if (WIDE_MARKS == 1u)
                 for (uint c = 0u; c < OWN; ++c) marked[c] |= (covered >> c * CELL_X & (1u << CELL_X) - 1u) != 0u ? 1u << k : 0u;
         }
         for (uint store = count > 0u ? 1u : 0u; store > 0u; --store)

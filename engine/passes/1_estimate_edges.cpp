@@ -40,13 +40,20 @@ gpu::Specialization adopt_constants(const EstimateEdges& in) {
     return {{shader::SPEC_BURIED, in.skip_buried ? 1 : 0}, {shader::SPEC_ISO_COUNT, in.iso_count}};
 }
 
-void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
+void estimate_only(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
     commands.dispatch("1b_estimate_edges.comp", estimate_constants(in), 0,
                       brick_groups(region, shader::ESTIMATE_MARGIN));
     commands.barrier();
-    if (!marches(in.estimator)) return;
+}
+
+void adopt_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
     commands.dispatch("1c_adopt_edges.comp", adopt_constants(in), 0, brick_groups(region, shader::ADOPT_MARGIN));
     commands.barrier();
+}
+
+void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
+    estimate_only(commands, region, in);
+    if (marches(in.estimator)) adopt_edges(commands, region, in);
 }
 
 }  // namespace edgesplat::passes

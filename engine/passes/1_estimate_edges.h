@@ -34,4 +34,9 @@ gpu::Specialization adopt_constants(const EstimateEdges& in);
 /// are written.
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
 
+/// Its two halves: every voxel's own edge, ESTIMATE_MARGIN around the core too; then, where edges are marched to, those
+/// that voxels without one take from others, ADOPT_MARGIN around it.
+void estimate_only(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
+void adopt_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
+
 }  // namespace edgesplat::passes

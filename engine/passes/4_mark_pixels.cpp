@@ -7,7 +7,8 @@ gpu::Specialization mark_pixels_constants(const DrawVariant& variant, TileDraw h
     constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
-    constants.emplace_back(shader::SPEC_GROUP, how.rounds ? 1U : 8U);
+    constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_LIST_PARTS, how.rounds ? 1U : 8U);
     return constants;
 }
 

@@ -14,6 +14,7 @@ gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
     constants.emplace_back(shader::SPEC_COUNT, how.count ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
     constants.emplace_back(shader::SPEC_GROUP, tile_group(how));
     return constants;
 }

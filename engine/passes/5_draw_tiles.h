@@ -12,6 +12,8 @@ struct TileDraw {
     bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
     bool part = false;     ///< some of the sheets: the picture is not finished with them
     bool refined = false;  ///< only the pixels of `tile_pixels`, or every REFINE_STEP-th
+    bool wide_marks =
+        false;  ///< entries are marked for 4 x 2 pixels at once; of refined pixels, which lie apart, always
 };
 
 /// Invocations of a workgroup, a pixel each. Lists of pixels are of very different length.

@@ -153,6 +153,19 @@ std::vector<float> scaled_field(const Volume& volume) {
     return field;
 }
 
+std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box) {
+    need_samples(volume, "the scaled field");
+    const glm::u64vec3 size(box.size);
+    std::vector<float> field;
+    field.reserve(size.x * size.y * size.z);
+    for (int z = 0; z < box.size.z; ++z)
+        for (int y = 0; y < box.size.y; ++y)
+            for (int x = 0; x < box.size.x; ++x)
+                field.push_back(static_cast<float>(
+                    scaled_value(volume, static_cast<double>(volume.at(box.low.x + x, box.low.y + y, box.low.z + z)))));
+    return field;
+}
+
 std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims) {
     using ImageType = itk::Image<float, 3>;
     if (dims.x < 1 || dims.y < 1 || dims.z < 1 ||

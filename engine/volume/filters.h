@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "engine/volume/changed_box.h"
 #include "engine/volume/volume.h"
 
 namespace edgesplat {
@@ -22,6 +23,8 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
 /// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, kept as float; all 0 where
 /// the volume is constant. Same order as `Volume::values`.
 std::vector<float> scaled_field(const Volume& volume);
+/// The same of a part of it.
+std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box);
 /// The same scaling for one value, e.g. a point of a transfer function; may lie outside [0, 1]. 0 where the volume is
 /// constant.
 double scaled_value(const Volume& volume, double value);

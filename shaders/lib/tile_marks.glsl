@@ -1,7 +1,7 @@
-// After shaders that declare REFINED.
-// Cells of a tile that entries are marked for, row by row: pixels, or of refined pixels, which lie apart, 4 x 2 of them.
-const uint CELL_X = REFINED == 1u ? 4u : 1u;
-const uint CELL_Y = REFINED == 1u ? 2u : 1u;
+// After shaders that declare WIDE_MARKS.
+// Cells of a tile that entries are marked for, row by row: pixels, or 4 x 2 of them.
+const uint CELL_X = WIDE_MARKS == 1u ? 4u : 1u;
+const uint CELL_Y = WIDE_MARKS == 1u ? 2u : 1u;
 const uint CELLS = TILE * TILE / (CELL_X * CELL_Y);
 
 // Where a list's marks begin, one word a cell for every 32 entries; `entry` is a multiple of them.

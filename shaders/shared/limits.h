@@ -18,6 +18,7 @@ EDGESPLAT_CONSTANT int ADOPT_MARGIN = 5;
 EDGESPLAT_CONSTANT int ESTIMATE_MARGIN = 7;
 EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
 EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
+EDGESPLAT_CONSTANT int CHANGE_MARGIN = 13;  // as far from a sample that changes edges may be others: BLOCK_BORDER - ADOPT_MARGIN
 EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
@@ -37,6 +38,7 @@ EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
 // Of refined pixels (5_refine_pixels): every REFINE_STEP-th is drawn first, then those between which samples differ in the second
 // order by more than REFINE_TOLERANCE, a step of a picture of 8 bits.
 EDGESPLAT_CONSTANT uint REFINE_PIXELS = 33554432u;  // larger pictures may have no room for the lists
+EDGESPLAT_CONSTANT uint MARK_PIXELS = 16777216u;   // of larger pictures the marks of each would take too much
 EDGESPLAT_CONSTANT uint REFINE_STEP = 4u;
 EDGESPLAT_CONSTANT float REFINE_TOLERANCE = 1.0f / 255.0f;
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
@@ -79,6 +81,8 @@ EDGESPLAT_CONSTANT uint SPEC_PREPARED = 28u;   // 1: entries are prepared, 0: by
 EDGESPLAT_CONSTANT uint SPEC_REFINED = 29u;    // 1: pixels are those of their tile's list
 EDGESPLAT_CONSTANT uint SPEC_GROUP = 30u;      // invocations of a workgroup
 EDGESPLAT_CONSTANT uint SPEC_STEP = 31u;       // pixels between those that are there already
+EDGESPLAT_CONSTANT uint SPEC_WIDE_MARKS = 33u;  // 1: entries are marked for 4 x 2 pixels at once, 0: for each
+EDGESPLAT_CONSTANT uint SPEC_LIST_PARTS = 34u;  // parts of 32 entries of a list that are marked at once
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 

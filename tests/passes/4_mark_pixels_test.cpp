@@ -103,6 +103,30 @@ TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
     }
 }
 
+TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
+    for (PassScene s : pass_scenes()) {
+        SCOPED_TRACE(s.name);
+        const glm::ivec2 size(70, 45);
+        s.settings.saturation = 1;
+        s.settings.pixels = PixelChoice::Every;
+        RendererState& state = prepared(s);
+        const auto pixels = [&] {
+            const auto mapped = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+            return std::vector<glm::vec4>(mapped.begin(), mapped.end());
+        };
+        state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+        const auto want = pixels();
+        ASSERT_FALSE(state.plan.wide_marks);
+        state.plan.wide_marks = true;
+        state.draw_planned();
+        EXPECT_EQ(count_marks(state, s, size, {4, 2}).missed, 0U);
+        EXPECT_TRUE(pixels() == want);
+    }
+    EXPECT_TRUE(plan_frame(pass_scenes()[0].volume, pass_scenes()[0].scene, pass_scenes()[0].camera, {}, {8192, 4096},
+                           shader::PAYLOAD_COLOR, 1000, glm::ivec3(0), glm::ivec3(9), 2.5)
+                    .wide_marks);
+}
+
 TEST(MarkPixels, SplatsAroundTheEyeAreForAll) {
     // The eye inside a voxel: the conic of a support that may reach the eye is none.
     PassScene s = pass_scenes()[2];

@@ -1,0 +1,46 @@
+#include "engine/volume/changed_box.h"
+
+#include <algorithm>
+#include <span>
+
+namespace edgesplat {
+namespace {
+
+bool same_grid(const VolumeGeometry& a, const VolumeGeometry& b) {
+    return a.dims == b.dims && a.index_to_world_axes == b.index_to_world_axes && a.origin == b.origin;
+}
+
+}  // namespace
+
+VoxelBox around(const VoxelBox& a, const VoxelBox& b) {
+    const glm::ivec3 low = glm::min(a.low, b.low);
+    return {low, glm::max(a.low + a.size, b.low + b.size) - low};
+}
+
+std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
+    const bool comparable = same_grid(before.geometry, now.geometry) && before.min_value == now.min_value &&
+                            before.max_value == now.max_value && !before.values.empty() &&
+                            before.values.size() == now.values.size();
+    if (!comparable) return std::nullopt;
+    const glm::ivec3 dims = now.geometry.dims;
+    const auto width = static_cast<std::size_t>(dims.x);
+    std::optional<VoxelBox> box;
+    for (int z = 0; z < dims.z; ++z) {
+        for (int y = 0; y < dims.y; ++y) {
+            const std::size_t row =
+                (static_cast<std::size_t>(z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(y)) * width;
+            const auto old_row = std::span(before.values).subspan(row, width);
+            const auto new_row = std::span(now.values).subspan(row, width);
+            const auto first = std::ranges::mismatch(old_row, new_row).in1 - old_row.begin();
+            if (first == dims.x) continue;
+            auto last = dims.x - 1;
+            while (old_row[static_cast<std::size_t>(last)] == new_row[static_cast<std::size_t>(last)])
+                --last;
+            const VoxelBox here{{static_cast<int>(first), y, z}, {last + 1 - static_cast<int>(first), 1, 1}};
+            box = box ? around(*box, here) : here;
+        }
+    }
+    return box.value_or(VoxelBox{});
+}
+
+}  // namespace edgesplat
