@@ -14,7 +14,9 @@ void RendererState::provide_volume() {
 
 bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
     // The same object's samples may have been written to meanwhile.
-    if (!next || !original || next == original || in_blocks || volume != original || !volume_resources.volume || !collected) return false;
+    if (!next || !original || next == original || in_blocks || volume != original || !volume_resources.volume ||
+        !collected)
+        return false;
     const auto box = changed_box(*original, *next);
     if (!box) return false;
     other = {};

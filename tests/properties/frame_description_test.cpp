@@ -26,6 +26,7 @@ RenderStats draw(const FrameRequest& r) {
 void expect_described(const FrameRequest& request, const std::string& what) {
     SCOPED_TRACE(what);
     Renderer& renderer = test_renderer();
+    renderer.set_volume(nullptr);
     renderer.set_volume(request.volume);
     const FrameDescription before = describe_frame(request, renderer);
     const RenderStats stats = draw(request);
@@ -132,13 +133,14 @@ TEST_F(MemoryBudget, WhatDoesNotFitIsRefusedBeforeAnythingIsAllocated) {
     FrameRequest request = torus_request();
     request.size = {160, 120};
     Renderer& renderer = test_renderer();
+    renderer.set_volume(nullptr);
     renderer.set_volume(request.volume);
-    renderer.set_memory_budget(1 << 20);
+    renderer.set_memory_budget(2 << 20);
     const std::uint64_t before = held();
     const std::string message = refusal(request);
     EXPECT_EQ(held(), before);
-    EXPECT_THAT(message, HasSubstr("1.00 MiB are available (the memory budget)"));
-    EXPECT_THAT(message, HasSubstr("volume"));
+    EXPECT_THAT(message, HasSubstr("2.00 MiB are available (the memory budget)"));
+    EXPECT_THAT(message, HasSubstr("edge field"));
     EXPECT_THAT(message, HasSubstr("tile entries"));
     EXPECT_THAT(message, HasSubstr("--size"));
 
@@ -157,6 +159,7 @@ TEST_F(MemoryBudget, EveryOfferFits) {
     request.settings.sheets = SheetCut::Sliced;
     request.outputs.tau = true;
     Renderer& renderer = test_renderer();
+    renderer.set_volume(nullptr);
     renderer.set_volume(request.volume);
     const std::uint64_t needed = describe_frame(request, renderer).total_bytes();
     for (const double share : {0.9, 0.6, 0.35}) {
@@ -179,6 +182,7 @@ TEST_F(MemoryBudget, TheLargestPictureIsTheLargest) {
     FrameRequest request = torus_request();
     request.size = {400, 300};
     Renderer& renderer = test_renderer();
+    renderer.set_volume(nullptr);
     renderer.set_volume(request.volume);
     renderer.set_memory_budget(describe_frame(request, renderer).total_bytes() / 2);
     FrameRequest fitting = renderer.what_fits(request).front().request;
