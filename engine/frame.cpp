@@ -26,9 +26,8 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
         commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
         passes::clear_accumulated(commands, targets.accumulated);
         commands.span("3_select_footprints",
-                      [&] { passes::select_footprints(commands, plan.params.splat_count, plan.variant); });
-        commands.span("4_sort_sheets",
-                      [&] { passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments); });
+                      [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });
+        commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
         for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
             commands.span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             commands.span("6_composite_sheet",

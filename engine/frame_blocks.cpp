@@ -72,29 +72,6 @@ std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, cons
     return blocks;
 }
 
-ViewVolume::ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size) {
-    const CameraFrame view = camera_frame(camera);
-    const double tan_half_x = view.tan_half_y * size.x / size.y;
-    // A little more than the picture: samples lie up to half a pixel off.
-    const double wide = 1.001 + 2.0 / std::min(size.x, size.y);
-    const glm::dvec3 inward[5] = {
-        view.forward * tan_half_x * wide - view.right, view.forward * tan_half_x * wide + view.right,
-        view.forward * view.tan_half_y * wide - view.up, view.forward * view.tan_half_y * wide + view.up, view.forward};
-    for (int i = 0; i < 5; ++i) {
-        const glm::dvec3 normal = glm::transpose(geometry.index_to_world_axes) * inward[i];
-        planes_[i] = glm::dvec4(normal, glm::dot(inward[i], geometry.origin - view.eye));
-    }
-}
-
-bool ViewVolume::shows(const glm::ivec3& low, const glm::ivec3& size, double reach) const {
-    const glm::dvec3 a = glm::dvec3(low) - reach, b = glm::dvec3(low + size - 1) + reach;
-    return std::ranges::all_of(planes_, [&](const glm::dvec4& plane) {
-        bool before = false;
-        for_corners(a, b, [&](const glm::dvec3& corner) { before = before || glm::dot(plane, {corner, 1}) >= 0; });
-        return before;
-    });
-}
-
 int level_for(const VolumeGeometry& geometry, int levels, const Camera& camera, const glm::ivec2& size, double pixels) {
     if (!(pixels > 0)) return 0;
     const CameraFrame view = camera_frame(camera);

@@ -17,17 +17,6 @@ CollectionBlock largest_block(const glm::ivec3& dims);
 std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, const Volume& volume,
                                                 const CollectionPlan& plan);
 
-/// What a picture shows, as planes of index space.
-class ViewVolume {
-  public:
-    ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size);
-    /// Whether a box, widened by `reach` voxels, may show. Never false for one that does.
-    bool shows(const glm::ivec3& low, const glm::ivec3& size, double reach) const;
-
-  private:
-    glm::dvec4 planes_[5];  ///< inside where dot(plane, (p, 1)) >= 0; not of unit length
-};
-
 /// The coarsest of `levels` levels whose voxels are nowhere in the picture wider than `pixels`; 0 where level 0 is
 /// wider already, or the volume reaches the plane of the eye.
 int level_for(const VolumeGeometry& geometry, int levels, const Camera& camera, const glm::ivec2& size, double pixels);

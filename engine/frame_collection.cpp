@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "engine/error.h"
 #include "engine/frame.h"
-#include "engine/row_box.h"
 
 namespace edgesplat {
 namespace {
@@ -16,24 +16,31 @@ using Usage = vk::ImageUsageFlagBits;
 // A splat's number is multiplied by its size in 32 bits.
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
 
-/// Runs of voxels to counts to places in the list; notes the rows that hold splats.
+/// Slices' counts to places in the list; notes the bricks, and the box of what holds splats.
 void scan_runs(const CollectionBlock& block, VolumeResources& resources, CollectedBlock& collected) {
-    const std::uint64_t voxels = static_cast<std::uint64_t>(block.core_size.x) *
-                                 static_cast<std::uint64_t>(block.core_size.y) *
-                                 static_cast<std::uint64_t>(block.core_size.z);
-    RowBox rows(block.core_size);
-    std::uint64_t total = resources.splat_count, run = 0;
-    for (std::uint32_t& offset : resources.run_offsets.mapped<std::uint32_t>(passes::collect_runs(block.core_size))) {
-        const std::uint32_t count = offset;
-        offset = static_cast<std::uint32_t>(total);
-        total += count;
-        const std::uint64_t first = run++ * shader::COLLECT_RUN;
-        if (count > 0) rows.add(first, std::min(first + shader::COLLECT_RUN, voxels) - 1);
-    }
-    collected.first = resources.splat_count;
+    const BrickRuns runs(block.core_size);
+    const auto offsets = resources.run_offsets.mapped<std::uint32_t>(runs.count());
+    std::uint64_t total = resources.splat_count;
+    collected.first = total;
+    RunBox box;
+    runs.each_brick([&](const RunBox& voxels, std::uint64_t run, std::uint64_t stride) {
+        SplatBrick brick{{}, static_cast<std::uint32_t>(total - collected.first), 0};
+        for (int z = voxels.low.z; z <= voxels.high.z; ++z, run += stride) {
+            const std::uint32_t count = std::exchange(offsets[run], static_cast<std::uint32_t>(total));
+            total += count;
+            brick.count += count;
+            if (count > 0) brick.box.add({{voxels.low.x, voxels.low.y, z}, {voxels.high.x, voxels.high.y, z}});
+        }
+        if (brick.count == 0) return;
+        box.add(brick.box);
+        brick.box.low += block.core_low;
+        brick.box.high += block.core_low;
+        collected.bricks.push_back(brick);
+    });
     collected.count = total - resources.splat_count;
-    collected.low = block.core_low + rows.low();
-    collected.high = block.core_low + rows.high();
+    if (box.empty()) box = {glm::ivec3(0), block.core_size - 1};
+    collected.low = block.core_low + box.low;
+    collected.high = block.core_low + box.high;
 }
 
 /// The planes of the scene, counted from a block's first voxel.
@@ -114,6 +121,7 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, cons
     resources.transfer = {};
     resources.values = {};
     resources.splat_count = resources.edge_splat_count = 0;
+    resources.bricks.clear();
     resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
     resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
     resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), Place::Host, "scene parameters");
@@ -230,6 +238,7 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
                                        VolumeResources& resources) {
     const CollectionBlock whole = whole_block(plan.dims);
     resources.splat_count = resources.edge_splat_count = 0;
+    resources.bricks.clear();
     bindings.write(resources, {}, {});
     place_block(plan, whole, resources);
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
@@ -258,10 +267,11 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     }
     place_block(plan, whole, resources);
     run([&] { count_block(commands, collect_inputs(plan)); });
-    const auto collected = list_block(device, commands, plan, whole, true, kMostSplats, resources);
+    auto collected = list_block(device, commands, plan, whole, true, kMostSplats, resources);
     add_times(times, collected->times);
     resources.box_low = collected->low;
     resources.box_high = collected->high;
+    resources.bricks.assign(std::move(collected->bricks));
     return times;
 }
 
@@ -269,9 +279,10 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
                                      const CollectionPlan& plan, VolumeResources& resources) {
     const CollectionBlock whole = whole_block(plan.dims);
     prepare_collection(device, commands, bindings, plan, whole, resources);
-    const auto collected = collect_block(device, commands, plan, whole, true, kMostSplats, resources);
+    auto collected = collect_block(device, commands, plan, whole, true, kMostSplats, resources);
     resources.box_low = collected->low;
     resources.box_high = collected->high;
+    resources.bricks.assign(std::move(collected->bricks));
     return collected->times;
 }
 

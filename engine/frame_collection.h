@@ -25,7 +25,8 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 /// Splats that a block added to the list.
 struct CollectedBlock {
     std::uint64_t first = 0, count = 0, with_edge = 0;
-    glm::ivec3 low{0}, high{0};  ///< inclusive box of whole rows of the block that hold them
+    glm::ivec3 low{0}, high{0};      ///< inclusive box that holds their voxels; the whole block without splats
+    std::vector<SplatBrick> bricks;  ///< counted from `first`
     std::vector<PassTime> times;
 };
 
@@ -48,7 +49,7 @@ std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& d
 std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
                                        const CollectionPlan& plan, const VoxelBox& changed, VolumeResources& resources);
 
-/// The whole volume at once; fills `splat_count` and the box.
+/// The whole volume at once; fills `splat_count`, the bricks and the box.
 std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
                                      const CollectionPlan& plan, VolumeResources& resources);
 

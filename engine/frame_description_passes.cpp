@@ -127,16 +127,15 @@ class Passes {
         const char* name = draw.name.c_str();
         const int samples = plan.variant.payload == shader::PAYLOAD_COLOR ? request.scene.effects.samples : 1;
         again_ = samples * samples;
-        const gpu::Specialization sliced{{shader::SPEC_SLICED, plan.variant.sliced ? 1U : 0U}};
         const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
         const double drawing = kRates.draw_entry * entries +
                                (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan);
         add(name, "3_select_footprints", kRates.select_splat * splats,
             {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
-            {variant("4a_count_sheets.comp", sliced),
-             variant("4b_scan_sheets.comp", passes::scan_constants(plan.variant.tiles)),
-             variant("4c_scatter_splats.comp", sliced)});
+            {variant("4a_count_sheets.comp", passes::count_constants(plan.variant)),
+             variant("4b_scan_sheets.comp", passes::scan_constants(plan.variant)),
+             variant("4c_scatter_splats.comp", passes::scatter_constants(plan.variant))});
         if (plan.variant.tiles) {
             add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
                 {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});

@@ -4,7 +4,6 @@
 
 #include "engine/frame_reach.h"
 #include "engine/passes/2_collect_splats.h"
-#include "engine/row_box.h"
 #include "engine/volume/filters.h"
 #include "footprints/edge_warp.h"
 #include "footprints/kernel.h"
@@ -81,18 +80,22 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
             visible[i] &= buried[i] == 0 ? 1U : 0U;
     }
     SplatCount out{SplatCount::From::Materials};
-    RowBox rows(dims);
-    for (std::uint64_t first = 0; first < voxels; first += shader::COLLECT_RUN) {
-        const std::uint64_t end = std::min<std::uint64_t>(first + shader::COLLECT_RUN, voxels);
-        const auto count =
-            static_cast<std::uint64_t>(std::count(visible.begin() + static_cast<std::ptrdiff_t>(first),
-                                                  visible.begin() + static_cast<std::ptrdiff_t>(end), std::uint8_t{1}));
-        out.splats += count;
-        if (count == 0) continue;
-        rows.add(first, end - 1);
-    }
-    out.box_low = rows.low();
-    out.box_high = rows.high();
+    RunBox box;
+    BrickRuns(dims).each_brick([&](const RunBox& brick, std::uint64_t, std::uint64_t) {
+        for (int z = brick.low.z; z <= brick.high.z; ++z) {
+            std::uint64_t count = 0;
+            for (int y = brick.low.y; y <= brick.high.y; ++y) {
+                const std::uint64_t row = (static_cast<std::uint64_t>(z) * ny + static_cast<std::uint64_t>(y)) * nx;
+                const auto at = visible.begin() + static_cast<std::ptrdiff_t>(row);
+                count +=
+                    static_cast<std::uint64_t>(std::count(at + brick.low.x, at + brick.high.x + 1, std::uint8_t{1}));
+            }
+            out.splats += count;
+            if (count > 0) box.add({{brick.low.x, brick.low.y, z}, {brick.high.x, brick.high.y, z}});
+        }
+    });
+    out.box_low = box.empty() ? glm::ivec3(0) : box.low;
+    out.box_high = box.empty() ? dims - 1 : box.high;
     return out;
 }
 

@@ -246,7 +246,9 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
         add_tiles(most_sheets, splats, out);
     else
         add_layers(f, out);
-    out.push_back(growing(buffer("sheets of splats", splats * word, "(splats) uint", "3", "4, 5")));
+    out.push_back(on_host(growing(buffer("batches of splats", (splats / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2),
+                                         "(batches) first, count", "host", "3, 4"))));
+    out.push_back(growing(buffer("sheets of splats", splats * word, "(slots) uint", "3", "4, 5")));
     out.push_back(growing(buffer("splat order", order_bytes(order), "(splats x sheets each) uint", "4", "5")));
     out.push_back(
         growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,

@@ -400,11 +400,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.dims = geometry.dims;
     p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
     p.tile_blocks = tile_blocks(p.tiles);
-    p.splat_count = static_cast<std::uint32_t>(splat_count);
-    // A splat of a sliced view goes round once more for each sheet.
-    p.sort_segment = std::max(shader::MOST_ITERATIONS / 2 / (plan.sheets_per_splat + 2), 1U);
-    const std::uint32_t per_block = (p.splat_count + shader::SORT_BLOCKS - 1) / shader::SORT_BLOCKS;
-    plan.sort_segments = std::max((per_block + p.sort_segment - 1) / p.sort_segment, 1U);
+    draw_first(plan, static_cast<std::uint32_t>(splat_count));
     p.size = size;
     // Optical depth is wanted whole, and what accumulates then is no opacity.
     p.saturation =

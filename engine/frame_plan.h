@@ -1,6 +1,7 @@
 // From scene, camera and settings to what must run: the numbers every pass is given.
 #pragma once
 
+#include "engine/frame_bricks.h"
 #include "engine/passes/5_draw_splats.h"
 #include "engine/renderer.h"
 #include "footprints/edge_warp.h"
@@ -58,8 +59,19 @@ struct FramePlan {
     bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
+    std::vector<glm::uvec2> batches;     ///< FrameParams::batches; where bricks are culled
     shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
 };
+
+/// The picture is then of the first `splats` of the list alone, none of its bricks being culled.
+void draw_first(FramePlan& plan, std::uint32_t splats);
+
+/// Leaves out what no brick in view holds, if that is something and sheets are summed tile by tile. No kernel reaches
+/// further than `reach` voxels.
+void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view, double reach);
+
+/// How many splats that left out.
+std::uint64_t culled_splats(const FramePlan& plan);
 
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
 /// come from the collection; no kernel reaches further than `farthest_reach` voxels.

@@ -225,8 +225,8 @@ std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& 
         commands.span("2c_sweep_light", [&] {
             commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
             passes::clear_accumulated(commands, targets.accumulated);
-            passes::select_footprints(commands, plan.params.splat_count, plan.variant);
-            passes::sort_sheets(commands, plan.variant.sliced, false, plan.sort_segments);
+            passes::select_footprints(commands, plan.params.slot_count, plan.variant);
+            passes::sort_sheets(commands, plan.variant, plan.sort_segments);
             for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
                 passes::draw_splats(commands, draw, group);
                 passes::sweep_light(commands, plan.params.size, group);

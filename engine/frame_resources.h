@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "engine/frame_bricks.h"
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/commands.h"
 #include "engine/gpu/image.h"
@@ -28,7 +29,8 @@ struct VolumeResources {
     gpu::Buffer transfer;   ///< (TRANSFER_ROWS + 1) TransferRow, mapped; host -> 2, 5; only with a transfer function
     gpu::Buffer values;     ///< (splat_count) float: what each splat is classified by; 2 -> 5; likewise
     std::uint64_t splat_count = 0, edge_splat_count = 0;
-    glm::ivec3 box_low{0}, box_high{0};  ///< voxels that hold splats: inclusive box, whole rows
+    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
+    SplatBricks bricks;                  ///< of the list
 };
 
 /// What stands until the footprint settings change.
@@ -47,7 +49,8 @@ struct TargetResources {
     gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
     gpu::GpuImage accumulated;  ///< (height, width) rgba32f or rgba16f; 6 -> 5a, 7
     gpu::GpuImage prepared;   ///< rgba32f, PREPARED_ROW wide: records of a chunk's splats (prepared_splat.glsl); 4 -> 5
-    gpu::Buffer sheet_of;     ///< (splat_count) uint; 3 -> 4, 5
+    gpu::Buffer batches;      ///< (splat_count / SPLAT_BATCH + 1) uvec2, mapped: FrameParams::batches; host -> 3, 4
+    gpu::Buffer sheet_of;     ///< (splat_count) uint: of slots; 3 -> 4, 5
     gpu::Buffer order;        ///< (splat_count * sheets_per_splat) uint; 4 -> 5
     gpu::Buffer counters;     ///< (sheet_count, SORT_BLOCKS) uint; 4
     gpu::Buffer groups;       ///< (group_count) SheetGroup; host, 3, 4 -> 5, 6

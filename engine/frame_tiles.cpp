@@ -134,9 +134,8 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
             commands.raw().fillBuffer(targets.tile_finest.handle(), 0, VK_WHOLE_SIZE,
                                       std::bit_cast<std::uint32_t>(1e30F));
         commands.barrier();
-        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.splat_count, plan.variant); });
-        commands.span("4_sort_sheets",
-                      [&] { passes::sort_sheets(commands, plan.variant.sliced, true, plan.sort_segments); });
+        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
+        commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
     });
     const auto pairs = targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
     const auto starts = targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);

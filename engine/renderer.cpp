@@ -184,9 +184,12 @@ void RendererState::provide_footprints(const Settings& settings) {
 
 FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, const Settings& settings,
                                       const glm::ivec2& size, std::uint32_t payload) const {
-    return plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
-                      volume_resources.box_low, volume_resources.box_high,
-                      draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius);
+    const double reach = draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius;
+    FramePlan out = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
+                               volume_resources.box_low, volume_resources.box_high, reach);
+    const double pixels = out.variant.antialias ? pixels_of_filter(camera, size, kKernelRadius) : 1;
+    if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, pixels}, reach);
+    return out;
 }
 
 void RendererState::draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
@@ -330,6 +333,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     result.stats.device = self.device.info();
     result.stats.voxels = self.volume->geometry.voxel_count();
     result.stats.splats_collected = self.volume_resources.splat_count;
+    result.stats.splats_culled = culled_splats(self.plan);
     result.stats.edge_splats = self.volume_resources.edge_splat_count;
     result.stats.device_bytes = self.device.allocated_bytes();
     for (const auto& [name, allocation] : self.device.allocations())

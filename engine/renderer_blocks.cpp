@@ -182,6 +182,7 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
         lists.splat_count += residence->held[i]->count;
         lists.edge_splat_count += residence->held[i]->with_edge;
     }
+    index_held_blocks();
     return true;
 }
 
@@ -214,8 +215,10 @@ void RendererState::begin_blocks(const CollectionPlan& wanted) {
 }
 
 std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request) {
-    const ViewVolume view(volume->geometry, request.camera, request.size);
-    const double reach = farthest_reach(drawn_settings(request));
+    const Settings drawn = drawn_settings(request);
+    const double reach = farthest_reach(drawn);
+    const double pixels = request.scene.effects.antialias ? pixels_of_filter(request.camera, request.size, reach) : 1;
+    const ViewVolume view(volume->geometry, request.camera, request.size, pixels);
     std::vector<std::size_t> shown;
     for (std::size_t i = 0; i < residence->blocks.size(); ++i) {
         const CollectionBlock& block = residence->blocks[i];
@@ -261,6 +264,21 @@ void RendererState::bound_held_blocks() {
         resources.box_high = glm::max(resources.box_high, held->high);
     }
     if (resources.splat_count == 0) std::swap(resources.box_low, resources.box_high);
+    index_held_blocks();
+}
+
+void RendererState::index_held_blocks() {
+    std::vector<const CollectedBlock*> held;
+    for (const auto& block : residence->held)
+        if (block) held.push_back(&*block);
+    std::ranges::sort(held, {}, [](const CollectedBlock* block) { return block->first; });
+    std::vector<SplatBrick> bricks;
+    for (const CollectedBlock* block : held)
+        for (SplatBrick brick : block->bricks) {
+            brick.first += static_cast<std::uint32_t>(block->first);
+            bricks.push_back(brick);
+        }
+    volume_resources.bricks.assign(std::move(bricks));
 }
 
 void RendererState::release_for_collection() {

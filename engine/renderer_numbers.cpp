@@ -51,7 +51,7 @@ void RendererState::check_picture() {
     // The picture of the first n splats is sound and that of one more is not: by halves.
     const std::uint32_t all = plan.params.splat_count;
     const auto sound = [&](std::uint32_t splats) {
-        plan.params.splat_count = splats;
+        draw_first(plan, splats);
         draw_planned();
         return first_bad(pixels()) == pixels().size();
     };
@@ -61,7 +61,7 @@ void RendererState::check_picture() {
         const std::uint32_t middle = good + (not_good - good) / 2;
         (sound(middle) ? good : not_good) = middle;
     }
-    plan.params.splat_count = all;
+    draw_first(plan, all);
     fail("{}: {}: {}", plan.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*this, good), where);
 }
 

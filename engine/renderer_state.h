@@ -82,6 +82,8 @@ struct RendererState : DeviceState, SplatSet {
     void leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
     /// The box of the splats that are in the list.
     void bound_held_blocks();
+    /// The bricks of the list, from its blocks'.
+    void index_held_blocks();
     /// Frees what pictures are drawn into; collecting uses the bindings.
     void release_for_collection();
     std::vector<float> read_block(const std::vector<std::size_t>& missing, std::size_t number);
@@ -174,6 +176,7 @@ struct RendererState : DeviceState, SplatSet {
     SplatSet other;                                             ///< a coarser level, shown until a finer one is there
     double patience = std::numeric_limits<double>::infinity();  ///< see Renderer::set_patience
     std::function<bool()> interruption;                         ///< see Renderer::set_interruption
+    bool culls = true;  ///< what lies outside the picture brick by brick is left out
     FootprintResources footprint_resources;
     TargetResources targets;
     std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way

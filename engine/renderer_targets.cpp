@@ -31,6 +31,9 @@ bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& 
 
 void RendererState::provide_targets(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
+    grow(device, targets.batches, (p.splat_count / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2), Place::Host,
+         "batches of splats");
+    std::ranges::copy(plan_in_use.batches, targets.batches.mapped<glm::uvec2>(plan_in_use.batches.size()).begin());
     grow(device, targets.sheet_of, p.splat_count * kWord, Place::Device, "sheets of splats");
     grow(device, targets.order, std::size_t{p.splat_count} * plan_in_use.sheets_per_splat * kWord, Place::Device,
          "splat order");
@@ -46,6 +49,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
     p.splat_shadows = volume_resources.shadows ? volume_resources.shadows.address() : 0;
     p.transfer = volume_resources.transfer ? volume_resources.transfer.address() : 0;
     p.values = volume_resources.values ? volume_resources.values.address() : 0;
+    p.batches = targets.batches.address();
     p.sheets = targets.sheet_of.address();
     p.order = targets.order.address();
     p.counters = targets.counters.address();

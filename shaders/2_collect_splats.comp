@@ -1,5 +1,5 @@
-// Compacts the voxels that can be seen into splat records, in the order of the voxels. Each invocation owns a run of
-// consecutive voxels; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
+// Compacts the voxels that can be seen into splat records, brick by brick (engine/brick_runs.h). Each invocation owns a
+// slice of a brick; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
 // 2a_finish_splats gives them their edges.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -30,19 +30,20 @@ uint material_at(ivec3 p) { return material_of(voxel(p)); }
 
 void main() {
     dims = params.scene.dims;
-    ivec3 size = params.scene.core_size, end = params.scene.core_low + size;
-    uint voxels = uint(size.x) * uint(size.y) * uint(size.z);
+    // Bricks side by side, slice by slice: so do the voxels of invocations that run together lie in memory.
+    ivec3 size = params.scene.core_size;
+    uvec3 runs = uvec3(uvec2(size.xy) + BRICK - 1u, uint(size.z)) / uvec3(BRICK, BRICK, 1u);
     uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    uint first = run * COLLECT_RUN;
-    if (run >= (voxels + COLLECT_RUN - 1u) / COLLECT_RUN) return;
-    uint last = min(first + COLLECT_RUN, voxels);
+    if (run >= runs.x * runs.y * runs.z) return;
+    ivec3 low = ivec3(run % runs.x * BRICK, run / runs.x % runs.y * BRICK, run / runs.x / runs.y);
+    ivec2 extent = min(size.xy - low.xy, ivec2(BRICK));
+    low += params.scene.core_low;
     UintsRef offsets = UintsRef(params.scene.run_offsets);
     SplatsRef splats = SplatsRef(params.scene.splats);
 
-    ivec3 p = params.scene.core_low +
-              ivec3(first % uint(size.x), first / uint(size.x) % uint(size.y), first / uint(size.x) / uint(size.y));
+    ivec3 p = low;
     uint out_at = write == 1u ? offsets.at[run] : 0u;
-    for (uint v = first; v < last; ++v) {
+    for (int v = 0; v < extent.x * extent.y; ++v) {
         uint material = material_at(p);
         bool visible = in_mask(params.scene.visible_mask, material);
         if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
@@ -62,12 +63,9 @@ void main() {
             }
             ++out_at;
         }
-        if (++p.x == end.x) {
-            p.x = params.scene.core_low.x;
-            if (++p.y == end.y) {
-                p.y = params.scene.core_low.y;
-                ++p.z;
-            }
+        if (++p.x == low.x + extent.x) {
+            p.x = low.x;
+            ++p.y;
         }
     }
     if (write == 0u) offsets.at[run] = out_at;

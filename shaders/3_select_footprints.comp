@@ -1,4 +1,4 @@
-// For every splat record: is it in the picture, in which sheet, and which tiles does it touch, or which pixels its sheet group.
+// For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels its sheet group.
 // docs/method.md, pass 3.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -12,6 +12,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
+layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/lib/splat_projection.glsl"
 #define CLIP_PARAMS params.frame
@@ -40,13 +41,20 @@ void note(uint i, uint first, uint last, ivec4 box) {
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (i >= params.frame.splat_count) return;
+    uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (slot >= params.frame.slot_count) return;
+    uint i = slot;
+    bool there = true;
+    if (CULLED == 1u) {
+        uvec2 batch = PairsRef(params.frame.batches).at[slot / SPLAT_BATCH];
+        there = slot % SPLAT_BATCH < batch.y;
+        i = batch.x + min(slot % SPLAT_BATCH, batch.y - 1u);
+    }
     Splat splat = SplatsRef(params.frame.splats).at[i];
     Projection p = place_splat(splat.voxel, unpack_edge(splat.normal, splat.edge));
     project_support(p);
     ivec4 box = pixel_box(p);
-    bool drawn = p.visible && box.x < box.z && box.y < box.w;
+    bool drawn = there && p.visible && box.x < box.z && box.y < box.w;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
@@ -55,12 +63,12 @@ void main() {
         float reach = p.radius * length(params.frame.view_z);
         int first = clamp(int(floor((middle - reach) / params.frame.sheet_thickness)), 0, most);
         int last = clamp(int(floor((middle + reach) / params.frame.sheet_thickness)), first, most);
-        UintsRef(params.frame.sheets).at[i] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
+        UintsRef(params.frame.sheets).at[slot] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
         if (drawn) note(i, uint(first), uint(last), box);
     } else {
         int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
-        UintsRef(params.frame.sheets).at[i] = drawn ? uint(sheet) : SHEET_NONE;
+        UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;
         if (drawn) note(i, uint(sheet), uint(sheet), box);
     }
 }

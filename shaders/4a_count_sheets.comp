@@ -1,5 +1,5 @@
 // Counting sort, first third: how many splats of each block lie in each sheet. One invocation owns one block of
-// consecutive splats and one column of the histogram, so there is no race and the sort is stable.
+// consecutive slots and one column of the histogram, so there is no race and the sort is stable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -12,12 +12,12 @@ layout(push_constant) uniform Push { uint segment; };  // of each block: one aft
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
-    uint per_block = (params.frame.splat_count + SORT_BLOCKS - 1u) / SORT_BLOCKS;
-    uint end = min((block + 1u) * per_block, params.frame.splat_count);
+    uint per_block = (params.frame.slot_count + SORT_BLOCKS - 1u) / SORT_BLOCKS;
+    uint end = min((block + 1u) * per_block, params.frame.slot_count);
     uint first = block * per_block + segment * params.frame.sort_segment, last = min(first + params.frame.sort_segment, end);
     UintsRef sheets = UintsRef(params.frame.sheets), counters = UintsRef(params.frame.counters);
-    for (uint i = first; i < last; ++i) {
-        uint sheet = sheets.at[i];
+    for (uint slot = first; slot < last; ++slot) {
+        uint sheet = sheets.at[slot];
         if (SLICED == 1u) {
             uint first = sheet & ((1u << SHEET_BITS) - 1u);
             uint end = sheet != SHEET_NONE ? first + (sheet >> SHEET_BITS) + 1u : 0u;

@@ -57,6 +57,7 @@ ordered_json case_json(const CaseResult& c) {
               {"pipeline_ms", c.cold.pipeline_ms}}},
             {"splats",
              {{"collected", stats.splats_collected},
+              {"culled", stats.splats_culled},
               {"drawn", stats.splats_drawn},
               {"rejected", c.rejected()},
               {"edge", stats.edge_splats}}},

@@ -83,16 +83,16 @@ std::string pass_table(const BenchRun& run) {
 }
 
 std::string work_table(const BenchRun& run) {
-    Rows rows{{"", "collected M", "drawn M", "rejected M", "vertices M", "fragments M", "shaded M", "sheets", "groups",
-               "dirty %", "device MiB", "host peak MiB"}};
+    Rows rows{{"", "collected M", "culled M", "drawn M", "rejected M", "vertices M", "fragments M", "shaded M",
+               "sheets", "groups", "dirty %", "device MiB", "host peak MiB"}};
     for (const CaseResult& c : run.cases) {
         const RenderStats& s = c.stats;
         const auto counted = [&](std::uint64_t DrawCounts::*member) {
             return s.draw_counts ? millions((*s.draw_counts).*member) : "-";
         };
-        rows.push_back({c.name, millions(s.splats_collected), millions(s.splats_drawn), millions(c.rejected()),
-                        counted(&DrawCounts::vertices), counted(&DrawCounts::fragments), counted(&DrawCounts::shaded),
-                        fmt::format("{}", s.sheets), fmt::format("{}", s.sheet_groups),
+        rows.push_back({c.name, millions(s.splats_collected), millions(s.splats_culled), millions(s.splats_drawn),
+                        millions(c.rejected()), counted(&DrawCounts::vertices), counted(&DrawCounts::fragments),
+                        counted(&DrawCounts::shaded), fmt::format("{}", s.sheets), fmt::format("{}", s.sheet_groups),
                         s.dirty_share ? brief(100 * *s.dirty_share) : "-", mebibytes(s.device_bytes),
                         mebibytes(c.host_peak_bytes)});
     }

@@ -1,5 +1,7 @@
 #include "engine/passes/2_collect_splats.h"
 
+#include "engine/brick_runs.h"
+
 namespace edgesplat::passes {
 namespace {
 
@@ -26,8 +28,7 @@ gpu::Specialization finish_constants(const CollectSplats& in) {
 }
 
 std::uint64_t collect_runs(const glm::ivec3& core_size) {
-    const glm::u64vec3 n(core_size);
-    return (n.x * n.y * n.z + shader::COLLECT_RUN - 1) / shader::COLLECT_RUN;
+    return BrickRuns(core_size).count();
 }
 
 void count_splats(gpu::Commands& commands, const CollectSplats& in) {

@@ -22,14 +22,14 @@ struct CollectSplats {
 gpu::Specialization collect_constants(const CollectSplats& in);
 gpu::Specialization finish_constants(const CollectSplats& in);
 
-/// Invocations of the counting and of the writing dispatch, one per shader::COLLECT_RUN voxels.
+/// Invocations of the counting and of the writing dispatch, one per slice of a brick (engine/brick_runs.h).
 std::uint64_t collect_runs(const glm::ivec3& core_size);
 
 /// Writes how many splats each run holds to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
-/// With run_offsets turned into an exclusive prefix sum: writes the records, in the order of the voxels, and where
-/// there is an edge field finishes the `count` that SceneParams says.
+/// With run_offsets turned into an exclusive prefix sum: writes the records, brick by brick, and where there is an
+/// edge field finishes the `count` that SceneParams says.
 void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
 
 }  // namespace edgesplat::passes

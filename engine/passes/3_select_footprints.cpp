@@ -8,11 +8,12 @@ gpu::Specialization select_constants(const DrawVariant& variant) {
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
             {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
-            {shader::SPEC_TILES, variant.tiles ? 1U : 0U}};
+            {shader::SPEC_TILES, variant.tiles ? 1U : 0U},
+            {shader::SPEC_CULLED, variant.culled ? 1U : 0U}};
 }
 
-void select_footprints(gpu::Commands& commands, std::uint64_t splat_count, const DrawVariant& variant) {
-    commands.dispatch("3_select_footprints.comp", select_constants(variant), 0, gpu::groups_for(splat_count, 64));
+void select_footprints(gpu::Commands& commands, std::uint64_t slots, const DrawVariant& variant) {
+    commands.dispatch("3_select_footprints.comp", select_constants(variant), 0, gpu::groups_for(slots, 64));
     commands.barrier();
 }
 

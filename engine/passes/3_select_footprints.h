@@ -11,6 +11,6 @@ gpu::Specialization select_constants(const DrawVariant& variant);
 
 /// FrameParams at `frame`: reads `splats`, writes `sheets`, grows the `rect` of `groups` (which must start out empty).
 /// Sliced, a splat belongs to every sheet that its support touches. What clip planes cut away whole is not drawn.
-void select_footprints(gpu::Commands& commands, std::uint64_t splat_count, const DrawVariant& variant);
+void select_footprints(gpu::Commands& commands, std::uint64_t slots, const DrawVariant& variant);
 
 }  // namespace edgesplat::passes

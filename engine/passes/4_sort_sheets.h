@@ -2,16 +2,18 @@
 // group. A stable counting sort.
 #pragma once
 
-#include "engine/gpu/commands.h"
+#include "engine/passes/5_draw_splats.h"
 
 namespace edgesplat::passes {
 
-/// Specialization of 4b_scan_sheets.comp.
-gpu::Specialization scan_constants(bool tiles);
+/// Specialization of 4a_count_sheets.comp, of 4b_scan_sheets.comp and of 4c_scatter_splats.comp.
+gpu::Specialization count_constants(const DrawVariant& variant);
+gpu::Specialization scan_constants(const DrawVariant& variant);
+gpu::Specialization scatter_constants(const DrawVariant& variant);
 
-/// FrameParams: reads `sheets`, uses `counters` (which must be zero), writes `order` and, with `tiles`, `sheet_starts`,
+/// FrameParams: reads `sheets`, uses `counters` (which must be zero), writes `order` and, with tiles, `sheet_starts`,
 /// else `groups` and `draws`.
-/// `segments`: into which blocks of splats are divided, each of FrameParams::sort_segment.
-void sort_sheets(gpu::Commands& commands, bool sliced, bool tiles, std::uint32_t segments);
+/// `segments`: into which blocks of slots are divided, each of FrameParams::sort_segment.
+void sort_sheets(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t segments);
 
 }  // namespace edgesplat::passes

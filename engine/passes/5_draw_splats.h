@@ -29,6 +29,7 @@ struct DrawVariant {
     ClipCount clip{};        ///< kernels are cut at planes
     bool antialias = false;  ///< no footprint is narrower than a pixel
     bool tiles = false;      ///< sheets are summed tile by tile, not in layers
+    bool culled = false;     ///< splats are gone through in batches, those of bricks in view
 };
 
 /// Specialization of 5b_draw_splats.vert and .frag, and of 5_draw_tiles.comp.

@@ -5,8 +5,8 @@
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_ballot : require
 
-const int BRICK = 8;
-shared uint brick_voxels[BRICK * BRICK * BRICK];
+const int BRICK_SIDE = int(BRICK);
+shared uint brick_voxels[BRICK_SIDE * BRICK_SIDE * BRICK_SIDE];
 shared uint brick_count;
 
 ivec3 brick_voxel(uint i) { return ivec3(i & 7u, i >> 3 & 7u, i >> 6); }
@@ -15,8 +15,8 @@ ivec3 brick_voxel(uint i) { return ivec3(i & 7u, i >> 3 & 7u, i >> 6); }
 uint list_brick(ivec3 low, ivec3 high) {
     if (gl_LocalInvocationIndex == 0u) brick_count = 0u;
     barrier();
-    ivec3 first = low + BRICK * ivec3(gl_WorkGroupID);
-    for (uint i = gl_LocalInvocationIndex; i < uint(BRICK * BRICK * BRICK); i += 64u) {
+    ivec3 first = low + BRICK_SIDE * ivec3(gl_WorkGroupID);
+    for (uint i = gl_LocalInvocationIndex; i < uint(BRICK_SIDE * BRICK_SIDE * BRICK_SIDE); i += 64u) {
         ivec3 p = first + brick_voxel(i);
         bool in_list = all(lessThan(p, high)) && wanted(p);
         uvec4 others = subgroupBallot(in_list);
@@ -30,5 +30,5 @@ uint list_brick(ivec3 low, ivec3 high) {
 }
 
 // Voxel `i` of that list.
-ivec3 listed_voxel(ivec3 low, uint i) { return low + BRICK * ivec3(gl_WorkGroupID) + brick_voxel(brick_voxels[i]); }
+ivec3 listed_voxel(ivec3 low, uint i) { return low + BRICK_SIDE * ivec3(gl_WorkGroupID) + brick_voxel(brick_voxels[i]); }
 #endif

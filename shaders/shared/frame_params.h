@@ -70,7 +70,7 @@ struct FrameParams {
     uint entries_first;    // where the chunk's lists begin in BIND_TILE_ENTRIES, and their marks; a multiple of MARKED_AT_ONCE
     FootprintParams footprint;
     Address splats;         // (splat_count) Splat
-    Address sheets;         // (splat_count) uint: sheet of each splat or SHEET_NONE
+    Address sheets;         // (slot_count) uint: sheet of each slot's splat or SHEET_NONE
     Address counters;       // (sheet_count, SORT_BLOCKS) uint: counts, then offsets
     Address order;          // (drawn) uint: splat numbers sorted by sheet
     Address groups;         // (group_count) SheetGroup
@@ -98,7 +98,10 @@ struct FrameParams {
     Address tile_finest;    // (tiles) uint: bits of the least width of a voxel of the splats over it, pixels; with refined pixels only
     ivec2 tiles;
     uint tile_blocks;       // columns of the tiles' histogram
-    uint sort_segment;      // splats of a block that are sorted at once
+    uint sort_segment;      // slots of a block that are sorted at once
+    Address batches;        // (slot_count / SPLAT_BATCH) uvec2: first splat and how many; where bricks are culled
+    uint slot_count;        // splats that may show: all, or SPLAT_BATCH for each batch
+    uint slot_pad;
 };
 
 EDGESPLAT_SHARED_END
@@ -109,7 +112,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 2440);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 3024);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 3040);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -19,7 +19,8 @@ EDGESPLAT_CONSTANT int ESTIMATE_MARGIN = 7;
 EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
 EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
 EDGESPLAT_CONSTANT int CHANGE_MARGIN = 13;  // as far from a sample that changes edges may be others: BLOCK_BORDER - ADOPT_MARGIN
-EDGESPLAT_CONSTANT uint COLLECT_RUN = 64u;    // voxels per invocation of 2_collect_splats (measured best on lavapipe)
+EDGESPLAT_CONSTANT uint BRICK = 8u;  // voxels along a side of a brick
+EDGESPLAT_CONSTANT uint SPLAT_BATCH = 64u;  // splats of bricks in view that 3_select_footprints goes through at once
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
@@ -83,6 +84,7 @@ EDGESPLAT_CONSTANT uint SPEC_GROUP = 30u;      // invocations of a workgroup
 EDGESPLAT_CONSTANT uint SPEC_STEP = 31u;       // pixels between those that are there already
 EDGESPLAT_CONSTANT uint SPEC_WIDE_MARKS = 33u;  // 1: entries are marked for 4 x 2 pixels at once, 0: for each
 EDGESPLAT_CONSTANT uint SPEC_LIST_PARTS = 34u;  // parts of 32 entries of a list that are marked at once
+EDGESPLAT_CONSTANT uint SPEC_CULLED = 35u;  // 1: splats are those of batches, of bricks in view; 0: all of the list
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <tuple>
+
 #include "engine/gpu/read_back.h"
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/2_collect_splats.h"
@@ -126,6 +129,7 @@ inline std::vector<PassScene> pass_scenes() {
 /// Device and volume ready, passes 1 and 2 run.
 inline RendererState& prepared(const PassScene& s) {
     RendererState& state = device_under_test();
+    state.culls = false;  // a splat's number is its slot's
     state.collected.reset();
     state.volume_resources = {};
     state.volume = std::make_shared<Volume>(s.volume);
@@ -163,6 +167,15 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
             state.collected->weighted ? (traits[i] >> 16U) / 65535.0 * static_cast<double>(shader::WEIGHT_UNIT) : 1;
     }
     return records;
+}
+
+/// As the device lists them: brick by brick.
+inline void sort_by_brick(std::vector<reference::SplatRecord>& records, const glm::ivec3& dims) {
+    std::ranges::stable_sort(records, {}, [&](const reference::SplatRecord& record) {
+        const auto voxel = static_cast<int>(record.voxel);
+        const glm::ivec3 brick = glm::ivec3(voxel % dims.x, voxel / dims.x % dims.y, voxel / dims.x / dims.y) / 8;
+        return std::tuple(brick.z, brick.y, brick.x);
+    });
 }
 
 /// What of the light reaches each splat: two unorm16.

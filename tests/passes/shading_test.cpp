@@ -244,8 +244,9 @@ TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
         const auto samples = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, samples, {}};
         const auto values = reference::classified_values(field, s.scaled(), edges);
-        const auto want = reference::collect_splats(field, s.scaled(), edges, s.scene, s.volume.geometry, s.settings,
-                                                    s.camera.eye, false, values);
+        auto want = reference::collect_splats(field, s.scaled(), edges, s.scene, s.volume.geometry, s.settings,
+                                              s.camera.eye, false, values);
+        sort_by_brick(want, s.volume.geometry.dims);
         ASSERT_EQ(got.size(), want.size());
         std::size_t moved = 0;
         for (std::size_t i = 0; i < want.size(); ++i) {

@@ -1,0 +1,54 @@
+// How 2_collect_splats divides voxels: into bricks, those into slices, an invocation's run each.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <glm/glm.hpp>
+
+#include "shaders/shared/limits.h"
+
+namespace edgesplat {
+
+/// Inclusive box of voxels.
+struct RunBox {
+    glm::ivec3 low{0}, high{-1};
+    bool empty() const { return high.x < low.x; }
+    void add(const RunBox& other) {
+        if (other.empty()) return;
+        low = empty() ? other.low : glm::min(low, other.low);
+        high = empty() ? other.high : glm::max(high, other.high);
+    }
+};
+
+/// The runs of a box of voxels: those of bricks that lie side by side are numbered first x, then y, then by slice.
+class BrickRuns {
+  public:
+    explicit BrickRuns(const glm::ivec3& size)
+        : size_(size),
+          bricks_((size + kSide - 1) / kSide),
+          in_slice_(std::uint64_t(bricks_.x) * std::uint64_t(bricks_.y)) {}
+
+    std::uint64_t count() const { return in_slice_ * static_cast<std::uint64_t>(size_.z); }
+
+    /// Calls body(low, high, runs, stride) for every brick in the order of the list: an inclusive box of voxels, the
+    /// number of its first run and how far from each other those of its slices are.
+    template <class Body>
+    void each_brick(const Body& body) const {
+        for (int z = 0; z < bricks_.z; ++z)
+            for (int y = 0; y < bricks_.y; ++y)
+                for (int x = 0; x < bricks_.x; ++x) {
+                    const glm::ivec3 low = glm::ivec3(x, y, z) * kSide, high = glm::min(low + kSide, size_) - 1;
+                    const std::uint64_t first = in_slice_ * static_cast<std::uint64_t>(low.z) +
+                                                static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(bricks_.x) +
+                                                static_cast<std::uint64_t>(x);
+                    body(RunBox{low, high}, first, in_slice_);
+                }
+    }
+
+  private:
+    static constexpr int kSide = static_cast<int>(shader::BRICK);
+    glm::ivec3 size_, bricks_;
+    std::uint64_t in_slice_;
+};
+
+}  // namespace edgesplat

@@ -1,0 +1,180 @@
+// Bricks outside the picture: which are left out, and that nothing of the picture is.
+#include <random>
+
+#include "tests/passes/pass_fixture.h"
+
+namespace edgesplat::test {
+namespace {
+
+/// Surfaces throughout 52 x 44 x 37 voxels, some opaque, on an oblique grid.
+PassScene waves() {
+    PassScene s;
+    s.name = "waves";
+    s.volume.geometry.dims = {52, 44, 37};
+    for (int z = 0; z < 37; ++z)
+        for (int y = 0; y < 44; ++y)
+            for (int x = 0; x < 52; ++x)
+                s.volume.values.push_back(static_cast<float>(std::sin(x / 3.1) * std::cos(y / 2.7) +
+                                                             std::sin(y / 3.3) * std::cos(z / 2.9) +
+                                                             std::sin(z / 3.7) * std::cos(x / 3.5)));
+    s.volume.geometry.index_to_world_axes =
+        glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.4));
+    s.volume.geometry.origin = {-20, 12, 7};
+    finish_volume(s.volume);
+    s.scene.iso_values = {0.4, 1.1};
+    s.scene.materials = {{{0, 0, 0}, 0}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
+    s.scene.lights = {directional_light({0.3, -1, 0.5})};
+    return s;
+}
+
+/// Eyes in and around the volume, looking about.
+std::vector<Camera> cameras_of(const PassScene& s, int count) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<double> in_unit(0, 1);
+    const auto point = [&](double scale) {
+        const glm::dvec3 dims(s.volume.geometry.dims);
+        return dims * (0.5 + scale * (glm::dvec3(in_unit(random), in_unit(random), in_unit(random)) - 0.5));
+    };
+    std::vector<Camera> cameras;
+    for (int i = 0; i < count; ++i) {
+        PassScene at = s;
+        look_at(at, point(i % 3 == 0 ? 0.9 : i % 3 == 1 ? 2.5 : 10), point(1.1), i % 2 == 0 ? 75 : 20);
+        cameras.push_back(at.camera);
+    }
+    return cameras;
+}
+
+struct Frame {
+    std::vector<glm::vec4> pixels;
+    std::uint32_t drawn = 0;
+    std::uint64_t culled = 0;
+};
+
+Frame frame(RendererState& state, const PassScene& s, const Camera& camera, std::uint32_t payload, bool culls,
+            const glm::dvec2& offset = {0, 0}) {
+    const glm::ivec2 size(53, 38);
+    state.culls = culls;
+    state.draw(s.scene, camera, drawn_as(s.settings, s.scene), size, payload, offset);
+    state.culls = false;
+    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+    return {{pixels.begin(), pixels.end()}, state.targets.drawn.mapped<std::uint32_t>(1)[0], culled_splats(state.plan)};
+}
+
+/// Of every camera, that leaving out bricks changes nothing. How many splats were left out, of how many.
+glm::u64vec2 expect_nothing_lost(const PassScene& s, int cameras, std::uint32_t payload = shader::PAYLOAD_COLOR,
+                                 const glm::dvec2& offset = {0, 0}) {
+    RendererState& state = prepared(s);
+    glm::u64vec2 sums(0);
+    int number = 0;
+    for (const Camera& camera : cameras_of(s, cameras)) {
+        SCOPED_TRACE(number++);
+        const Frame all = frame(state, s, camera, payload, false, offset);
+        const Frame culled = frame(state, s, camera, payload, true, offset);
+        EXPECT_TRUE(all.pixels == culled.pixels);
+        // Filters may reach over what is next to them without having anything there.
+        if (!s.scene.effects.antialias) {
+            EXPECT_EQ(all.drawn, culled.drawn);
+        }
+        EXPECT_EQ(all.culled, 0U);
+        EXPECT_LE(culled.drawn + culled.culled, state.volume_resources.splat_count * state.plan.sheets_per_splat);
+        sums += glm::u64vec2(culled.culled, state.volume_resources.splat_count);
+    }
+    return sums;
+}
+
+TEST(CullBricks, LosesNothingOfThePicture) {
+    const glm::u64vec2 culled = expect_nothing_lost(waves(), 30);
+    EXPECT_GT(culled.x, culled.y / 5) << "of these pictures a brick in five should be outside";
+}
+
+TEST(CullBricks, LosesNothingWhateverIsDrawn) {
+    PassScene s = waves();
+    EXPECT_GT(expect_nothing_lost(s, 5, shader::PAYLOAD_TAU).x, 0U);
+    EXPECT_GT(expect_nothing_lost(s, 5, shader::PAYLOAD_DEPTH_DISTANCE, {0.5, -0.5}).x, 0U);
+    s.settings.sheets = SheetCut::Sliced;
+    EXPECT_GT(expect_nothing_lost(s, 5).x, 0U);
+    s.settings = layered({});
+    EXPECT_EQ(expect_nothing_lost(s, 5).x, 0U) << "sheets in layers are of all splats";
+    s.settings = {};
+    s.settings.edges = EdgeEstimator::Off;
+    EXPECT_GT(expect_nothing_lost(s, 5).x, 0U);
+    s.settings = {};
+    s.scene.effects.antialias = true;
+    EXPECT_GT(expect_nothing_lost(s, 12).x, 0U);
+    s.scene.effects.antialias = false;
+    s.scene.effects.clip.keep = {Plane{s.volume.geometry.to_world({25, 20, 18}), {0, 0.3, 1}}};
+    EXPECT_GT(expect_nothing_lost(s, 5).x, 0U);
+}
+
+TEST(CullBricks, OfNothingInViewNothingIsGoneThrough) {
+    PassScene s = waves();
+    RendererState& state = prepared(s);
+    look_at(s, {25, -30, 20}, {25, -60, 20}, 40);
+    const Frame away = frame(state, s, s.camera, shader::PAYLOAD_COLOR, true);
+    EXPECT_EQ(away.culled, state.volume_resources.splat_count);
+    EXPECT_EQ(away.drawn, 0U);
+    EXPECT_TRUE(away.pixels == frame(state, s, s.camera, shader::PAYLOAD_COLOR, false).pixels);
+}
+
+TEST(CullBricks, AreThoseOfTheList) {
+    const PassScene s = waves();
+    RendererState& state = prepared(s);
+    const auto records = device_records(state);
+    const glm::ivec3 dims = s.volume.geometry.dims;
+    std::size_t next = 0;
+    for (const SplatBrick& brick : state.volume_resources.bricks.bricks()) {
+        ASSERT_EQ(brick.first, next);
+        EXPECT_GT(brick.count, 0U);
+        for (std::uint32_t i = 0; i < brick.count; ++i, ++next) {
+            const auto voxel = static_cast<int>(records[next].voxel);
+            const glm::ivec3 p(voxel % dims.x, voxel / dims.x % dims.y, voxel / dims.x / dims.y);
+            EXPECT_EQ(glm::clamp(p, brick.box.low, brick.box.high), p);
+        }
+        EXPECT_TRUE(glm::all(glm::lessThan(brick.box.high - brick.box.low, glm::ivec3(8))));
+    }
+    EXPECT_EQ(next, records.size());
+}
+
+TEST(CullBricks, PartsHoldAllThatShows) {
+    // Against every brick by itself; gaps that are shorter than asked for are closed.
+    std::mt19937 random(11);
+    std::vector<SplatBrick> bricks;
+    std::uint32_t first = 0;
+    for (int i = 0; i < 700; ++i) {
+        const glm::ivec3 low = 8 * glm::ivec3(i % 9, i / 9 % 10, i / 90);
+        bricks.push_back({{low, low + 7}, first, 1 + static_cast<std::uint32_t>(random() % 60)});
+        first += bricks.back().count;
+    }
+    SplatBricks tree;
+    tree.assign(bricks);
+    EXPECT_EQ(tree.count(), bricks.size());
+    const PassScene s = waves();
+    for (const Camera& camera : cameras_of(s, 40)) {
+        const ViewVolume view(s.volume.geometry, camera, {64, 48});
+        const std::vector<ListPart> exact = tree.in_view(view, 2, 1), parts = tree.in_view(view, 2, 64);
+        std::vector<bool> in_exact(first), in_parts(first);
+        for (const ListPart& part : exact)
+            std::fill(in_exact.begin() + part.first, in_exact.begin() + part.end, true);
+        for (const ListPart& part : parts)
+            std::fill(in_parts.begin() + part.first, in_parts.begin() + part.end, true);
+        for (const SplatBrick& brick : bricks) {
+            const bool shows = view.shows(brick.box.low, brick.box.high - brick.box.low + 1, 2);
+            for (std::uint32_t i = brick.first; i < brick.first + brick.count; ++i) {
+                ASSERT_EQ(in_exact[i], shows);
+                ASSERT_TRUE(in_parts[i] || !shows);
+            }
+        }
+        std::uint64_t looked_at = 0;
+        for (const glm::uvec2& batch : batches_of(parts)) {
+            EXPECT_TRUE(batch.y > 0 && batch.y <= shader::SPLAT_BATCH);
+            looked_at += batch.y;
+        }
+        EXPECT_EQ(looked_at, static_cast<std::uint64_t>(std::ranges::count(in_parts, true)));
+        EXPECT_LE(batches_of(parts).size() * shader::SPLAT_BATCH, first + shader::SPLAT_BATCH - 1);
+        for (std::size_t i = 1; i < parts.size(); ++i)
+            EXPECT_GE(parts[i].first - parts[i - 1].end, 64U);
+    }
+}
+
+}  // namespace
+}  // namespace edgesplat::test
