@@ -162,23 +162,24 @@ std::vector<Effect> settings_effects() {
                     .resized = {"tile order", "tile entries"},
                     .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}, {shader::SPEC_GROUP, "SPEC_GROUP", 256}},
                     .frame_fields = {"tile_finest"}});
-    rows.push_back({.name = "buried voxels",
-                    .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
-                    .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        const bool keep = r.outputs.tau || eye_in_opaque(*r.volume, r.scene, r.camera);
-                        const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keep);
-                        if (!plan.buried) return "";
-                        return fmt::format("what lies {} voxels behind an opaque surface cannot be seen",
-                                           plan.params.bury_distance);
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.cull_buried = true; },
-                    .base = make_opaque,
-                    .passes = {"1a_mark_buried"},
-                    .resources = {"buried mask"},
-                    .resized = {"splat list", "sheets of splats", "splat order", "prepared splats"},
-                    .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
-                    .scene_fields = {"opaque_mask", "bury_distance"}});
+    rows.push_back(
+        {.name = "buried voxels",
+         .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
+         .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const bool keep = r.outputs.tau || eye_in_opaque(*r.volume, r.scene, r.camera);
+             const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keep);
+             if (!plan.buried) return "";
+             return fmt::format("what lies {} voxels behind an opaque surface cannot be seen",
+                                plan.params.bury_distance);
+         },
+         .turn_on = [](FrameRequest& r) { r.settings.cull_buried = true; },
+         .base = make_opaque,
+         .passes = {"1a_mark_buried"},
+         .resources = {"buried mask"},
+         .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "prepared splats"},
+         .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
+         .scene_fields = {"opaque_mask", "bury_distance"}});
     return rows;
 }
 

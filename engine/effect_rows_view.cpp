@@ -32,8 +32,8 @@ std::vector<Effect> view_effects() {
                  make_opaque(r);
                  r.settings.cull_buried = true;
              },
-         .resized = {"splat list", "sheets of splats", "splat order", "sort counters", "tiles of splats",
-                     "pairs of sheets", "sheet starts", "chunks of sheets", "prepared splats"},
+         .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "sort counters",
+                     "tiles of splats", "pairs of sheets", "sheet starts", "chunks of sheets", "prepared splats"},
          .constants = {{shader::SPEC_CLIP_KEEP, "SPEC_CLIP_KEEP"}, {shader::SPEC_CLIP_REMOVE, "SPEC_CLIP_REMOVE"}},
          .frame_fields = {"clip_keep", "clip_remove"},
          .scene_fields = {"clip_keep", "clip_remove"}});
