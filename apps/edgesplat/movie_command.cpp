@@ -9,8 +9,10 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <thread>
 
 #include "apps/device_options.h"
+#include "apps/edgesplat/frame_writer.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/movie_encoder.h"
 #include "apps/edgesplat/movie_folder.h"
@@ -32,6 +34,8 @@ using edgesplat::fail;
 using edgesplat::SceneDocument;
 
 constexpr int kMostFrames = 1'000'000;
+// Drawn frames that are encoded at a time while the next is drawn, one a processor at most.
+constexpr unsigned kMostFramesInFlight = 8;
 
 /// First and last frame, both included.
 struct FrameRange {
@@ -153,7 +157,8 @@ nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& 
             {"device", fmt::format("{}, {} {}", device.name, device.driver, device.driver_version)}};
 }
 
-void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file) {
+/// Draws a frame, and leaves the rest to the writer.
+void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file, FrameWriter& writer) {
     const double time = film.path.keys.front().time + frame / film.fps;
     const edgesplat::Scene scene = scene_at(film, time);
     const edgesplat::Camera camera = camera_at(film.path, time);
@@ -164,10 +169,12 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
         casts_rays(output.renderer)
             ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
             : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
-    const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
-                                            {"edgesplat:volume", film.document.volume.path},
-                                            {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
-    edgesplat::write_files(picture_files(file, frames, metadata));
+    edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
+                                      {"edgesplat:volume", film.document.volume.path},
+                                      {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
+    writer.add([file, metadata, drawn = std::make_shared<const std::vector<RenderedFrame>>(std::move(frames))] {
+        return picture_files(file, *drawn, metadata);
+    });
 }
 
 /// Frames that are there, and those that are missing and this rank's to make: every N-th of N ranks.
@@ -201,23 +208,28 @@ bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path
     const std::size_t all = there + missing.size();
     using Clock = std::chrono::steady_clock;
     ProgressBar bar(quiet);
+    FrameWriter writer(std::clamp(std::thread::hardware_concurrency(), 1U, kMostFramesInFlight));
+    bool whole = true;
     const auto start = Clock::now();
     renderer.set_interruption([&] { return stop.asked(); });
     for (std::size_t done = 0; done < missing.size(); ++done) {
-        if (stop.asked()) return false;
+        whole = !stop.asked();
+        if (!whole) break;
         const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
         const double left =
             done == 0 ? 0 : seconds / static_cast<double>(done) * static_cast<double>(missing.size() - done);
         bar.update(static_cast<double>(there + done) / static_cast<double>(all), left,
                    fmt::format("frame {} of {}", there + done + 1, all));
         try {
-            make_frame(film, renderer, missing[done], folder / pattern.name(missing[done]));
+            make_frame(film, renderer, missing[done], folder / pattern.name(missing[done]), writer);
         } catch (const edgesplat::Interrupted&) {
-            return false;
+            whole = false;
+            break;
         }
     }
     renderer.set_interruption({});
-    return true;
+    writer.finish();
+    return whole;
 }
 
 /// Once all frames are there; false where it was stopped.
