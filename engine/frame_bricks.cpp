@@ -29,27 +29,42 @@ std::span<const SplatBrick> SplatBricks::bricks() const {
     return levels_.empty() ? std::span<const SplatBrick>() : levels_.front();
 }
 
-std::vector<ListPart> SplatBricks::in_view(const ViewVolume& view, double reach, std::uint32_t least_gap) const {
-    std::vector<ListPart> parts;
-    if (!levels_.empty()) add_in_view(view, reach, least_gap, levels_.size() - 1, 0, parts);
-    return parts;
+std::vector<std::uint32_t> SplatBricks::in_view(const ViewVolume& view, double reach) const {
+    std::vector<std::uint32_t> numbers;
+    if (!levels_.empty()) add_in_view(view, reach, levels_.size() - 1, 0, numbers);
+    return numbers;
 }
 
-void SplatBricks::add_in_view(const ViewVolume& view, double reach, std::uint32_t least_gap, std::size_t level,
-                              std::size_t node, std::vector<ListPart>& parts) const {
+void SplatBricks::add_in_view(const ViewVolume& view, double reach, std::size_t level, std::size_t node,
+                              std::vector<std::uint32_t>& numbers) const {
     const SplatBrick& here = levels_[level][node];
     const glm::ivec3 size = here.box.high - here.box.low + 1;
     if (!view.shows(here.box.low, size, reach)) return;
     if (level > 0 && !view.holds(here.box.low, size, reach)) {
         const std::size_t end = std::min((node + 1) * kFanout, levels_[level - 1].size());
         for (std::size_t child = node * kFanout; child < end; ++child)
-            add_in_view(view, reach, least_gap, level - 1, child, parts);
+            add_in_view(view, reach, level - 1, child, numbers);
         return;
     }
-    if (!parts.empty() && here.first - parts.back().end < least_gap)
-        parts.back().end = here.first + here.count;
-    else
-        parts.push_back({here.first, here.first + here.count});
+    std::size_t first = node, end = node + 1;
+    for (std::size_t above = level; above > 0; --above) {
+        first *= kFanout;
+        end = std::min(end * kFanout, levels_[above - 1].size());
+    }
+    for (std::size_t i = first; i < end; ++i)
+        numbers.push_back(static_cast<std::uint32_t>(i));
+}
+
+std::vector<ListPart> SplatBricks::parts_of(std::span<const std::uint32_t> numbers, std::uint32_t least_gap) const {
+    std::vector<ListPart> parts;
+    for (const std::uint32_t number : numbers) {
+        const SplatBrick& brick = levels_.front()[number];
+        if (!parts.empty() && brick.first - parts.back().end < least_gap)
+            parts.back().end = brick.first + brick.count;
+        else
+            parts.push_back({brick.first, brick.first + brick.count});
+    }
+    return parts;
 }
 
 std::vector<glm::uvec2> batches_of(std::span<const ListPart> parts) {

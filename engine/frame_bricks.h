@@ -30,13 +30,16 @@ class SplatBricks {
     std::size_t count() const { return levels_.empty() ? 0 : levels_.front().size(); }
     std::span<const SplatBrick> bricks() const;
 
-    /// Parts of the list that hold all splats which show, no kernel reaching further than `reach` voxels. Gaps between
-    /// them are at least `least_gap` splats long.
-    std::vector<ListPart> in_view(const ViewVolume& view, double reach, std::uint32_t least_gap) const;
+    /// Numbers of the bricks that show, no kernel reaching further than `reach` voxels; ascending.
+    std::vector<std::uint32_t> in_view(const ViewVolume& view, double reach) const;
+
+    /// Parts of the list that hold the splats of these bricks, which ascend. Gaps between them are at least `least_gap`
+    /// splats long.
+    std::vector<ListPart> parts_of(std::span<const std::uint32_t> numbers, std::uint32_t least_gap) const;
 
   private:
-    void add_in_view(const ViewVolume& view, double reach, std::uint32_t least_gap, std::size_t level, std::size_t node,
-                     std::vector<ListPart>& parts) const;
+    void add_in_view(const ViewVolume& view, double reach, std::size_t level, std::size_t node,
+                     std::vector<std::uint32_t>& numbers) const;
 
     std::vector<std::vector<SplatBrick>> levels_;  ///< bricks, then what holds several of the level before
 };

@@ -19,30 +19,30 @@ void go_through(FramePlan& plan, std::uint32_t slots) {
 
 void draw_first(FramePlan& plan, std::uint32_t splats) {
     plan.params.splat_count = splats;
+    plan.looked_at = splats;
     plan.variant.culled = false;
+    plan.bricks.clear();
     plan.batches.clear();
     go_through(plan, splats);
 }
 
-void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view, double reach) {
+void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view) {
     // Layers are drawn by the sheet of each splat, not of each slot.
     if (!plan.variant.tiles) return;
-    // With gaps no shorter than a batch there are no more slots than splats, but for less than a batch.
-    const std::vector<ListPart> parts = bricks.in_view(view, reach, shader::SPLAT_BATCH);
-    std::vector<glm::uvec2> batches = batches_of(parts);
-    const auto slots = static_cast<std::uint32_t>(batches.size()) * shader::SPLAT_BATCH;
-    if (slots >= plan.params.splat_count) return;
-    plan.variant.culled = true;
-    plan.batches = std::move(batches);
-    go_through(plan, slots);
+    plan.bricks = bricks.in_view(view, plan.reach);
+    draw_bricks(plan, bricks, plan.bricks);
 }
 
-std::uint64_t culled_splats(const FramePlan& plan) {
-    if (!plan.variant.culled) return 0;
-    std::uint64_t looked_at = 0;
+void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers) {
+    // With gaps no shorter than a batch there are no more slots than splats, but for less than a batch.
+    plan.batches = batches_of(bricks.parts_of(numbers, shader::SPLAT_BATCH));
+    const auto slots = static_cast<std::uint32_t>(plan.batches.size()) * shader::SPLAT_BATCH;
+    plan.variant.culled = slots < plan.params.splat_count;
+    if (!plan.variant.culled) plan.batches.clear();
+    plan.looked_at = plan.variant.culled ? 0 : plan.params.splat_count;
     for (const glm::uvec2& batch : plan.batches)
-        looked_at += batch.y;
-    return plan.params.splat_count - looked_at;
+        plan.looked_at += batch.y;
+    go_through(plan, plan.variant.culled ? slots : plan.params.splat_count);
 }
 
 }  // namespace edgesplat

@@ -33,6 +33,7 @@ glm::ivec2 slab_of_part(const VolumeGeometry& geometry, const Camera& camera, do
 struct Division {
     SheetPart part;
     std::optional<glm::ivec2> slab;  ///< numbered from the eye on; absent: by pairs
+    bool goes_on = false;            ///< behind what is drawn already
 
     /// As a picture counts its sheets: from `base` on, with `pairs` in each.
     glm::uvec2 sheets(std::span<const std::uint32_t> pairs, int base) const;

@@ -401,6 +401,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
     p.tile_blocks = tile_blocks(p.tiles);
     draw_first(plan, static_cast<std::uint32_t>(splat_count));
+    plan.reach = farthest_reach;
     p.size = size;
     // Optical depth is wanted whole, and what accumulates then is no opacity.
     p.saturation =

@@ -59,19 +59,21 @@ struct FramePlan {
     bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
-    std::vector<glm::uvec2> batches;     ///< FrameParams::batches; where bricks are culled
+    double reach = 0;                    ///< no kernel reaches further, voxels
+    std::vector<std::uint32_t> bricks;   ///< numbers of those in view, where bricks are culled
+    std::vector<glm::uvec2> batches;     ///< FrameParams::batches, likewise
+    std::uint64_t looked_at = 0;         ///< splats that were gone through, and are
     shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
 };
 
 /// The picture is then of the first `splats` of the list alone, none of its bricks being culled.
 void draw_first(FramePlan& plan, std::uint32_t splats);
 
-/// Leaves out what no brick in view holds, if that is something and sheets are summed tile by tile. No kernel reaches
-/// further than `reach` voxels.
-void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view, double reach);
+/// Leaves out what no brick in view holds, if that is something and sheets are summed tile by tile.
+void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view);
 
-/// How many splats that left out.
-std::uint64_t culled_splats(const FramePlan& plan);
+/// The picture is then of the splats of these bricks, which ascend, if those are fewer than all.
+void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers);
 
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
 /// come from the collection; no kernel reaches further than `farthest_reach` voxels.

@@ -127,9 +127,11 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
                   const Division& division) {
     const auto& p = plan.params;
     commands.run([&] {
-        for (const gpu::Buffer* zeroed :
-             {&targets.counters, &targets.sheet_pairs, &targets.tile_closed, &targets.output})
+        for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
             commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
+        if (!division.goes_on)
+            for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
+                commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
         if (plan.refined)
             commands.raw().fillBuffer(targets.tile_finest.handle(), 0, VK_WHOLE_SIZE,
                                       std::bit_cast<std::uint32_t>(1e30F));

@@ -188,7 +188,7 @@ FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, 
     FramePlan out = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                                volume_resources.box_low, volume_resources.box_high, reach);
     const double pixels = out.variant.antialias ? pixels_of_filter(camera, size, kKernelRadius) : 1;
-    if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, pixels}, reach);
+    if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, pixels});
     return out;
 }
 
@@ -210,8 +210,10 @@ void RendererState::draw_planned() {
     }
     const passes::TileDraw how{.rounds = device.is_software(), .count = counting, .part = exchange != nullptr};
     if (exchange) return draw_part(how);
+    draw_times.clear();
+    if (draw_front_first(how)) return;
     const Chunks chunks = sort_frame(commands, plan, targets);
-    draw_times = commands.span_times();
+    add_times(draw_times, commands.span_times());
     plan.refined = plan.refined && worth_refining(chunks);
     provide_chunks(chunks);
     std::function<void()> between;
@@ -333,7 +335,9 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     result.stats.device = self.device.info();
     result.stats.voxels = self.volume->geometry.voxel_count();
     result.stats.splats_collected = self.volume_resources.splat_count;
-    result.stats.splats_culled = culled_splats(self.plan);
+    // What is looked at twice has been looked at.
+    result.stats.splats_culled =
+        self.volume_resources.splat_count - std::min(self.plan.looked_at, self.volume_resources.splat_count);
     result.stats.edge_splats = self.volume_resources.edge_splat_count;
     result.stats.device_bytes = self.device.allocated_bytes();
     for (const auto& [name, allocation] : self.device.allocations())

@@ -148,6 +148,9 @@ struct RendererState : DeviceState, SplatSet {
 
     /// The same as `plan` says.
     void draw_planned();
+    /// The same in two parts, the second without bricks that the first one hides; false where that saves nothing, and
+    /// nothing is drawn.
+    bool draw_front_first(const passes::TileDraw& how);
     /// Throws Error naming the pass and the splat where something is no finite number: in the list, in the picture.
     void check_splats();
     void check_picture();
@@ -177,6 +180,8 @@ struct RendererState : DeviceState, SplatSet {
     double patience = std::numeric_limits<double>::infinity();  ///< see Renderer::set_patience
     std::function<bool()> interruption;                         ///< see Renderer::set_interruption
     bool culls = true;  ///< what lies outside the picture brick by brick is left out
+    /// And what is hidden, of so many splats in view: selecting and sorting fewer twice takes longer than all once.
+    std::uint64_t least_hiding = std::uint64_t{1} << 16U;
     FootprintResources footprint_resources;
     TargetResources targets;
     std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way

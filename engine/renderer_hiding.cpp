@@ -1,0 +1,60 @@
+// RendererState: pictures without the bricks that what is in front of them hides.
+#include <algorithm>
+#include <limits>
+
+#include "engine/frame_hiding.h"
+#include "engine/gpu/read_back.h"
+#include "engine/renderer_state.h"
+
+namespace edgesplat {
+
+bool RendererState::draw_front_first(const passes::TileDraw& how) {
+    // Elsewhere than on the processor itself, waiting in between may take longer than what it spares.
+    if (!device.is_software() || !collected || !collected->buried) return false;
+    const auto divided = divide_front(plan, volume_resources.bricks, least_hiding);
+    if (!divided) return false;
+    std::function<void()> between;
+    if (interruption) between = [this] { heed_interruption(); };
+    const FramePlan whole = plan;
+    draw_bricks(plan, volume_resources.bricks, divided->front);
+    provide_targets(plan);
+    Chunks chunks = sort_frame(commands, plan, targets, {{}, glm::ivec2(0, divided->sheet)});
+    draw_times = commands.span_times();
+    if (whole.refined && worth_refining(chunks)) {
+        plan = whole;
+        provide_targets(plan);
+        return false;
+    }
+    plan.refined = false;
+    const auto draw = [&](bool part) {
+        passes::TileDraw of_part = how;
+        of_part.part = part;
+        provide_chunks(chunks);
+        add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
+                                         of_part, between));
+    };
+    draw(true);
+    const auto counts = targets.drawn.mapped<std::uint32_t>(3);
+    const std::uint32_t evaluated = counts[1], of_open = counts[2];
+    const auto in_front = static_cast<std::uint32_t>(chunks.entries);
+    const auto pairs_now = targets.sheet_pairs.mapped<std::uint32_t>(plan.params.sheet_count);
+    const std::vector<std::uint32_t> pairs(pairs_now.begin(), pairs_now.begin() + chunks.sheets.y);
+    const std::uint64_t looked_at = plan.looked_at;
+    const auto closed = gpu::read_back<std::uint32_t>(device, commands, targets.tile_closed, 0, tile_count(plan));
+
+    draw_bricks(plan, volume_resources.bricks, not_hidden(plan, volume_resources.bricks, divided->rest, closed));
+    provide_targets(plan);
+    chunks =
+        sort_frame(commands, plan, targets, {{}, glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), true});
+    add_times(draw_times, commands.span_times());
+    draw(false);
+    // What is known of the picture is of both parts.
+    plan.looked_at += looked_at;
+    std::ranges::copy(pairs, pairs_now.begin());
+    counts[0] = in_front + static_cast<std::uint32_t>(chunks.entries);
+    counts[1] += evaluated;
+    counts[2] += of_open;
+    return true;
+}
+
+}  // namespace edgesplat
