@@ -203,6 +203,13 @@ std::optional<CollectedBlock> list_block(const gpu::Device& device, gpu::Command
     return out;
 }
 
+/// The list is of this block alone.
+void hold_list(CollectedBlock& collected, VolumeResources& resources) {
+    resources.box_low = collected.low;
+    resources.box_high = collected.high;
+    resources.bricks.assign(std::move(collected.bricks));
+}
+
 }  // namespace
 
 std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Commands& commands,
@@ -269,9 +276,7 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     run([&] { count_block(commands, collect_inputs(plan)); });
     auto collected = list_block(device, commands, plan, whole, true, kMostSplats, resources);
     add_times(times, collected->times);
-    resources.box_low = collected->low;
-    resources.box_high = collected->high;
-    resources.bricks.assign(std::move(collected->bricks));
+    hold_list(*collected, resources);
     return times;
 }
 
@@ -280,9 +285,7 @@ std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& c
     const CollectionBlock whole = whole_block(plan.dims);
     prepare_collection(device, commands, bindings, plan, whole, resources);
     auto collected = collect_block(device, commands, plan, whole, true, kMostSplats, resources);
-    resources.box_low = collected->low;
-    resources.box_high = collected->high;
-    resources.bricks.assign(std::move(collected->bricks));
+    hold_list(*collected, resources);
     return collected->times;
 }
 

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+
+#include "footprints/kernel.h"
 
 namespace edgesplat {
 namespace {
@@ -35,8 +36,8 @@ glm::ivec2 sheets_of(const FramePlan& plan, const glm::dvec2& depths) {
     return {std::max(static_cast<int>(sheets.x) - 1, 0), static_cast<int>(sheets.y) + 2};
 }
 
-/// Tiles x0, y0, x1, y1, half open, that a box may show in; all of them where it reaches the eye's plane.
-glm::ivec4 tiles_of(const FramePlan& plan, const WideBox& box) {
+/// Tiles x0, y0, x1, y1, half open, that a box may show in; nothing where it reaches the eye's plane.
+std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
     const auto& p = plan.params;
     const glm::dvec2 size(p.size), tan_half(p.tan_half_x, p.tan_half_y);
     glm::dvec2 low(size), high(0);
@@ -44,7 +45,7 @@ glm::ivec4 tiles_of(const FramePlan& plan, const WideBox& box) {
         const glm::bvec3 far((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
         const glm::dvec3 at = box.middle + glm::mix(-box.half, box.half, far);
         const double depth = glm::dot(glm::dvec3(p.view_z), at) + static_cast<double>(p.anchor_z);
-        if (!(depth > 0)) return {0, 0, p.tiles};
+        if (!(depth > 0)) return std::nullopt;
         const glm::dvec2 view(glm::dot(glm::dvec3(p.view_x), at) + static_cast<double>(p.anchor_x),
                               glm::dot(glm::dvec3(p.view_y), at) + static_cast<double>(p.anchor_y));
         const glm::dvec2 pixel = (view / depth / tan_half * 0.5 + 0.5) * size;
@@ -54,7 +55,7 @@ glm::ivec4 tiles_of(const FramePlan& plan, const WideBox& box) {
     constexpr double kTile = shader::TILE;
     low = glm::clamp(glm::floor(low), glm::dvec2(0), size);
     high = glm::clamp(glm::ceil(high), low, size);
-    return {glm::floor(low / kTile), glm::ceil(high / kTile)};
+    return glm::ivec4(glm::floor(low / kTile), glm::ceil(high / kTile));
 }
 
 /// Tiles that a splat of the middle of a box touches.
@@ -62,7 +63,8 @@ double tiles_of_splat(const FramePlan& plan, double depth) {
     const auto& p = plan.params;
     const glm::dmat3 to_world(p.index_to_world);
     const double voxel = std::max({glm::length(to_world[0]), glm::length(to_world[1]), glm::length(to_world[2])});
-    const double pixels = 3.2 * voxel / std::max(depth, 1e-6) * p.size.y / (2 * static_cast<double>(p.tan_half_y));
+    const double pixels =
+        2 * kKernelRadius * voxel / std::max(depth, 1e-6) * p.size.y / (2 * static_cast<double>(p.tan_half_y));
     const double across = 1 + pixels / shader::TILE;
     return across * across;
 }
@@ -106,30 +108,29 @@ std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBrick
     return out;
 }
 
-std::vector<std::uint32_t> not_hidden(const FramePlan& plan, const SplatBricks& bricks,
-                                      std::span<const std::uint32_t> rest, std::span<const std::uint32_t> closed) {
+OpenTiles::OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> closed) : plan_(&plan) {
     constexpr int kTile = static_cast<int>(shader::TILE);
-    // Open tiles above and left of each corner between tiles.
     const glm::ivec2 tiles = plan.params.tiles;
-    const auto across = static_cast<std::size_t>(tiles.x) + 1;
-    std::vector<std::uint32_t> open(across * (static_cast<std::size_t>(tiles.y) + 1));
-    const auto at = [&](int x, int y) -> std::uint32_t& {
-        return open[static_cast<std::size_t>(y) * across + static_cast<std::size_t>(x)];
-    };
+    open_.resize((static_cast<std::size_t>(tiles.x) + 1) * (static_cast<std::size_t>(tiles.y) + 1));
+    std::size_t tile = 0;
     for (int y = 0; y < tiles.y; ++y)
-        for (int x = 0; x < tiles.x; ++x) {
+        for (int x = 0; x < tiles.x; ++x, ++tile) {
             const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), plan.params.size - kTile * glm::ivec2(x, y));
-            const std::size_t tile =
-                static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles.x) + static_cast<std::size_t>(x);
             const bool takes_more = closed[tile] != static_cast<std::uint32_t>(pixels.x * pixels.y);
-            at(x + 1, y + 1) = at(x, y + 1) + at(x + 1, y) - at(x, y) + (takes_more ? 1U : 0U);
+            open_[corner(x + 1, y + 1)] =
+                open_[corner(x, y + 1)] + open_[corner(x + 1, y)] - open_[corner(x, y)] + (takes_more ? 1U : 0U);
         }
-    std::vector<std::uint32_t> shown;
-    std::ranges::copy_if(rest, std::back_inserter(shown), [&](std::uint32_t number) {
-        const glm::ivec4 box = tiles_of(plan, WideBox(plan, bricks.bricks()[number].box));
-        return at(box.z, box.w) + at(box.x, box.y) != at(box.x, box.w) + at(box.z, box.y);
-    });
-    return shown;
+}
+
+bool OpenTiles::may_show(const RunBox& box) const {
+    const auto tiles = tiles_of(*plan_, WideBox(*plan_, box));
+    return !tiles || open_[corner(tiles->z, tiles->w)] + open_[corner(tiles->x, tiles->y)] !=
+                         open_[corner(tiles->x, tiles->w)] + open_[corner(tiles->z, tiles->y)];
+}
+
+std::size_t OpenTiles::corner(int x, int y) const {
+    return static_cast<std::size_t>(y) * (static_cast<std::size_t>(plan_->params.tiles.x) + 1) +
+           static_cast<std::size_t>(x);
 }
 
 }  // namespace edgesplat

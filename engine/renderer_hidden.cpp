@@ -1,39 +1,12 @@
 // RendererState: blocks that a picture can do without, since what lies in front of them is opaque.
 #include <algorithm>
-#include <cmath>
 
+#include "engine/frame_hiding.h"
 #include "engine/frame_parts.h"
 #include "engine/gpu/read_back.h"
 #include "engine/renderer_state.h"
 
 namespace edgesplat {
-namespace {
-
-/// Tiles x0, y0, x1, y1, half open, that a block's kernels may show in; nothing where they may reach the eye's plane.
-std::optional<glm::ivec4> tiles_of_block(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size,
-                                         const CollectionBlock& block, double reach) {
-    const CameraFrame view = camera_frame(camera);
-    const glm::dvec2 tan_half(view.tan_half_y * size.x / size.y, view.tan_half_y);
-    const glm::dvec3 from = glm::dvec3(block.core_low) - reach;
-    const glm::dvec3 to = glm::dvec3(block.core_low + block.core_size - 1) + reach;
-    glm::dvec2 low(size), high(0);
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::bvec3 far((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-        const glm::dvec3 v = geometry.to_world(glm::mix(from, to, far)) - view.eye;
-        const double depth = glm::dot(view.forward, v);
-        if (!(depth > 0)) return std::nullopt;
-        const glm::dvec2 slope(glm::dot(view.right, v) / depth, -glm::dot(view.up, v) / depth);
-        const glm::dvec2 pixel = (slope / tan_half * 0.5 + 0.5) * glm::dvec2(size);
-        low = glm::min(low, pixel - 1.0);
-        high = glm::max(high, pixel + 1.0);
-    }
-    constexpr double kTile = shader::TILE;
-    low = glm::clamp(glm::floor(low), glm::dvec2(0), glm::dvec2(size));
-    high = glm::clamp(glm::ceil(high), low, glm::dvec2(size));
-    return glm::ivec4(glm::floor(low / kTile), glm::ceil(high / kTile));
-}
-
-}  // namespace
 
 bool RendererState::may_hide_blocks(const FrameRequest& request) const {
     const Settings drawn = drawn_settings(request);
@@ -67,29 +40,17 @@ void RendererState::leave_hidden_blocks(const FrameRequest& request, std::vector
     plan.params.saturation += 0.2F * (1 - plan.params.saturation);
     plan.refined = false;
     provide_targets(plan);
-    const Chunks chunks = sort_frame(commands, plan, targets, {{}, glm::ivec2(0, sheets.x)});
+    const Chunks chunks = sort_frame(commands, plan, targets, {.slab = glm::ivec2(0, sheets.x)});
     provide_chunks(chunks);
     draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
                {.rounds = device.is_software(), .part = true});
-    const glm::ivec2 tiles = plan.params.tiles, size = request.size;
-    const auto closed =
-        gpu::read_back<std::uint32_t>(device, commands, targets.tile_closed, 0,
-                                      static_cast<std::size_t>(tiles.x) * static_cast<std::size_t>(tiles.y));
+    const OpenTiles open(plan,
+                         gpu::read_back<std::uint32_t>(device, commands, targets.tile_closed, 0, tile_count(plan)));
     release_for_collection();
 
-    constexpr int kTile = static_cast<int>(shader::TILE);
-    const auto is_closed = [&](int x, int y) {
-        const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), size - kTile * glm::ivec2(x, y));
-        return closed[static_cast<std::size_t>(y) * static_cast<std::size_t>(tiles.x) + static_cast<std::size_t>(x)] ==
-               static_cast<std::uint32_t>(pixels.x * pixels.y);
-    };
     const auto is_hidden = [&](std::size_t i) {
-        const auto box = tiles_of_block(geometry, request.camera, size, residence->blocks[i], reach);
-        if (!box) return false;
-        for (int y = box->y; y < box->w; ++y)
-            for (int x = box->x; x < box->z; ++x)
-                if (!is_closed(x, y)) return false;
-        return true;
+        const CollectionBlock& block = residence->blocks[i];
+        return !open.may_show({block.core_low, block.core_low + block.core_size - 1});
     };
     const auto behind = missing.begin() + static_cast<std::ptrdiff_t>(first);
     missing.erase(std::remove_if(behind, missing.end(), is_hidden), missing.end());

@@ -1,5 +1,6 @@
 // RendererState: pictures without the bricks that what is in front of them hides.
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "engine/frame_hiding.h"
@@ -18,7 +19,7 @@ bool RendererState::draw_front_first(const passes::TileDraw& how) {
     const FramePlan whole = plan;
     draw_bricks(plan, volume_resources.bricks, divided->front);
     provide_targets(plan);
-    Chunks chunks = sort_frame(commands, plan, targets, {{}, glm::ivec2(0, divided->sheet)});
+    Chunks chunks = sort_frame(commands, plan, targets, {.slab = glm::ivec2(0, divided->sheet)});
     draw_times = commands.span_times();
     if (whole.refined && worth_refining(chunks)) {
         plan = whole;
@@ -42,10 +43,15 @@ bool RendererState::draw_front_first(const passes::TileDraw& how) {
     const std::uint64_t looked_at = plan.looked_at;
     const auto closed = gpu::read_back<std::uint32_t>(device, commands, targets.tile_closed, 0, tile_count(plan));
 
-    draw_bricks(plan, volume_resources.bricks, not_hidden(plan, volume_resources.bricks, divided->rest, closed));
+    const OpenTiles open(plan, closed);
+    std::vector<std::uint32_t> shown;
+    std::ranges::copy_if(divided->rest, std::back_inserter(shown), [&](std::uint32_t number) {
+        return open.may_show(volume_resources.bricks.bricks()[number].box);
+    });
+    draw_bricks(plan, volume_resources.bricks, shown);
     provide_targets(plan);
-    chunks =
-        sort_frame(commands, plan, targets, {{}, glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), true});
+    chunks = sort_frame(commands, plan, targets,
+                        {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .goes_on = true});
     add_times(draw_times, commands.span_times());
     draw(false);
     // What is known of the picture is of both parts.

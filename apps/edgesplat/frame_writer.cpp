@@ -2,6 +2,16 @@
 
 #include <utility>
 
+FrameWriter::~FrameWriter() {
+    while (!frames_.empty())
+        try {
+            write_first();
+        } catch (...) {
+            // The failure that ends the movie is told already.
+            continue;
+        }
+}
+
 void FrameWriter::add(std::function<std::vector<edgesplat::FileContent>()> encode) {
     while (frames_.size() >= in_flight_)
         write_first();

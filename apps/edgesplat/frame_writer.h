@@ -13,8 +13,8 @@ class FrameWriter {
   public:
     /// At most `in_flight` >= 1 frames are held at a time.
     explicit FrameWriter(std::size_t in_flight) : in_flight_(in_flight) {}
-    /// Waits for what is being encoded, which is not written.
-    ~FrameWriter() = default;
+    /// Writes what is left, as far as it can: frames that are drawn are kept where another one fails.
+    ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;
 

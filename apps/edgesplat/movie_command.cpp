@@ -169,9 +169,9 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
         casts_rays(output.renderer)
             ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
             : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
-    edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
-                                      {"edgesplat:volume", film.document.volume.path},
-                                      {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
+    const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
+                                            {"edgesplat:volume", film.document.volume.path},
+                                            {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
     writer.add([file, metadata, drawn = std::make_shared<const std::vector<RenderedFrame>>(std::move(frames))] {
         return picture_files(file, *drawn, metadata);
     });

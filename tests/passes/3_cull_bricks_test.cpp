@@ -2,6 +2,7 @@
 #include <random>
 
 #include "tests/passes/pass_fixture.h"
+#include "tests/unit/reference_volumes.h"
 
 namespace edgesplat::test {
 namespace {
@@ -10,17 +11,14 @@ namespace {
 PassScene waves() {
     PassScene s;
     s.name = "waves";
-    s.volume.geometry.dims = {52, 44, 37};
-    for (int z = 0; z < 37; ++z)
-        for (int y = 0; y < 44; ++y)
-            for (int x = 0; x < 52; ++x)
-                s.volume.values.push_back(static_cast<float>(std::sin(x / 3.1) * std::cos(y / 2.7) +
-                                                             std::sin(y / 3.3) * std::cos(z / 2.9) +
-                                                             std::sin(z / 3.7) * std::cos(x / 3.5)));
-    s.volume.geometry.index_to_world_axes =
-        glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.4));
+    s.volume = testing_volumes::sampled(
+        {52, 44, 37},
+        [](const glm::dvec3& p) {
+            return std::sin(p.x / 3.1) * std::cos(p.y / 2.7) + std::sin(p.y / 3.3) * std::cos(p.z / 2.9) +
+                   std::sin(p.z / 3.7) * std::cos(p.x / 3.5);
+        },
+        glm::dmat3(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.4)));
     s.volume.geometry.origin = {-20, 12, 7};
-    finish_volume(s.volume);
     s.scene.iso_values = {0.4, 1.1};
     s.scene.materials = {{{0, 0, 0}, 0}, {{0.3, 0.5, 1}, 0.15}, {{1, 0.8, 0.3}, 3}};
     s.scene.lights = {directional_light({0.3, -1, 0.5})};
@@ -137,16 +135,12 @@ TEST(CullBricks, LosesNothingWhateverIsDrawn) {
 PassScene cavities() {
     PassScene s;
     s.name = "cavities";
-    s.volume.geometry.dims = {44, 120, 37};
-    for (int z = 0; z < 37; ++z)
-        for (int y = 0; y < 120; ++y)
-            for (int x = 0; x < 44; ++x) {
-                const double cavity = std::sin(x / 3.1) + std::sin(y / 2.7) + std::sin(z / 2.9);
-                const bool in_wall = (y > 3 && y < 9) || (y > 110 && y < 116);
-                const double hole = 8 - 2 * std::hypot(x - 12.0, z - 25.0);
-                s.volume.values.push_back(static_cast<float>(in_wall ? std::min(-hole, 2.0) : -cavity));
-            }
-    finish_volume(s.volume);
+    s.volume = testing_volumes::sampled({44, 120, 37}, [](const glm::dvec3& p) {
+        const double cavity = std::sin(p.x / 3.1) + std::sin(p.y / 2.7) + std::sin(p.z / 2.9);
+        const bool in_wall = (p.y > 3 && p.y < 9) || (p.y > 110 && p.y < 116);
+        const double hole = 8 - 2 * std::hypot(p.x - 12, p.z - 25);
+        return in_wall ? std::min(-hole, 2.0) : -cavity;
+    });
     s.scene.iso_values = {0.4, 1.1};
     s.scene.materials = {{{0, 0, 0}, 0}, {{0.3, 0.5, 1}, 4}, {{1, 0.8, 0.3}, 3}};
     s.scene.lights = {directional_light({0.3, -1, 0.5})};
