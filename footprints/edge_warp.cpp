@@ -172,18 +172,23 @@ std::vector<Support> covering_supports(const EdgeBand& band, int cells) {
 namespace {
 
 /// Least half-axis across n with which a spheroid of that centre and half-axis along n holds the rims (t, e); infinite
-/// where one lies beyond it.
-double half_axis_across(std::span<const std::array<double, 2>> rims, double shift, double along) {
+/// where one lies beyond it, or the square of the half-axis exceeds `most2`. The rim that says so comes first then,
+/// since it will say so of the next spheroid as well.
+double half_axis_across(std::span<std::array<double, 2>> rims, double shift, double along, double most2) {
     double across2 = 0;
-    for (const auto& [t, e] : rims) {
+    for (auto& rim : rims) {
+        const auto [t, e] = rim;
         const double u = (t - shift) / along, rest = 1 - u * u;
-        if (rest <= 0) return std::numeric_limits<double>::infinity();
-        across2 = std::max(across2, e * e / rest);
+        across2 = rest > 0 ? std::max(across2, e * e / rest) : std::numeric_limits<double>::infinity();
+        if (across2 > most2) {
+            std::swap(rim, rims.front());
+            return std::numeric_limits<double>::infinity();
+        }
     }
     return std::sqrt(across2);
 }
 
-Spheroid smallest_spheroid(std::span<const std::array<double, 2>> rims) {
+Spheroid smallest_spheroid(std::span<std::array<double, 2>> rims) {
     const auto [low, high] = std::ranges::minmax(rims, {}, [](const auto& rim) { return rim[0]; });
     const double middle = (low[0] + high[0]) / 2, half = (high[0] - low[0]) / 2;
     Spheroid best;
@@ -191,8 +196,9 @@ Spheroid smallest_spheroid(std::span<const std::array<double, 2>> rims) {
     for (int i = -20; i <= 20; ++i) {
         for (int j = 1; j <= 40; ++j) {
             const double shift = middle + 0.02 * i * half, along = half * (1 + 0.02 * std::abs(i)) + 0.02 * j * half;
-            const double across = half_axis_across(rims, shift, along);
-            // About what it covers of the screen, seen from anywhere.
+            // About what it covers of the screen, seen from anywhere, is across (across + along).
+            const double most = (std::sqrt(along * along + 4 * least) - along) / 2;
+            const double across = half_axis_across(rims, shift, along, most * most * (1 + 1e-9));
             if (const double cover = across * (across + along); cover < least) {
                 least = cover;
                 best = {shift, along, across};
