@@ -5,20 +5,10 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 
+#include "engine/volume/voxel_box.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
-
-/// Inclusive box of voxels.
-struct RunBox {
-    glm::ivec3 low{0}, high{-1};
-    bool empty() const { return high.x < low.x; }
-    void add(const RunBox& other) {
-        if (other.empty()) return;
-        low = empty() ? other.low : glm::min(low, other.low);
-        high = empty() ? other.high : glm::max(high, other.high);
-    }
-};
 
 /// The runs of a box of voxels: those of bricks that lie side by side are numbered first x, then y, then by slice.
 class BrickRuns {
@@ -30,7 +20,7 @@ class BrickRuns {
 
     std::uint64_t count() const { return in_slice_ * static_cast<std::uint64_t>(size_.z); }
 
-    /// Calls body(low, high, runs, stride) for every brick in the order of the list: an inclusive box of voxels, the
+    /// Calls body(low, high, runs, stride) for every brick in the order of the list: a box of voxels, the
     /// number of its first run and how far from each other those of its slices are.
     template <class Body>
     void each_brick(const Body& body) const {
@@ -41,7 +31,7 @@ class BrickRuns {
                     const std::uint64_t first = in_slice_ * static_cast<std::uint64_t>(low.z) +
                                                 static_cast<std::uint64_t>(y) * static_cast<std::uint64_t>(bricks_.x) +
                                                 static_cast<std::uint64_t>(x);
-                    body(RunBox{low, high}, first, in_slice_);
+                    body(VoxelBox{low, high}, first, in_slice_);
                 }
     }
 

@@ -38,7 +38,7 @@ std::vector<std::uint32_t> SplatBricks::in_view(const ViewVolume& view, double r
 void SplatBricks::add_in_view(const ViewVolume& view, double reach, std::size_t level, std::size_t node,
                               std::vector<std::uint32_t>& numbers) const {
     const SplatBrick& here = levels_[level][node];
-    const glm::ivec3 size = here.box.high - here.box.low + 1;
+    const glm::ivec3 size = here.box.size();
     if (!view.shows(here.box.low, size, reach)) return;
     if (level > 0 && !view.holds(here.box.low, size, reach)) {
         const std::size_t end = std::min((node + 1) * kFanout, levels_[level - 1].size());

@@ -11,7 +11,7 @@ namespace edgesplat {
 
 /// Splats of a brick: they follow one another in the list.
 struct SplatBrick {
-    RunBox box;  ///< holds their voxels
+    VoxelBox box;  ///< holds their voxels
     std::uint32_t first = 0, count = 0;
 };
 

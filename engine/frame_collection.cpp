@@ -22,14 +22,14 @@ void scan_runs(const CollectionBlock& block, VolumeResources& resources, Collect
     const auto offsets = resources.run_offsets.mapped<std::uint32_t>(runs.count());
     std::uint64_t total = resources.splat_count;
     collected.first = total;
-    RunBox box;
-    runs.each_brick([&](const RunBox& voxels, std::uint64_t run, std::uint64_t stride) {
+    VoxelBox box;
+    runs.each_brick([&](const VoxelBox& voxels, std::uint64_t run, std::uint64_t stride) {
         SplatBrick brick{{}, static_cast<std::uint32_t>(total - collected.first), 0};
         for (int z = voxels.low.z; z <= voxels.high.z; ++z, run += stride) {
             const std::uint32_t count = std::exchange(offsets[run], static_cast<std::uint32_t>(total));
             total += count;
             brick.count += count;
-            if (count > 0) brick.box.add({{voxels.low.x, voxels.low.y, z}, {voxels.high.x, voxels.high.y, z}});
+            if (count > 0) brick.box.add(voxels.slice(z));
         }
         if (brick.count == 0) return;
         box.add(brick.box);
@@ -235,9 +235,8 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
 }
 
 std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
-    const glm::ivec3 low = glm::max(changed.low - shader::CHANGE_MARGIN, 0);
-    const glm::u64vec3 size(glm::min(changed.low + changed.size + shader::CHANGE_MARGIN, dims) - low);
-    return size.x * size.y * size.z;
+    const VoxelBox reached = changed.widened(shader::CHANGE_MARGIN);
+    return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
 }
 
 std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
@@ -252,9 +251,9 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     // Estimates and adoptions are both made where either may be others: what is estimated anew has nothing adopted.
     // The passes go further than the core, each as far as it does in a block.
     const auto core_of = [&](int margin) {
-        const int around = shader::CHANGE_MARGIN - margin;
-        params.core_low = changed.low - around;
-        params.core_size = changed.size + 2 * around;
+        const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - margin);
+        params.core_low = core.low;
+        params.core_size = core.size();
         return passes::EdgeRegion{plan.dims, params.core_low, params.core_size};
     };
     std::vector<PassTime> times;

@@ -80,8 +80,8 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
             visible[i] &= buried[i] == 0 ? 1U : 0U;
     }
     SplatCount out{SplatCount::From::Materials};
-    RunBox box;
-    BrickRuns(dims).each_brick([&](const RunBox& brick, std::uint64_t, std::uint64_t) {
+    VoxelBox box;
+    BrickRuns(dims).each_brick([&](const VoxelBox& brick, std::uint64_t, std::uint64_t) {
         for (int z = brick.low.z; z <= brick.high.z; ++z) {
             std::uint64_t count = 0;
             for (int y = brick.low.y; y <= brick.high.y; ++y) {
@@ -91,7 +91,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
                     static_cast<std::uint64_t>(std::count(at + brick.low.x, at + brick.high.x + 1, std::uint8_t{1}));
             }
             out.splats += count;
-            if (count > 0) box.add({{brick.low.x, brick.low.y, z}, {brick.high.x, brick.high.y, z}});
+            if (count > 0) box.add(brick.slice(z));
         }
     });
     out.box_low = box.empty() ? glm::ivec3(0) : box.low;

@@ -16,7 +16,7 @@ constexpr double kMostTwice = 0.3;
 /// Half extents of a box and its middle relative to the anchor, voxels; widened by the kernels' reach.
 struct WideBox {
     glm::dvec3 middle, half;
-    WideBox(const FramePlan& plan, const RunBox& box)
+    WideBox(const FramePlan& plan, const VoxelBox& box)
         : middle(0.5 * glm::dvec3(box.low + box.high) - glm::dvec3(plan.params.anchor)),
           half(0.5 * glm::dvec3(box.high - box.low) + plan.reach) {}
 };
@@ -122,7 +122,7 @@ OpenTiles::OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> close
         }
 }
 
-bool OpenTiles::may_show(const RunBox& box) const {
+bool OpenTiles::may_show(const VoxelBox& box) const {
     const auto tiles = tiles_of(*plan_, WideBox(*plan_, box));
     return !tiles || open_[corner(tiles->z, tiles->w)] + open_[corner(tiles->x, tiles->y)] !=
                          open_[corner(tiles->x, tiles->w)] + open_[corner(tiles->z, tiles->y)];

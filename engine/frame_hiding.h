@@ -25,7 +25,7 @@ class OpenTiles {
     OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> closed);
     /// Whether kernels of the voxels in a box may show in one of them. Never false for a box that reaches the eye's
     /// plane.
-    bool may_show(const RunBox& box) const;
+    bool may_show(const VoxelBox& box) const;
 
   private:
     std::size_t corner(int x, int y) const;

@@ -66,7 +66,7 @@ struct TargetResources {
     gpu::Buffer tile_ranges;    ///< (tiles) uvec2, mapped: parts of tile_entries; 4 -> 5, host
     gpu::Buffer tile_order;  ///< (tiles x groups of each) uint, mapped: longest list first; host -> 5; with rounds only
     gpu::Buffer tile_entries;  ///< (pairs of the largest chunk) uvec2: place in `order`, sheet; 4 -> 5
-    gpu::Buffer tile_marks;    ///< (pairs of the largest chunk) uint: blocks of 4 x 2 pixels of the tile; 4 -> 5
+    gpu::Buffer tile_marks;    ///< (tile_mark_words) uint: which pixels entries are for, BIND_TILE_MARKS; 4 -> 5
     gpu::Buffer tile_closed;   ///< (tiles) uint: pixels that take no more; 5 -> 4
     gpu::Buffer tile_todo;     ///< (tiles) uint, mapped: pixels that are drawn; host, 5 -> 4, 5, host
     gpu::Buffer tiles_seen;    ///< (tiles) uint, mapped: tile_closed; 5 -> host; with refined pixels only

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "footprints/kernel.h"
+
 namespace edgesplat {
 namespace {
 
@@ -15,9 +17,12 @@ glm::dvec2 over_box(const glm::dvec4& plane, const glm::ivec3& low, const glm::i
 
 }  // namespace
 
-ViewVolume::ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size, double pixels) {
+ViewVolume::ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size, bool antialias) {
     const CameraFrame view = camera_frame(camera);
     const double tan_half_x = view.tan_half_y * size.x / size.y;
+    // The pixel's kernel is as wide in pixels as the voxel's in voxels; the picture's sides are passed obliquely.
+    const double slope = std::max(tan_half_x, view.tan_half_y);
+    const double pixels = 1 + (antialias ? kKernelRadius * std::sqrt(1 + slope * slope) : 0);
     const double wide = 1.001 + 2.0 * pixels / std::min(size.x, size.y);
     const glm::dvec3 inward[5] = {
         view.forward * tan_half_x * wide - view.right, view.forward * tan_half_x * wide + view.right,
@@ -40,13 +45,6 @@ bool ViewVolume::holds(const glm::ivec3& low, const glm::ivec3& size, double rea
         const glm::dvec2 values = over_box(plane, low, size, reach);
         return values.x - values.y >= 0;
     });
-}
-
-double pixels_of_filter(const Camera& camera, const glm::ivec2& size, double support) {
-    const double tan_half_y = camera_frame(camera).tan_half_y;
-    const double widest = tan_half_y * std::max(1.0, static_cast<double>(size.x) / size.y);
-    // A plane through the eye of that slope is passed obliquely.
-    return 1 + support * std::sqrt(1 + widest * widest);
 }
 
 }  // namespace edgesplat

@@ -187,8 +187,7 @@ FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, 
     const double reach = draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius;
     FramePlan out = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                                volume_resources.box_low, volume_resources.box_high, reach);
-    const double pixels = out.variant.antialias ? pixels_of_filter(camera, size, kKernelRadius) : 1;
-    if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, pixels});
+    if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, out.variant.antialias});
     return out;
 }
 
@@ -215,6 +214,10 @@ void RendererState::draw_planned() {
     const Chunks chunks = sort_frame(commands, plan, targets);
     add_times(draw_times, commands.span_times());
     plan.refined = plan.refined && worth_refining(chunks);
+    draw_chunks(chunks, how);
+}
+
+void RendererState::draw_chunks(const Chunks& chunks, const passes::TileDraw& how) {
     provide_chunks(chunks);
     std::function<void()> between;
     if (interruption) between = [this] { heed_interruption(); };

@@ -82,7 +82,7 @@ struct RenderStats {
     double frame_milliseconds = 0;  ///< wall clock from submit to finish
     std::uint64_t voxels_estimated = 0;  ///< whose edges were found for this picture, those around blocks among them
     std::uint64_t voxels = 0, splats_collected = 0, splats_drawn = 0, edge_splats = 0;
-    std::uint64_t splats_culled = 0;  ///< never looked at, since their bricks lie outside the picture
+    std::uint64_t splats_culled = 0;  ///< never looked at: their bricks lie outside the picture, or are hidden
     std::uint32_t sheets = 0, sheet_groups = 0;
     int level = 0;         ///< resolution of the volume that was drawn: voxels of 2^level along each axis
     int wanted_level = 0;  ///< that would have been, had its splats fitted into the memory

@@ -215,10 +215,8 @@ void RendererState::begin_blocks(const CollectionPlan& wanted) {
 }
 
 std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request) {
-    const Settings drawn = drawn_settings(request);
-    const double reach = farthest_reach(drawn);
-    const double pixels = request.scene.effects.antialias ? pixels_of_filter(request.camera, request.size, reach) : 1;
-    const ViewVolume view(volume->geometry, request.camera, request.size, pixels);
+    const ViewVolume view(volume->geometry, request.camera, request.size, request.scene.effects.antialias);
+    const double reach = farthest_reach(drawn_settings(request));
     std::vector<std::size_t> shown;
     for (std::size_t i = 0; i < residence->blocks.size(); ++i) {
         const CollectionBlock& block = residence->blocks[i];
@@ -324,8 +322,7 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         if (!held && drop_blocks(needed, false)) held = collect();
         if (!held) return Gathered::TooMany;
         add_times(collection_times, held->times);
-        const glm::u64vec3 size(block.size);
-        if (wanted.edge_field) voxels_estimated += size.x * size.y * size.z;
+        if (wanted.edge_field) voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
     }
     bound_held_blocks();
     return Gathered::All;

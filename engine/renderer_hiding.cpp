@@ -14,8 +14,6 @@ bool RendererState::draw_front_first(const passes::TileDraw& how) {
     if (!device.is_software() || !collected || !collected->buried) return false;
     const auto divided = divide_front(plan, volume_resources.bricks, least_hiding);
     if (!divided) return false;
-    std::function<void()> between;
-    if (interruption) between = [this] { heed_interruption(); };
     const FramePlan whole = plan;
     draw_bricks(plan, volume_resources.bricks, divided->front);
     provide_targets(plan);
@@ -27,14 +25,9 @@ bool RendererState::draw_front_first(const passes::TileDraw& how) {
         return false;
     }
     plan.refined = false;
-    const auto draw = [&](bool part) {
-        passes::TileDraw of_part = how;
-        of_part.part = part;
-        provide_chunks(chunks);
-        add_times(draw_times, draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
-                                         of_part, between));
-    };
-    draw(true);
+    passes::TileDraw front = how;
+    front.part = true;
+    draw_chunks(chunks, front);
     const auto counts = targets.drawn.mapped<std::uint32_t>(3);
     const std::uint32_t evaluated = counts[1], of_open = counts[2];
     const auto in_front = static_cast<std::uint32_t>(chunks.entries);
@@ -53,7 +46,7 @@ bool RendererState::draw_front_first(const passes::TileDraw& how) {
     chunks = sort_frame(commands, plan, targets,
                         {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .goes_on = true});
     add_times(draw_times, commands.span_times());
-    draw(false);
+    draw_chunks(chunks, how);
     // What is known of the picture is of both parts.
     plan.looked_at += looked_at;
     std::ranges::copy(pairs, pairs_now.begin());

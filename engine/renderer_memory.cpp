@@ -9,7 +9,7 @@ void RendererState::provide_volume() {
     if (!volume_resources.volume) return upload_volume(*this);
     if (!changed) return;
     const std::vector<float> samples = scaled_box(*volume, *changed);
-    upload_box(commands, device, volume_resources.volume, changed->low, changed->size, samples.data(), sizeof(float));
+    upload_box(commands, device, volume_resources.volume, changed->low, changed->size(), samples.data(), sizeof(float));
 }
 
 bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
@@ -23,7 +23,9 @@ bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
     raycast.reset();
     original = volume = next;
     levels = {next};
-    if (box->size.x > 0) changed = changed ? around(*changed, *box) : *box;
+    if (!changed) changed.emplace();
+    changed->add(*box);
+    if (changed->empty()) changed.reset();
     return true;
 }
 

@@ -148,6 +148,8 @@ struct RendererState : DeviceState, SplatSet {
 
     /// The same as `plan` says.
     void draw_planned();
+    /// What follows the sort of a tiled picture.
+    void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);
     /// The same in two parts, the second without bricks that the first one hides; false where that saves nothing, and
     /// nothing is drawn.
     bool draw_front_first(const passes::TileDraw& how);

@@ -1,4 +1,5 @@
-// For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels its sheet group.
+// For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels
+// its sheet group.
 // docs/method.md, pass 3.
 #version 460
 #extension GL_GOOGLE_include_directive : require

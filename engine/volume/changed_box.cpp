@@ -12,11 +12,6 @@ bool same_grid(const VolumeGeometry& a, const VolumeGeometry& b) {
 
 }  // namespace
 
-VoxelBox around(const VoxelBox& a, const VoxelBox& b) {
-    const glm::ivec3 low = glm::min(a.low, b.low);
-    return {low, glm::max(a.low + a.size, b.low + b.size) - low};
-}
-
 std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
     const bool comparable = same_grid(before.geometry, now.geometry) && before.min_value == now.min_value &&
                             before.max_value == now.max_value && !before.values.empty() &&
@@ -24,7 +19,7 @@ std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
     if (!comparable) return std::nullopt;
     const glm::ivec3 dims = now.geometry.dims;
     const auto width = static_cast<std::size_t>(dims.x);
-    std::optional<VoxelBox> box;
+    VoxelBox box;
     for (int z = 0; z < dims.z; ++z) {
         for (int y = 0; y < dims.y; ++y) {
             const std::size_t row =
@@ -36,11 +31,10 @@ std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
             auto last = dims.x - 1;
             while (old_row[static_cast<std::size_t>(last)] == new_row[static_cast<std::size_t>(last)])
                 --last;
-            const VoxelBox here{{static_cast<int>(first), y, z}, {last + 1 - static_cast<int>(first), 1, 1}};
-            box = box ? around(*box, here) : here;
+            box.add({{static_cast<int>(first), y, z}, {last, y, z}});
         }
     }
-    return box.value_or(VoxelBox{});
+    return box;
 }
 
 }  // namespace edgesplat

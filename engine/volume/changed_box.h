@@ -4,19 +4,13 @@
 #include <optional>
 
 #include "engine/volume/volume.h"
+#include "engine/volume/voxel_box.h"
 
 namespace edgesplat {
 
-struct VoxelBox {
-    glm::ivec3 low{0}, size{0};
-};
-
-/// The smallest box that holds every sample in which `now` is not what `before` was, of size 0 if there is none.
+/// The smallest box that holds every sample in which `now` is not what `before` was, empty if there is none.
 /// Nothing where all may differ: grids are not the same, ranges of values are not (to which samples are scaled), or
 /// either's samples are not in memory.
 std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now);
-
-/// The smallest box that holds both.
-VoxelBox around(const VoxelBox& a, const VoxelBox& b);
 
 }  // namespace edgesplat

@@ -155,14 +155,12 @@ std::vector<float> scaled_field(const Volume& volume) {
 
 std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box) {
     need_samples(volume, "the scaled field");
-    const glm::u64vec3 size(box.size);
     std::vector<float> field;
-    field.reserve(size.x * size.y * size.z);
-    for (int z = 0; z < box.size.z; ++z)
-        for (int y = 0; y < box.size.y; ++y)
-            for (int x = 0; x < box.size.x; ++x)
-                field.push_back(static_cast<float>(
-                    scaled_value(volume, static_cast<double>(volume.at(box.low.x + x, box.low.y + y, box.low.z + z)))));
+    field.reserve(box.count());
+    for (int z = box.low.z; z <= box.high.z; ++z)
+        for (int y = box.low.y; y <= box.high.y; ++y)
+            for (int x = box.low.x; x <= box.high.x; ++x)
+                field.push_back(static_cast<float>(scaled_value(volume, static_cast<double>(volume.at(x, y, z)))));
     return field;
 }
 

@@ -4,8 +4,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "engine/volume/changed_box.h"
 #include "engine/volume/volume.h"
+#include "engine/volume/voxel_box.h"
 
 namespace edgesplat {
 

@@ -33,7 +33,7 @@ EDGESPLAT_CONSTANT uint MARKED_AT_ONCE = 32u;  // entries that a word of marks i
 EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
 EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
 EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column
-EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 80 bytes each by default
+EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 96 bytes each by default
 EDGESPLAT_CONSTANT uint PREPARED_ROW = 4096u;  // texels of the image that holds them: lavapipe loads those fastest
 EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
 // Of refined pixels (5_refine_pixels): every REFINE_STEP-th is drawn first, then those between which samples differ in the second

@@ -147,7 +147,7 @@ TEST(ChangedRegion, AnotherRangeOrGridIsAnotherVolume) {
     const auto box = changed_box(*shot.volume, *with_ball(*shot.volume, {5, 6, 7}, 1.1, shot.volume->max_value));
     ASSERT_TRUE(box);
     EXPECT_EQ(box->low, glm::ivec3(4, 5, 6));
-    EXPECT_EQ(box->size, glm::ivec3(3));
+    EXPECT_EQ(box->size(), glm::ivec3(3));
     Renderer renderer = own_renderer(), fresh = own_renderer();
     renderer.set_volume(shot.volume);
     picture(renderer, shot, {});
