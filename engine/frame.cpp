@@ -23,7 +23,7 @@ void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResou
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
 
     commands.run([&] {
-        commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
+        commands.fill(targets.counters, 0);
         passes::clear_accumulated(commands, targets.accumulated);
         commands.span("3_select_footprints",
                       [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });

@@ -55,7 +55,7 @@ void lengthen(const gpu::Device& device, gpu::Commands& commands, gpu::Buffer& l
     gpu::Buffer longer(device, bytes, Place::Device, name);
     if (used > 0) {
         commands.run([&] {
-            commands.raw().copyBuffer(list.handle(), longer.handle(), vk::BufferCopy(0, 0, used));
+            commands.copy(list, longer, {{0, 0, used}});
             commands.barrier();
         });
     }
@@ -103,7 +103,7 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .transfer = !plan.transfer.empty()};
 }
 
-void prepare_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+void prepare_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                         const CollectionPlan& plan, const CollectionBlock& largest, VolumeResources& resources) {
     const auto volume_image = [&](vk::Format format, const char* name) {
         return gpu::GpuImage(
@@ -239,7 +239,7 @@ std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& d
     return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
 }
 
-std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                        const CollectionPlan& plan, const VoxelBox& changed,
                                        VolumeResources& resources) {
     const CollectionBlock whole = whole_block(plan.dims);
@@ -279,7 +279,7 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     return times;
 }
 
-std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                      const CollectionPlan& plan, VolumeResources& resources) {
     const CollectionBlock whole = whole_block(plan.dims);
     prepare_collection(device, commands, bindings, plan, whole, resources);

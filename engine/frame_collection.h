@@ -32,7 +32,7 @@ struct CollectedBlock {
 
 /// Allocates what the plan's passes take for blocks as large as `largest`, drops the splats that there were, and binds
 /// it all. `resources` holds the volume's image.
-void prepare_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+void prepare_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                         const CollectionPlan& plan, const CollectionBlock& largest, VolumeResources& resources);
 
 /// Volume -> splats, behind those in the list. The images hold the block's samples (and coefficients). With `exact` the
@@ -46,11 +46,11 @@ std::optional<CollectedBlock> collect_block(const gpu::Device& device, gpu::Comm
 std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims);
 
 /// After run_collection with the same plan, the samples in `changed` having become others: as if it were run again.
-std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                        const CollectionPlan& plan, const VoxelBox& changed, VolumeResources& resources);
 
 /// The whole volume at once; fills `splat_count`, the bricks and the box.
-std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> run_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                      const CollectionPlan& plan, VolumeResources& resources);
 
 }  // namespace edgesplat

@@ -78,6 +78,8 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(on_host(buffer("drawn splats", 3 * sizeof(std::uint32_t), "(3) uint", "4, 5", "host")));
     out.push_back(on_host(buffer("quad indices", passes::quad_indices().size() * sizeof(std::uint32_t),
                                  "(quads x 6) uint", "host", "5")));
+    out.push_back(
+        on_host(buffer("numbers of groups", gpu::Commands::group_count_bytes(), "(dispatches) uvec3", "host", "all")));
 
     out.push_back(buffer("placeholder texels", 16, "zeros", "-", "-"));
     out.push_back(buffer("placeholder counts", 16, "zeros", "-", "-"));

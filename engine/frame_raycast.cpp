@@ -64,19 +64,15 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
                                    const glm::ivec3& dims)
     : bindings_(device, pipelines),
-      layout_(pipelines.layout()),
       bricks_(brick_image(device, dims, "bricks")),
       block_(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters") {
+    bindings_.write({}, {}, {});
+    bindings_.set().put_block(shader::BIND_RAYS, block_);
+    bindings_.set().put_image(shader::BIND_BRICKS, bricks_);
     commands.run([&] {
         bindings_.prepare(commands);
         commands.prepare({&bricks_});
     });
-}
-
-void RaycastResources::bind(const gpu::Device& device, std::uint32_t binding, const gpu::GpuImage& image) const {
-    const vk::DescriptorImageInfo info({}, image.view(), vk::ImageLayout::eGeneral);
-    const vk::WriteDescriptorSet write(bindings_.set(), binding, 0, vk::DescriptorType::eStorageImage, info);
-    device.handle().updateDescriptorSets(write, nullptr);
 }
 
 void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume) {
@@ -89,31 +85,29 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
     auto& block = block_.mapped<shader::RaycastBlock>(1)[0];
     block = plan.block;
     block.rays.pixels = output_.address();
-    bindings_.write(volume, {}, {});
-    bindings_.write_block(shader::BIND_RAYS, block_);
-    bind(device, shader::BIND_BRICKS, bricks_);
+    bindings_.write_volume(volume);
 }
 
 bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& commands, const RaycastPlan& plan) {
     if (!plan.variant.skip_empty || same_bricks(classified_, plan.block.scene)) return false;
     const gpu::GpuImage scratch = brick_image(device, plan.block.scene.dims, "brick scratch");
-    bind(device, shader::BIND_BRICK_SCRATCH, scratch);
+    bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, scratch);
     classified_ = {};
     commands.run([&] {
-        commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
+        commands.bind_compute_set(bindings_.set());
         commands.prepare({&scratch});
         commands.span("raycast_bricks",
                       [&] { passes::classify_bricks(commands, plan.block.scene.dims, plan.block.scene.iso_count); });
     });
     // The slot must not be left with an image that is gone.
-    bind(device, shader::BIND_BRICK_SCRATCH, bricks_);
+    bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks_);
     classified_ = plan.block.scene;
     return true;
 }
 
 void RaycastResources::cast(gpu::Commands& commands, const RaycastPlan& plan) const {
     commands.run([&] {
-        commands.raw().bindDescriptorSets(vk::PipelineBindPoint::eCompute, layout_, 0, bindings_.set(), nullptr);
+        commands.bind_compute_set(bindings_.set());
         commands.span("raycast", [&] { passes::cast_rays(commands, plan.variant, plan.size); });
     });
 }

@@ -40,10 +40,7 @@ class RaycastResources {
     std::span<const float> pixels() const;
 
   private:
-    void bind(const gpu::Device& device, std::uint32_t binding, const gpu::GpuImage& image) const;
-
-    Bindings bindings_;  ///< the common layout, with the bricks in it
-    vk::PipelineLayout layout_;
+    Bindings bindings_;     ///< the common layout, with the bricks in it
     gpu::GpuImage bricks_;  ///< (z, y, x) r8ui: BIND_BRICKS
     gpu::Buffer block_;     ///< RaycastBlock, mapped
     gpu::Buffer output_;    ///< (height, width) vec4, mapped

@@ -191,7 +191,7 @@ std::uint64_t light_layer_bytes(const FramePlan& plan) {
     return side * side * plan.params.sheet_count * sizeof(float);
 }
 
-std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                     const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources) {
     resources.occlusion = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t), gpu::Buffer::Place::Device,
                                       "splat occlusion");
@@ -206,7 +206,7 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
         place_clip(plan.matter.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.splat_count = static_cast<std::uint32_t>(resources.splat_count);
     params.reach = resources.occlusion.address();
-    bindings.write_block(shader::BIND_OCCLUSION, block);
+    bindings.set().put_block(shader::BIND_OCCLUSION, block);
     commands.run([&] {
         commands.span("2b_occlude_ambient", [&] {
             passes::occlude_ambient(commands, {.splat_count = resources.splat_count,
@@ -223,7 +223,7 @@ std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& 
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
     commands.run([&] {
         commands.span("2c_sweep_light", [&] {
-            commands.raw().fillBuffer(targets.counters.handle(), 0, VK_WHOLE_SIZE, 0);
+            commands.fill(targets.counters, 0);
             passes::clear_accumulated(commands, targets.accumulated);
             passes::select_footprints(commands, plan.params.slot_count, plan.variant);
             passes::sort_sheets(commands, plan.variant, plan.sort_segments);

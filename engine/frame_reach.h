@@ -57,7 +57,7 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
 std::uint64_t light_layer_bytes(const FramePlan& plan);
 
 /// Pass 2b: allocates and fills VolumeResources::occlusion. The bindings must hold the volume.
-std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, const Bindings& bindings,
+std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                     const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources);
 
 /// Passes 3 to 5 from a light, then 2c and 2d, into half `channel` of VolumeResources::shadows. `targets` are the

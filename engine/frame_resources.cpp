@@ -19,15 +19,7 @@ gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool vol
 
 }  // namespace
 
-Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : device_(&device) {
-    const std::array sizes{
-        vk::DescriptorPoolSize(vk::DescriptorType::eStorageImage, shader::BIND_SHEETS),
-        vk::DescriptorPoolSize(vk::DescriptorType::eCombinedImageSampler, shader::BIND_SCENE - shader::BIND_SHEETS),
-        vk::DescriptorPoolSize(vk::DescriptorType::eUniformBuffer, shader::BIND_PICTURE - shader::BIND_SCENE),
-        vk::DescriptorPoolSize(vk::DescriptorType::eStorageTexelBuffer, shader::BIND_COUNT - shader::BIND_PICTURE)};
-    pool_ = vk::raii::DescriptorPool(device.handle(), {vk::DescriptorPoolCreateFlagBits::eFreeDescriptorSet, 1, sizes});
-    const auto layout = pipelines.set_layout();
-    set_ = std::move(vk::raii::DescriptorSets(device.handle(), {*pool_, layout}).front());
+Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : set_(device, pipelines) {
     vk::SamplerCreateInfo sampler;
     sampler.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
     nearest_ = vk::raii::Sampler(device.handle(), sampler);
@@ -50,55 +42,33 @@ void Bindings::prepare(gpu::Commands& commands) const {
     commands.prepare({&no_scalar_, &no_edges_, &no_mask_, &no_records_, &no_array_, &no_picture_});
 }
 
+void Bindings::write_volume(const VolumeResources& volume) {
+    set_.put_image(shader::BIND_VOLUME, volume.volume ? volume.volume : no_scalar_);
+    set_.put_image(shader::BIND_COEFFICIENTS, volume.coefficients ? volume.coefficients : no_scalar_);
+    set_.put_image(shader::BIND_EDGES, volume.edges ? volume.edges : no_edges_);
+}
+
 void Bindings::write(const VolumeResources& volume, const FootprintResources& footprints,
-                     const TargetResources& targets) const {
-    struct Slot {
-        std::uint32_t binding;
-        const gpu::GpuImage& image;
-        const gpu::GpuImage& otherwise;
-        vk::Sampler sampler;
-    };
-    const std::array slots{Slot{shader::BIND_VOLUME, volume.volume, no_scalar_, {}},
-                           Slot{shader::BIND_COEFFICIENTS, volume.coefficients, no_scalar_, {}},
-                           Slot{shader::BIND_EDGES, volume.edges, no_edges_, {}},
-                           Slot{shader::BIND_BURIED, volume.buried, no_mask_, {}},
-                           Slot{shader::BIND_PREPARED, targets.prepared, no_records_, {}},
-                           Slot{shader::BIND_SHEETS, targets.sheets, no_array_, *nearest_},
-                           Slot{shader::BIND_ACCUMULATED, targets.accumulated, no_picture_, *nearest_},
-                           Slot{shader::BIND_TABLE, footprints.table, no_array_, *linear_}};
-    std::array<vk::DescriptorImageInfo, shader::BIND_COUNT> infos;
-    std::vector<vk::WriteDescriptorSet> writes;
-    for (const Slot& slot : slots) {
-        const auto& image = slot.image ? slot.image : slot.otherwise;
-        auto& info = infos.at(slot.binding);
-        info = {slot.sampler, image.view(), vk::ImageLayout::eGeneral};
-        writes.emplace_back(
-            *set_, slot.binding, 0,
-            slot.sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage, info);
-    }
+                     const TargetResources& targets) {
+    write_volume(volume);
+    set_.put_image(shader::BIND_BURIED, volume.buried ? volume.buried : no_mask_);
+    set_.put_image(shader::BIND_PREPARED, targets.prepared ? targets.prepared : no_records_);
+    set_.put_image(shader::BIND_SHEETS, targets.sheets ? targets.sheets : no_array_, *nearest_);
+    set_.put_image(shader::BIND_ACCUMULATED, targets.accumulated ? targets.accumulated : no_picture_, *nearest_);
+    set_.put_image(shader::BIND_TABLE, footprints.table ? footprints.table : no_array_, *linear_);
     const std::array texels{
         std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
         std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},
         std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_},
         std::pair{&targets.tile_ranges, &no_entries_},  std::pair{&targets.tile_order, &no_counts_},
         std::pair{&targets.tile_pixels, &no_counts_},   std::pair{&targets.tile_sheets, &no_texels_}};
-    std::array<vk::BufferView, texels.size()> views;
     for (std::uint32_t i = 0; i < texels.size(); ++i) {
         const auto& [buffer, otherwise] = texels.at(i);
-        views.at(i) = *buffer ? buffer->texels() : otherwise->texels();
-        writes.emplace_back(*set_, shader::BIND_PICTURE + i, 0, 1, vk::DescriptorType::eStorageTexelBuffer, nullptr,
-                            nullptr, &views.at(i));
+        set_.put_texels(shader::BIND_PICTURE + i, *buffer ? *buffer : *otherwise);
     }
-    device_->handle().updateDescriptorSets(writes, nullptr);
-    write_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
-    write_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
-    write_block(shader::BIND_OCCLUSION, no_block_);
-}
-
-void Bindings::write_block(std::uint32_t binding, const gpu::Buffer& block) const {
-    const vk::DescriptorBufferInfo info(block.handle(), 0, block.bytes());
-    const vk::WriteDescriptorSet write(*set_, binding, 0, vk::DescriptorType::eUniformBuffer, {}, info);
-    device_->handle().updateDescriptorSets(write, nullptr);
+    set_.put_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
+    set_.put_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
+    set_.put_block(shader::BIND_OCCLUSION, no_block_);
 }
 
 namespace {
@@ -157,9 +127,7 @@ void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::G
                 0, 0, 0, layers, {low.x, low.y + static_cast<int>(y), low.z + static_cast<int>(shape.volume ? z : 0)},
                 {static_cast<std::uint32_t>(shape.size.x), static_cast<std::uint32_t>(rows),
                  static_cast<std::uint32_t>(shape.volume ? depth : 1)});
-            commands.run([&] {
-                commands.raw().copyBufferToImage(staging.handle(), image.handle(), vk::ImageLayout::eGeneral, copy);
-            });
+            commands.run([&] { commands.copy(staging, image, copy); });
         }
     }
 }

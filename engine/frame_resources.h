@@ -81,18 +81,16 @@ struct TargetResources {
 class Bindings {
   public:
     Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines);
-    vk::DescriptorSet set() const { return *set_; }
+    gpu::DescriptorSet& set() { return set_; }
+    const gpu::DescriptorSet& set() const { return set_; }
     /// Moves the placeholders into layout GENERAL; once, while recording.
     void prepare(gpu::Commands& commands) const;
-    void write(const VolumeResources& volume, const FootprintResources& footprints,
-               const TargetResources& targets) const;
-    /// Puts a buffer into the slot of a uniform block, until the next write().
-    void write_block(std::uint32_t binding, const gpu::Buffer& block) const;
+    void write(const VolumeResources& volume, const FootprintResources& footprints, const TargetResources& targets);
+    /// Only what the volume's images alone say: samples, coefficients, edges.
+    void write_volume(const VolumeResources& volume);
 
   private:
-    const gpu::Device* device_;
-    vk::raii::DescriptorPool pool_ = nullptr;
-    vk::raii::DescriptorSet set_ = nullptr;
+    gpu::DescriptorSet set_;
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;

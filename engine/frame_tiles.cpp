@@ -128,13 +128,11 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
     const auto& p = plan.params;
     commands.run([&] {
         for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
-            commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
+            commands.fill(*zeroed, 0);
         if (!division.goes_on)
             for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
-                commands.raw().fillBuffer(zeroed->handle(), 0, VK_WHOLE_SIZE, 0);
-        if (plan.refined)
-            commands.raw().fillBuffer(targets.tile_finest.handle(), 0, VK_WHOLE_SIZE,
-                                      std::bit_cast<std::uint32_t>(1e30F));
+                commands.fill(*zeroed, 0);
+        if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
         commands.barrier();
         commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
         commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
@@ -268,8 +266,7 @@ class TileFrame {
         if (how_.refined) {
             const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
             const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
-            commands_.raw().fillBuffer(targets_.tile_marks.handle(), first * sizeof(std::uint32_t),
-                                       room * sizeof(std::uint32_t), ~0U);
+            commands_.fill(targets_.tile_marks, ~0U, first * sizeof(std::uint32_t), room * sizeof(std::uint32_t));
             commands_.barrier();
         }
         commands_.span("4_sort_tiles",
@@ -308,8 +305,7 @@ class TileFrame {
     /// For the host: pixels of tiles that take no more.
     void see_tiles() {
         if (!how_.refined) return;
-        commands_.raw().copyBuffer(targets_.tile_closed.handle(), targets_.tiles_seen.handle(),
-                                   vk::BufferCopy(0, 0, tile_count(plan_) * sizeof(std::uint32_t)));
+        commands_.copy(targets_.tile_closed, targets_.tiles_seen, {{0, 0, tile_count(plan_) * sizeof(std::uint32_t)}});
         commands_.barrier();
     }
 

@@ -285,6 +285,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     RenderResult result;
     self.release_unused(settings);
     self.device.forget_peaks();
+    const gpu::CommandCounts commands_before = self.commands.counts();
     const gpu::PipelineCreation made = self.pipelines.creation();
     self.voxels_estimated = 0;
     self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
@@ -332,6 +333,8 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
         draw_output("normal", shader::PAYLOAD_NORMAL);
         result.normal = take(pixels(), size, 0, 3);
     }
+    result.stats.submissions = self.commands.counts().run - commands_before.run;
+    result.stats.recordings = self.commands.counts().recorded - commands_before.recorded;
     result.stats.pipelines_made = self.pipelines.creation().count - made.count;
     result.stats.pipeline_milliseconds = self.pipelines.creation().milliseconds - made.milliseconds;
     if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);

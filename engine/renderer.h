@@ -92,6 +92,9 @@ struct RenderStats {
     std::uint64_t blocks_held = 0;   ///< whose splats are on the device
     std::uint64_t device_bytes = 0;  ///< allocated on the device
     std::vector<MemoryUse> memory;   ///< by name, what was let go during the frame included
+    /// Lists of commands that the device was given, setup included, and those of them that had to be recorded: the
+    /// others were replayed.
+    std::uint64_t submissions = 0, recordings = 0;
     std::uint64_t pipelines_made = 0;
     double pipeline_milliseconds = 0;  ///< spent on making them; part of setup and frame
     /// After Renderer::count_fragments: of the splats of the picture, extra outputs not among them.

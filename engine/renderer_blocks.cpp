@@ -163,7 +163,7 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
         }
         if (!parts.empty()) {
             commands.run([&] {
-                commands.raw().copyBuffer(list.handle(), closed.handle(), parts);
+                commands.copy(list, closed, parts);
                 commands.barrier();
             });
         }

@@ -41,8 +41,7 @@ void write(gpu::Commands& commands, const gpu::Buffer& buffer, std::span<const s
     commands.run([&] {
         for (std::size_t done = 0; done < values.size(); done += kMostWords) {
             const auto piece = values.subspan(done, std::min(kMostWords, values.size() - done));
-            commands.raw().updateBuffer<std::uint32_t>(buffer.handle(), done * sizeof(std::uint32_t),
-                                                       {static_cast<std::uint32_t>(piece.size()), piece.data()});
+            commands.update(buffer, done * sizeof(std::uint32_t), piece);
         }
         commands.barrier();
     });

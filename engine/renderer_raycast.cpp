@@ -36,6 +36,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     const Settings settings = drawn_as(wanted);
     RenderResult result;
     auto& stats = result.stats;
+    const gpu::CommandCounts commands_before = self.commands.counts();
     self.show_whole();
     self.provide_volume();
     const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
@@ -63,6 +64,8 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     result.color = Image(width, height, 4);
     std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
     if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
+    stats.submissions = self.commands.counts().run - commands_before.run;
+    stats.recordings = self.commands.counts().recorded - commands_before.recorded;
     stats.device = self.device.info();
     stats.voxels = self.volume->geometry.voxel_count();
     stats.device_bytes = self.device.allocated_bytes();

@@ -43,7 +43,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
     volume_resources.shadows = gpu::Buffer(device, volume_resources.splat_count * sizeof(std::uint32_t),
                                            gpu::Buffer::Place::Device, "splat shadows");
     // What lies in no picture of the light is in nothing's shadow.
-    commands.run([&] { commands.raw().fillBuffer(volume_resources.shadows.handle(), 0, VK_WHOLE_SIZE, ~0U); });
+    commands.run([&] { commands.fill(volume_resources.shadows, ~0U); });
 
     const auto& resources = volume_resources;
     const double reach = draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius;

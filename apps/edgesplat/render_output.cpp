@@ -63,6 +63,8 @@ ordered_json to_json(const RenderedFrame& frame) {
                          {"edge_splats", stats.edge_splats},
                          {"sheets", stats.sheets},
                          {"sheet_groups", stats.sheet_groups},
+                         {"submissions", stats.submissions},
+                         {"recordings", stats.recordings},
                          {"device_bytes", stats.device_bytes},
                          {"validation_messages", stats.validation_messages}};
     if (!frame.ranks.empty()) json["ranks"] = to_json(frame.ranks);

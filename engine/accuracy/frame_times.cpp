@@ -59,6 +59,8 @@ TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& came
         const Cost between = cost_of(ray, stats);
         const Cost after = cost_of(frame, stats);
         keep_passes(stats, visit);
+        visit.submissions = stats.submissions;
+        visit.recordings = stats.recordings;
         visit.triples.push_back({before.wall, between.wall, after.wall});
         visit.processor_triples.push_back({before.processor, between.processor, after.processor});
         once = before.wall + between.wall + after.wall;

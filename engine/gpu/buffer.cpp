@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/gpu/serial.h"
 
 namespace edgesplat::gpu {
 
@@ -30,7 +31,8 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     : device_(&device),
       buffer_(device.handle(), create_info(bytes)),
       name_(name),
-      bytes_(std::max<std::size_t>(bytes, 16)) {
+      bytes_(std::max<std::size_t>(bytes, 16)),
+      serial_(next_serial()) {
     using Memory = vk::MemoryPropertyFlagBits;
     const auto requirements = buffer_.getMemoryRequirements();
     memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
@@ -61,6 +63,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     allocated_ = std::exchange(other.allocated_, 0);
     map_ = std::exchange(other.map_, nullptr);
     address_ = std::exchange(other.address_, 0);
+    serial_ = other.serial_;
     return *this;
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vulkan/vulkan_raii.hpp>
 
+#include "engine/gpu/command_list.h"
 #include "engine/gpu/device.h"
 #include "shaders/shared/glue.h"
 
@@ -29,6 +30,8 @@ class Buffer {
     static std::uint64_t required_bytes(const Device& device, std::size_t bytes);
 
     vk::Buffer handle() const { return *buffer_; }
+    std::uint64_t serial() const { return serial_; }
+    BufferUse use() const { return {*buffer_, serial_}; }
     std::size_t bytes() const { return bytes_; }
     /// Of the byte `offset`.
     shader::Address address(std::uint64_t offset = 0) const { return address_ + offset; }
@@ -50,7 +53,7 @@ class Buffer {
     std::string name_;
     std::size_t bytes_ = 0, allocated_ = 0;
     void* map_ = nullptr;
-    std::uint64_t address_ = 0;
+    std::uint64_t address_ = 0, serial_ = 0;
 };
 
 }  // namespace edgesplat::gpu

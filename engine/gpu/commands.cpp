@@ -11,7 +11,8 @@ namespace {
 constexpr std::uint32_t kMaxTimestamps = 8192;
 // Reset together when the first of them is written: validation keeps a state for every query that is ever reset.
 constexpr std::uint32_t kTimestampsAtOnce = 64;
-constexpr std::uint32_t kMaxCounted = 8192;
+constexpr std::uint32_t kMaxCountedDraws = 8192;
+constexpr std::size_t kMaxCountedDispatches = 4096;  // dispatches whose groups are counted; 48 KiB
 constexpr std::uint64_t kTimeout = 600'000'000'000;  // ns; a software device may take minutes for a huge frame
 
 }  // namespace
@@ -22,82 +23,111 @@ Groups groups_for(std::uint64_t count, std::uint32_t local) {
     return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
 }
 
-Commands::Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet set)
+std::size_t Commands::group_count_bytes() {
+    return kMaxCountedDispatches * sizeof(Groups);
+}
+
+Commands::Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set)
     : device_(&device),
       pipelines_(&pipelines),
-      set_(set),
-      pool_(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}) {
-    buffer_ =
-        std::move(vk::raii::CommandBuffers(device.handle(), {*pool_, vk::CommandBufferLevel::ePrimary, 1}).front());
-    fence_ = vk::raii::Fence(device.handle(), vk::FenceCreateInfo{});
-    if (device.timestamp_period() > 0) {
+      set_(&set),
+      group_counts_(device, group_count_bytes(), Buffer::Place::Host, "numbers of groups"),
+      kept_(device),
+      fence_(device.handle(), vk::FenceCreateInfo{}) {
+    if (device.timestamp_period() > 0)
         queries_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, kMaxTimestamps});
-    }
 }
 
 void Commands::run(const std::function<void()>& body) {
+    list_.clear();
     span_names_.clear();
-    buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     counted_ = 0;
-    for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
-        if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCounted);
-    buffer_.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_->layout(), 0, set_, nullptr);
     draws_ = false;
-    try {
-        body();
-    } catch (...) {
-        // Else the next one would begin in the middle of this.
-        (*buffer_).reset({}, *device_->handle().getDispatcher());
-        throw;
-    }
+    dispatches_ = 0;
+    for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
+        if (**pool) list_.emplace_back(command::ResetQueries{**pool, 0, kMaxCountedDraws});
+    bind_compute_set(*set_);
+    body();
     barrier();
-    buffer_.end();
-    const vk::CommandBufferSubmitInfo command(*buffer_);
+    const vk::CommandBufferSubmitInfo command(kept_.of(list_));
     device_->queue().submit2(vk::SubmitInfo2({}, {}, command), *fence_);
     const auto waited = device_->handle().waitForFences(*fence_, VK_TRUE, kTimeout);
     if (waited != vk::Result::eSuccess) fail("the device {} did not finish within 10 minutes", device_->info().name);
     device_->handle().resetFences(*fence_);
 }
 
+void Commands::bind_compute_set(const DescriptorSet& set) {
+    list_.emplace_back(
+        command::BindSet{vk::PipelineBindPoint::eCompute, pipelines_->layout(), set.handle(), set.version()});
+}
+
 void Commands::dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups) {
-    buffer_.bindPipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants));
-    buffer_.pushConstants<std::uint32_t>(
-        pipelines_->layout(),
-        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
-        number);
-    buffer_.dispatch(groups.x, groups.y, groups.z);
-}
-
-void Commands::bind_draw(const DrawState& state, std::uint32_t number) {
-    buffer_.bindPipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state));
-    // Not before: lavapipe looks for the pipeline of a descriptor set with uniform blocks.
-    if (!draws_) buffer_.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_->layout(), 0, set_, nullptr);
-    draws_ = true;
-    buffer_.pushConstants<std::uint32_t>(
-        pipelines_->layout(),
-        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
-        number);
-}
-
-void Commands::barrier() {
-    using Stage = vk::PipelineStageFlagBits2;
-    using Access = vk::AccessFlagBits2;
-    const vk::MemoryBarrier2 memory(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllCommands | Stage::eHost,
-                                    Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead);
-    buffer_.pipelineBarrier2(vk::DependencyInfo({}, memory));
+    list_.emplace_back(command::BindPipeline{vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants),
+                                             pipelines_->layout(), number});
+    if (dispatches_ == kMaxCountedDispatches) {
+        list_.emplace_back(command::Dispatch{groups});
+        return;
+    }
+    group_counts_.mapped<Groups>(kMaxCountedDispatches)[dispatches_] = groups;
+    list_.emplace_back(command::DispatchCounted{group_counts_.use(), dispatches_ * sizeof(Groups)});
+    ++dispatches_;
 }
 
 void Commands::prepare(std::initializer_list<const GpuImage*> images) {
-    using Stage = vk::PipelineStageFlagBits2;
-    using Access = vk::AccessFlagBits2;
-    std::vector<vk::ImageMemoryBarrier2> barriers;
-    for (const GpuImage* image : images) {
-        barriers.emplace_back(
-            Stage::eAllCommands, Access::eNone, Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite,
-            vk::ImageLayout::eUndefined, vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
-            image->handle(), vk::ImageSubresourceRange(image->aspect(), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS));
-    }
-    buffer_.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, barriers));
+    for (const GpuImage* image : images)
+        list_.emplace_back(command::Prepare{image->use(), image->aspect()});
+}
+
+void Commands::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes) {
+    list_.emplace_back(command::Fill{buffer.use(), offset, bytes, value});
+}
+
+void Commands::update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values) {
+    list_.emplace_back(command::Update{buffer.use(), offset, {values.begin(), values.end()}});
+}
+
+void Commands::copy(const Buffer& from, const Buffer& to, std::vector<vk::BufferCopy> parts) {
+    list_.emplace_back(command::CopyBuffer{from.use(), to.use(), std::move(parts)});
+}
+
+void Commands::copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part) {
+    list_.emplace_back(command::CopyToImage{from.use(), to.use(), part});
+}
+
+void Commands::copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part) {
+    list_.emplace_back(command::CopyFromImage{from.use(), to.use(), part});
+}
+
+void Commands::clear(const GpuImage& image) {
+    list_.emplace_back(command::Clear{image.use()});
+}
+
+void Commands::begin_rendering(const GpuImage& color, const GpuImage* depth, std::uint32_t layers) {
+    const glm::uvec2 size(color.shape().size);
+    list_.emplace_back(command::BeginRendering{
+        color.view_use(), depth == nullptr ? ViewUse() : depth->view_use(), {size.x, size.y}, layers});
+}
+
+void Commands::bind_draw(const DrawState& state, std::uint32_t number) {
+    list_.emplace_back(
+        command::BindPipeline{vk::PipelineBindPoint::eGraphics, pipelines_->draw(state), pipelines_->layout(), number});
+    // Not before: lavapipe looks for the pipeline of a descriptor set with uniform blocks.
+    if (!draws_)
+        list_.emplace_back(
+            command::BindSet{vk::PipelineBindPoint::eGraphics, pipelines_->layout(), set_->handle(), set_->version()});
+    draws_ = true;
+}
+
+void Commands::draw(std::uint32_t vertices, std::uint32_t instances) {
+    list_.emplace_back(command::Draw{vertices, instances});
+}
+
+void Commands::draw_indirect(const Buffer& indices, const Buffer& draws, std::uint64_t offset) {
+    list_.emplace_back(command::DrawIndirect{indices.use(), draws.use(), offset});
+}
+
+void Commands::end_rendering() {
+    list_.emplace_back(command::EndRendering());
 }
 
 void Commands::write_timestamp() {
@@ -106,8 +136,8 @@ void Commands::write_timestamp() {
     // lavapipe writes timestamps when it next rasterises, which may be after dispatches that were recorded later.
     const bool late = device_->is_software();
     if (late) barrier();
-    if (at % kTimestampsAtOnce == 0) buffer_.resetQueryPool(*queries_, at, kTimestampsAtOnce);
-    buffer_.writeTimestamp2(vk::PipelineStageFlagBits2::eAllCommands, *queries_, at);
+    if (at % kTimestampsAtOnce == 0) list_.emplace_back(command::ResetQueries{*queries_, at, kTimestampsAtOnce});
+    list_.emplace_back(command::Timestamp{*queries_, at});
     if (late) barrier();
 }
 
@@ -139,6 +169,7 @@ std::vector<PassTime> Commands::span_times() const {
 }
 
 void Commands::count_draws(bool on) {
+    kept_.clear();  // the pools' handles may be given anew
     statistics_ = nullptr;
     samples_ = nullptr;
     if (!on || !device_->counts_draws()) return;
@@ -146,28 +177,28 @@ void Commands::count_draws(bool on) {
     statistics_ = vk::raii::QueryPool(device_->handle(),
                                       {{},
                                        vk::QueryType::ePipelineStatistics,
-                                       kMaxCounted,
+                                       kMaxCountedDraws,
                                        Statistic::eVertexShaderInvocations | Statistic::eFragmentShaderInvocations});
-    samples_ = vk::raii::QueryPool(device_->handle(), {{}, vk::QueryType::eOcclusion, kMaxCounted});
+    samples_ = vk::raii::QueryPool(device_->handle(), {{}, vk::QueryType::eOcclusion, kMaxCountedDraws});
 }
 
 void Commands::begin_count() {
-    if (!*statistics_ || counted_ >= kMaxCounted) return;
-    buffer_.beginQuery(*statistics_, counted_);
-    buffer_.beginQuery(*samples_, counted_, vk::QueryControlFlagBits::ePrecise);
+    if (!*statistics_ || counted_ >= kMaxCountedDraws) return;
+    list_.emplace_back(command::BeginQuery{*statistics_, counted_, false});
+    list_.emplace_back(command::BeginQuery{*samples_, counted_, true});
 }
 
 void Commands::end_count() {
     if (!*statistics_) return;
-    if (counted_ < kMaxCounted) {
-        buffer_.endQuery(*samples_, counted_);
-        buffer_.endQuery(*statistics_, counted_);
+    if (counted_ < kMaxCountedDraws) {
+        list_.emplace_back(command::EndQuery{*samples_, counted_});
+        list_.emplace_back(command::EndQuery{*statistics_, counted_});
     }
     ++counted_;
 }
 
 std::optional<DrawCounts> Commands::draw_counts() const {
-    if (!*statistics_ || counted_ == 0 || counted_ > kMaxCounted) return std::nullopt;
+    if (!*statistics_ || counted_ == 0 || counted_ > kMaxCountedDraws) return std::nullopt;
     const auto results = [&](const vk::raii::QueryPool& pool, std::size_t numbers) {
         const std::size_t stride = numbers * sizeof(std::uint64_t);
         return pool

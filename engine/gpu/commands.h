@@ -1,46 +1,69 @@
-// Recording and running one command buffer at a time, with the few commands that the passes are made of.
+// Asking for and running one list of commands at a time, with the few that the passes are made of.
 #pragma once
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
 #include "engine/gpu/buffer.h"
+#include "engine/gpu/descriptor_set.h"
 #include "engine/gpu/image.h"
+#include "engine/gpu/kept_commands.h"
 #include "engine/gpu/pipelines.h"
 #include "shaders/shared/frame_params.h"
 
 namespace edgesplat::gpu {
 
-/// Thread counts of a dispatch; group counts follow from the shader's local size.
-struct Groups {
-    std::uint32_t x = 1, y = 1, z = 1;
-};
-
 /// Enough groups of `local` invocations for `count`, folded into y beyond the 65535 that every device allows.
 Groups groups_for(std::uint64_t count, std::uint32_t local);
 
-/// One command buffer on the device's queue. Images stay in layout GENERAL and every barrier is global: the passes
-/// depend on one another as wholes, and a finer barrier buys nothing there.
+/// How many lists were run, and how many of them had to be recorded for it.
+struct CommandCounts {
+    std::uint64_t run = 0, recorded = 0;
+};
+
+/// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: the passes depend on one
+/// another as wholes, and a finer barrier buys nothing there. What was run before is not recorded again, even if its
+/// dispatches are of other sizes now: a flight replays the command buffers of its first pictures.
 class Commands {
   public:
-    Commands(const Device& device, Pipelines& pipelines, vk::DescriptorSet set);
+    Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
 
-    const vk::raii::CommandBuffer& raw() const { return buffer_; }
-
-    /// Records `body`, submits it and waits until the device is done.
+    /// Lists what `body` asks for, submits it and waits until the device is done.
     void run(const std::function<void()>& body);
+    /// What the numbers of groups take.
+    static std::size_t group_count_bytes();
+    CommandCounts counts() const { return {kept_.recorded() + kept_.replayed(), kept_.recorded()}; }
 
+    /// For the dispatches to come of this run; else they have the set of the constructor.
+    void bind_compute_set(const DescriptorSet& set);
     void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
-    void bind_draw(const DrawState& state, std::uint32_t number);
     /// Everything before, visible to everything after.
-    void barrier();
+    void barrier() { list_.emplace_back(command::Barrier()); }
     /// Brings fresh images into layout GENERAL.
     void prepare(std::initializer_list<const GpuImage*> images);
 
-    /// Records `body` as a named span of device time; spans of one name add up. Must not nest.
+    /// `value` into `bytes` from `offset` on.
+    void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
+    /// 65536 bytes at most.
+    void update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values);
+    void copy(const Buffer& from, const Buffer& to, std::vector<vk::BufferCopy> parts);
+    void copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part);
+    void copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part);
+    void clear(const GpuImage& image);
+
+    /// Into all of `color` and `layers` of it, over what is there.
+    void begin_rendering(const GpuImage& color, const GpuImage* depth = nullptr, std::uint32_t layers = 1);
+    void bind_draw(const DrawState& state, std::uint32_t number);
+    void draw(std::uint32_t vertices, std::uint32_t instances);
+    /// What `draws` says at byte `offset` (vk::DrawIndexedIndirectCommand).
+    void draw_indirect(const Buffer& indices, const Buffer& draws, std::uint64_t offset);
+    void end_rendering();
+
+    /// Lists `body` as a named span of device time; spans of one name add up. Must not nest.
     template <typename Body>
     void span(const char* name, const Body& body) {
         begin_span(name);
@@ -64,10 +87,12 @@ class Commands {
     void write_timestamp();
     const Device* device_;
     Pipelines* pipelines_;
-    vk::DescriptorSet set_;
+    const DescriptorSet* set_;
     bool draws_ = false;  ///< the set is bound for draws
-    vk::raii::CommandPool pool_ = nullptr;
-    vk::raii::CommandBuffer buffer_ = nullptr;
+    CommandList list_;
+    Buffer group_counts_;         ///< Groups, mapped: of the list's dispatches
+    std::size_t dispatches_ = 0;  ///< that have theirs there
+    KeptCommands kept_;
     vk::raii::Fence fence_ = nullptr;
     vk::raii::QueryPool queries_ = nullptr;
     std::vector<std::string> span_names_;

@@ -15,7 +15,7 @@ std::vector<T> read_back(const Device& device, Commands& commands, const Buffer&
     const Buffer host(device, count * sizeof(T), Buffer::Place::Host, "read back");
     commands.run([&] {
         const vk::BufferCopy copy(first * sizeof(T), 0, count * sizeof(T));
-        commands.raw().copyBuffer(buffer.handle(), host.handle(), copy);
+        commands.copy(buffer, host, {copy});
     });
     const auto mapped = host.mapped<T>(count);
     return {mapped.begin(), mapped.end()};

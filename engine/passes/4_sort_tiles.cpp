@@ -10,7 +10,7 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint3
             commands.barrier();
         }
     };
-    commands.raw().fillBuffer(counters.handle(), 0, VK_WHOLE_SIZE, 0);
+    commands.fill(counters, 0);
     commands.barrier();
     go_through("4d_count_tiles.comp");
     commands.dispatch("4e_scan_tiles.comp", {}, chunk, {1});

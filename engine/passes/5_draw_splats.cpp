@@ -35,25 +35,15 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
 
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group) {
     const auto& target = in.sheets.shape();
-    const vk::Rect2D area({0, 0},
-                          {static_cast<std::uint32_t>(target.size.x), static_cast<std::uint32_t>(target.size.y)});
-    const vk::RenderingAttachmentInfo color(in.sheets.view(), vk::ImageLayout::eGeneral, {}, {}, {},
-                                            vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore);
-    const vk::RenderingAttachmentInfo depth(in.depth.view(), vk::ImageLayout::eGeneral, {}, {}, {},
-                                            vk::AttachmentLoadOp::eLoad, vk::AttachmentStoreOp::eStore);
     const auto layers = static_cast<std::uint32_t>(target.layers);
-    const auto& raw = commands.raw();
-
-    raw.beginRendering(vk::RenderingInfo({}, area, layers, 0, color, &depth));
-    raw.setViewport(0, vk::Viewport(0, 0, static_cast<float>(target.size.x), static_cast<float>(target.size.y), 0, 1));
-    raw.setScissor(0, area);
+    commands.begin_rendering(in.sheets, &in.depth, layers);
     commands.bind_draw({.vertex = "group_rect.vert",
                         .fragment = "5a_clear_sheets.frag",
                         .constants = {},
                         .color = target.format,
                         .depth = in.depth.shape().format},
                        group);
-    raw.draw(4, layers, 0, 0);
+    commands.draw(4, layers);
     commands.bind_draw({.vertex = "5b_draw_splats.vert",
                         .fragment = "5b_draw_splats.frag",
                         .constants = draw_constants(in.variant),
@@ -62,11 +52,10 @@ void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t gr
                         .blend = gpu::DrawState::Blend::Add,
                         .depth_use = gpu::DrawState::Depth::TestLess},
                        group);
-    raw.bindIndexBuffer(in.indices.handle(), 0, vk::IndexType::eUint32);
     commands.begin_count();
-    raw.drawIndexedIndirect(in.draws.handle(), group * sizeof(shader::DrawCommand), 1, sizeof(shader::DrawCommand));
+    commands.draw_indirect(in.indices, in.draws, group * sizeof(shader::DrawCommand));
     commands.end_count();
-    raw.endRendering();
+    commands.end_rendering();
     commands.barrier();
 }
 

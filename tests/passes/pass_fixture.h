@@ -31,9 +31,7 @@ std::vector<T> download(RendererState& state, const gpu::GpuImage& image) {
     const std::size_t count = std::size_t{size.x} * size.y * size.z * layers;
     const gpu::Buffer host(state.device, count * sizeof(T), gpu::Buffer::Place::Host, "readback");
     const vk::BufferImageCopy copy(0, 0, 0, {image.aspect(), 0, 0, layers}, {}, {size.x, size.y, size.z});
-    state.commands.run([&] {
-        state.commands.raw().copyImageToBuffer(image.handle(), vk::ImageLayout::eGeneral, host.handle(), copy);
-    });
+    state.commands.run([&] { state.commands.copy(image, host, copy); });
     const auto mapped = host.mapped<T>(count);
     return {mapped.begin(), mapped.end()};
 }

@@ -66,8 +66,7 @@ TEST(CompositingNumbers, ASplatClassifiedByNoneIsNamed) {
     const gpu::Buffer bad(state.device, sizeof(float), gpu::Buffer::Place::Host, "no number");
     bad.mapped<float>(1)[0] = std::numeric_limits<float>::quiet_NaN();
     state.commands.run([&] {
-        state.commands.raw().copyBuffer(bad.handle(), state.volume_resources.values.handle(),
-                                        vk::BufferCopy(0, 17 * sizeof(float), sizeof(float)));
+        state.commands.copy(bad, state.volume_resources.values, {{0, 17 * sizeof(float), sizeof(float)}});
     });
     try {
         state.check_splats();

@@ -50,7 +50,8 @@ class CliTest : public ::testing::Test {
     }
 
     /// Starts `edgesplat ARGUMENTS` likewise and presses Ctrl-C once `ready()`, after half a minute at the latest. The
-    /// exit status; -1: it was killed.
+    /// exit status as a shell says it: 130, too, of a program that dies of the signal, as one does without a progress
+    /// bar.
     template <typename Ready>
     int interrupted(const std::string& arguments, const Ready& ready) const {
         const std::string command =
@@ -64,7 +65,7 @@ class CliTest : public ::testing::Test {
         kill(child, SIGINT);
         int status = 0;
         waitpid(child, &status, 0);
-        return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+        return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
 
     /// Names of what is in the folder, hidden files too, sorted.

@@ -1,0 +1,41 @@
+#include "engine/gpu/kept_commands.h"
+
+#include <algorithm>
+
+namespace edgesplat::gpu {
+
+KeptCommands::KeptCommands(const Device& device)
+    : device_(&device),
+      pool_(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}) {}
+
+vk::CommandBuffer KeptCommands::of(const CommandList& list) {
+    const auto same = std::ranges::find_if(kept_, [&](const Kept& kept) { return kept.list == list; });
+    if (same != kept_.end()) {
+        std::rotate(same, same + 1, kept_.end());
+        ++replayed_;
+        return *kept_.back().buffer;
+    }
+    std::size_t commands = list.size();
+    for (const Kept& kept : kept_)
+        commands += kept.list.size();
+    vk::raii::CommandBuffer buffer = nullptr;
+    while (!kept_.empty() && (kept_.size() >= kMostLists || commands > kMostCommands)) {
+        commands -= kept_.front().list.size();
+        buffer = std::move(kept_.front().buffer);
+        kept_.erase(kept_.begin());
+    }
+    if (!*buffer) {
+        const vk::CommandBufferAllocateInfo one(*pool_, vk::CommandBufferLevel::ePrimary, 1);
+        buffer = std::move(vk::raii::CommandBuffers(device_->handle(), one).front());
+    }
+    record(buffer, list);
+    ++recorded_;
+    kept_.push_back({list, std::move(buffer)});
+    return *kept_.back().buffer;
+}
+
+void KeptCommands::clear() {
+    kept_.clear();
+}
+
+}  // namespace edgesplat::gpu

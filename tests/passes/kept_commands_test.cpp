@@ -1,0 +1,81 @@
+// Recorded command buffers: which lists are replayed, and which are let go.
+#include <gtest/gtest.h>
+
+#include "engine/gpu/kept_commands.h"
+#include "tests/passes/device_under_test.h"
+
+namespace edgesplat::test {
+namespace {
+
+using gpu::CommandList;
+
+class KeptCommandsTest : public testing::Test {
+  protected:
+    const gpu::Device& device_ = device_under_test().device;
+    gpu::KeptCommands kept_{device_};
+    gpu::Buffer buffer_{device_, 64, gpu::Buffer::Place::Device, "filled"};
+
+    /// `length` commands, the others being barriers.
+    CommandList filling(std::uint32_t value, std::size_t length = 1) const {
+        CommandList list(length, gpu::command::Barrier());
+        list.front() = gpu::command::Fill{buffer_.use(), 0, VK_WHOLE_SIZE, value};
+        return list;
+    }
+    /// Whether it had to be recorded.
+    bool records(const CommandList& list) {
+        const std::uint64_t before = kept_.recorded();
+        EXPECT_TRUE(kept_.of(list));
+        return kept_.recorded() > before;
+    }
+};
+
+TEST_F(KeptCommandsTest, EqualListsAreRecordedOnce) {
+    const vk::CommandBuffer first = kept_.of(filling(1));
+    EXPECT_NE(kept_.of(filling(2)), first);
+    EXPECT_EQ(kept_.of(filling(1)), first);
+    EXPECT_EQ(kept_.recorded(), 2U);
+    EXPECT_EQ(kept_.replayed(), 1U);
+    EXPECT_TRUE(records(filling(1, 2))) << "longer by one";
+    kept_.clear();
+    EXPECT_TRUE(records(filling(1)));
+}
+
+TEST_F(KeptCommandsTest, AHandleThatIsGivenAnewIsAnotherResource) {
+    CommandList list = filling(1);
+    EXPECT_TRUE(records(list));
+    EXPECT_FALSE(records(list));
+    std::get<gpu::command::Fill>(list.front()).buffer.serial =
+        gpu::Buffer(device_, 16, gpu::Buffer::Place::Host, "next").serial();
+    EXPECT_TRUE(records(list));
+    const vk::DescriptorSet set = device_under_test().bindings.set().handle();
+    const vk::PipelineLayout layout = device_under_test().pipelines.layout();
+    for (const std::uint64_t version : {7, 8})
+        EXPECT_TRUE(records({gpu::command::BindSet{vk::PipelineBindPoint::eCompute, layout, set, version}}));
+}
+
+TEST_F(KeptCommandsTest, WhatWasNotAskedForLongestIsLetGo) {
+    for (std::uint32_t i = 0; i < gpu::KeptCommands::kMostLists; ++i)
+        EXPECT_TRUE(records(filling(i)));
+    EXPECT_FALSE(records(filling(0)));
+    EXPECT_TRUE(records(filling(1000))) << "in the place of 1";
+    EXPECT_FALSE(records(filling(0)));
+    EXPECT_FALSE(records(filling(2)));
+    EXPECT_TRUE(records(filling(1)));
+}
+
+TEST_F(KeptCommandsTest, LongListsAreKeptAsLongAsThereIsRoom) {
+    constexpr std::size_t kHalf = gpu::KeptCommands::kMostCommands / 2;
+    EXPECT_TRUE(records(filling(1, kHalf)));
+    EXPECT_TRUE(records(filling(2, kHalf)));
+    EXPECT_FALSE(records(filling(1, kHalf)));
+    EXPECT_TRUE(records(filling(3)));
+    EXPECT_FALSE(records(filling(1, kHalf)));
+    EXPECT_TRUE(records(filling(2, kHalf)));
+    // Even one that is longer than all may be together.
+    EXPECT_TRUE(records(filling(4, 3 * kHalf)));
+    EXPECT_FALSE(records(filling(4, 3 * kHalf)));
+    EXPECT_TRUE(records(filling(2, kHalf)));
+}
+
+}  // namespace
+}  // namespace edgesplat::test

@@ -1,0 +1,130 @@
+// Commands are recorded once and replayed, and what is replayed is what was asked for.
+#include <gtest/gtest.h>
+
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+/// Every way to draw: each has other passes.
+struct Way {
+    const char* name;
+    void (*set)(Shot&);
+};
+
+constexpr Way kWays[] = {
+    {"Tiles", [](Shot&) {}},
+    {"EveryPixel", [](Shot& s) { s.settings.pixels = PixelChoice::Every; }},
+    {"Layers", [](Shot& s) { s.settings.sheet_format = SheetFormat::Float; }},
+    {"SlicedSheets", [](Shot& s) { s.settings.sheets = SheetCut::Sliced; }},
+    {"Plain", [](Shot& s) { s.settings.edges = EdgeEstimator::Off; }},
+    {"Shadows",
+     [](Shot& s) {
+         s.scene.lights = {directional_light({-1, -0.3, 1.2})};
+         s.scene.lights[0].shadows = true;
+     }},
+};
+
+Renderer renderer_of(const Shot& shot) {
+    Renderer renderer({.device = test_renderer().device().name, .validation = true});
+    renderer.set_volume(shot.volume);
+    return renderer;
+}
+
+RenderResult picture(Renderer& renderer, const Shot& shot) {
+    RenderResult result = renderer.render(shot.scene, shot.camera, shot.settings, shot.width, shot.height);
+    EXPECT_EQ(result.stats.validation_messages, 0U);
+    return result;
+}
+
+class Replay : public testing::TestWithParam<Way> {
+  protected:
+    Replay() { GetParam().set(shot_); }
+    Shot shot_ = torus_shot();
+};
+
+TEST_P(Replay, APictureFromTheSamePlaceRecordsNothing) {
+    Renderer renderer = renderer_of(shot_);
+    const RenderResult first = picture(renderer, shot_);
+    EXPECT_GT(first.stats.recordings, 2U);
+    picture(renderer, shot_);
+    const RenderResult replayed = picture(renderer, shot_);
+    EXPECT_GT(replayed.stats.submissions, 0U);
+    EXPECT_EQ(replayed.stats.recordings, 0U);
+    EXPECT_TRUE(replayed.color.pixels == first.color.pixels);
+}
+
+TEST_P(Replay, AFlightRecordsItsFirstPictures) {
+    Renderer renderer = renderer_of(shot_);
+    std::uint64_t submissions = 0, recordings = 0;
+    for (int i = 0; i < 16; ++i) {
+        shot_.camera.eye += glm::dvec3(0.2, 0.3, -0.1);
+        const RenderResult frame = picture(renderer, shot_);
+        if (i >= 8) {
+            submissions += frame.stats.submissions;
+            recordings += frame.stats.recordings;
+        }
+    }
+    EXPECT_LE(3 * recordings, submissions) << recordings << " of " << submissions;
+    Renderer fresh = renderer_of(shot_);
+    EXPECT_TRUE(picture(renderer, shot_).color.pixels == picture(fresh, shot_).color.pixels);
+}
+
+TEST_P(Replay, WhatIsMadeAnewIsNotReplayed) {
+    Renderer fresh = renderer_of(shot_);
+    const RenderResult expected = picture(fresh, shot_);
+    Renderer renderer = renderer_of(shot_);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(picture(renderer, shot_).color.pixels == expected.color.pixels);
+        // Buffers and images come and go, perhaps with the handles of others.
+        Shot other = shot_;
+        other.width = 40 + 30 * i;
+        other.scene.iso_values = {0.4};
+        other.scene.materials = {{}, {{1, 0.2, 0.1}, 2}};
+        picture(renderer, other);
+        EXPECT_TRUE(picture(renderer, shot_).color.pixels == expected.color.pixels);
+        const Shot ball = ball_over_plate_shot();
+        renderer.set_volume(ball.volume);
+        picture(renderer, ball);
+        renderer.set_volume(shot_.volume);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ways, Replay, testing::ValuesIn(kWays),
+                         [](const auto& parameter) { return std::string(parameter.param.name); });
+
+TEST(ReplayOfRays, RecordsNothingAgain) {
+    const Shot shot = torus_shot();
+    Renderer renderer = renderer_of(shot);
+    const auto cast = [&](const Camera& camera) {
+        return renderer.raycast(shot.scene, camera, shot.settings, {}, shot.width, shot.height);
+    };
+    const RenderResult first = cast(shot.camera);
+    EXPECT_GT(first.stats.recordings, 0U);
+    Camera moved = shot.camera;
+    moved.eye += glm::dvec3(1, 0, 0);
+    EXPECT_FALSE(cast(moved).color.pixels == first.color.pixels);
+    const RenderResult again = cast(shot.camera);
+    EXPECT_EQ(again.stats.submissions, 1U);
+    EXPECT_EQ(again.stats.recordings, 0U);
+    EXPECT_TRUE(again.color.pixels == first.color.pixels);
+}
+
+TEST(ReplayOfCounts, AreThoseOfTheFirstTime) {
+    Shot shot = torus_shot();
+    shot.settings.sheet_format = SheetFormat::Float;
+    Renderer renderer = renderer_of(shot);
+    picture(renderer, shot);
+    renderer.count_fragments(true);
+    const RenderResult first = picture(renderer, shot), again = picture(renderer, shot);
+    if (!first.stats.draw_counts) GTEST_SKIP() << "this device counts no draws";
+    EXPECT_EQ(again.stats.recordings, 0U);
+    EXPECT_GT(first.stats.draw_counts->fragments, 0U);
+    EXPECT_EQ(again.stats.draw_counts->fragments, first.stats.draw_counts->fragments);
+    EXPECT_EQ(again.stats.draw_counts->vertices, first.stats.draw_counts->vertices);
+    renderer.count_fragments(false);
+    EXPECT_FALSE(picture(renderer, shot).stats.draw_counts.has_value());
+}
+
+}  // namespace
+}  // namespace edgesplat::test
