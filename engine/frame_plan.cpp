@@ -325,6 +325,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
     plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
+    plan.may_refine = plan.refined;
     plan.variant.transfer = !scene.transfer.empty();
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR

@@ -57,6 +57,7 @@ struct FramePlan {
     bool gradient = false;               ///< colour over a background of two colours
     bool wide_marks = false;             ///< of tiles' entries, for 4 x 2 pixels at once (4_mark_pixels)
     bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
+    bool may_refine = false;             ///< `refined` before the splats' sizes were known
     std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
     std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
     double reach = 0;                    ///< no kernel reaches further, voxels

@@ -140,7 +140,7 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
              vk::Format::eR32Uint);
         grow(device, targets.tiles_seen, tiles * kWord, Place::Host, "closed pixels, seen");
         grow(device, targets.tile_finest, tiles * kWord, Place::Device, "finest splats of tiles");
-    } else {
+    } else if (!plan_in_use.may_refine) {
         targets.tile_finest = {};
         targets.tiles_seen = {};
         targets.tile_pixels = {};
