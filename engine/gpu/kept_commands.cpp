@@ -3,6 +3,17 @@
 #include <algorithm>
 
 namespace edgesplat::gpu {
+namespace {
+
+/// Commands, and words that some of them bring along.
+std::size_t weight_of(const CommandList& list) {
+    std::size_t weight = list.size();
+    for (const Command& one : list)
+        if (const auto* update = std::get_if<command::Update>(&one)) weight += update->values.size();
+    return weight;
+}
+
+}  // namespace
 
 KeptCommands::KeptCommands(const Device& device)
     : device_(&device),
@@ -15,12 +26,13 @@ vk::CommandBuffer KeptCommands::of(const CommandList& list) {
         ++replayed_;
         return *kept_.back().buffer;
     }
-    std::size_t commands = list.size();
+    const std::size_t weight = weight_of(list);
+    std::size_t all = weight;
     for (const Kept& kept : kept_)
-        commands += kept.list.size();
+        all += kept.weight;
     vk::raii::CommandBuffer buffer = nullptr;
-    while (!kept_.empty() && (kept_.size() >= kMostLists || commands > kMostCommands)) {
-        commands -= kept_.front().list.size();
+    while (!kept_.empty() && (kept_.size() >= kMostLists || all > kMostCommands)) {
+        all -= kept_.front().weight;
         buffer = std::move(kept_.front().buffer);
         kept_.erase(kept_.begin());
     }
@@ -30,7 +42,7 @@ vk::CommandBuffer KeptCommands::of(const CommandList& list) {
     }
     record(buffer, list);
     ++recorded_;
-    kept_.push_back({list, std::move(buffer)});
+    kept_.push_back({list, weight, std::move(buffer)});
     return *kept_.back().buffer;
 }
 

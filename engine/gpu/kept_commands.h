@@ -6,7 +6,8 @@
 
 namespace edgesplat::gpu {
 
-/// Keeps the lists that were last asked for, at most kMostLists of them and kMostCommands in all. None may be asked for
+/// Keeps the lists that were last asked for, at most kMostLists of them and kMostCommands in all, each word that a
+/// command brings along counting as one. None may be asked for
 /// while the device still runs the one before.
 class KeptCommands {
   public:
@@ -26,6 +27,7 @@ class KeptCommands {
   private:
     struct Kept {
         CommandList list;
+        std::size_t weight = 0;  ///< counts towards kMostCommands
         vk::raii::CommandBuffer buffer = nullptr;
     };
     const Device* device_;

@@ -77,5 +77,19 @@ TEST_F(KeptCommandsTest, LongListsAreKeptAsLongAsThereIsRoom) {
     EXPECT_TRUE(records(filling(2, kHalf)));
 }
 
+TEST_F(KeptCommandsTest, WhatListsBringAlongCounts) {
+    constexpr std::size_t kWords = gpu::KeptCommands::kMostCommands / 4;
+    const gpu::Buffer words(device_, kWords * sizeof(std::uint32_t), gpu::Buffer::Place::Device, "words");
+    const auto bringing = [&](std::uint32_t value) -> CommandList {
+        return {gpu::command::Update{words.use(), 0, std::vector<std::uint32_t>(kWords, value)}};
+    };
+    for (std::uint32_t i = 0; i < 3; ++i)
+        EXPECT_TRUE(records(bringing(i)));
+    EXPECT_FALSE(records(bringing(0)));
+    EXPECT_TRUE(records(bringing(3))) << "in the place of 1";
+    EXPECT_FALSE(records(bringing(0)));
+    EXPECT_TRUE(records(bringing(1)));
+}
+
 }  // namespace
 }  // namespace edgesplat::test
