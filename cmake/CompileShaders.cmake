@@ -27,6 +27,7 @@ ${entries}};
 std::span<const EmbeddedShader> embedded_shaders() { return kShaders; }
 }  // namespace edgesplat::gpu
 " @ONLY)
-    set_source_files_properties(${out}/embedded_shaders.cpp PROPERTIES OBJECT_DEPENDS "${headers}")
+    set_source_files_properties(${out}/embedded_shaders.cpp PROPERTIES OBJECT_DEPENDS "${headers}"
+        SKIP_UNITY_BUILD_INCLUSION ON)
     target_sources(${target} PRIVATE ${out}/embedded_shaders.cpp)
 endfunction()

@@ -69,6 +69,23 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_CURVED, "SPEC_CURVED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}},
                     .frame_fields = {"traits", "curvature_unit"},
                     .scene_fields = {"traits", "curvature_unit"}});
+    rows.push_back({.name = "faces",
+                    .help = "kernels are cut at the surface, a quadric that is found once, and lit where rays meet it",
+                    .call = "settings.warp = \"face\"; --warp face",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return draws_faces(drawn_settings(r)) ? "warp is `face`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.warp = WarpFamily::Face; },
+                    .base = warp,
+                    .resources = {"splat traits"},
+                    .resized = {"prepared splats", "tile entries", "tile marks"},
+                    .record = {{"bending", 8}},
+                    .constants = {{shader::SPEC_FACES, "SPEC_FACES"},
+                                  {shader::SPEC_WARP, "SPEC_WARP"},
+                                  {shader::SPEC_SMOOTH, "SPEC_SMOOTH", 1},
+                                  {shader::SPEC_NODES, "SPEC_NODES", 8}},
+                    .frame_fields = {"traits"},
+                    .scene_fields = {"traits"}});
     rows.push_back({.name = "edge weights",
                     .help = "kernels are weighted by their distance to the edge: what lies on one side has its volume",
                     .call = "settings.normalise = \"edge\"; --normalise edge",

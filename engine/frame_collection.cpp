@@ -70,9 +70,8 @@ void reserve(const gpu::Device& device, gpu::Commands& commands, const Collectio
     lengthen(device, commands, resources.splats, count * sizeof(shader::Splat), used * sizeof(shader::Splat),
              "splat list");
     params.splats = resources.splats.address();
-    if (plan.curved || plan.weighted != 0) {
-        lengthen(device, commands, resources.traits, count * sizeof(std::uint32_t), used * sizeof(std::uint32_t),
-                 "splat traits");
+    if (const std::size_t bytes = plan.trait_bytes(); bytes > 0) {
+        lengthen(device, commands, resources.traits, count * bytes, used * bytes, "splat traits");
         params.traits = resources.traits.address();
     }
     if (!plan.transfer.empty()) {
@@ -88,7 +87,7 @@ CollectionBlock whole_block(const glm::ivec3& dims) {
 }
 
 passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
-    return {plan.estimator, plan.skip_buried, plan.params.iso_count};
+    return {plan.estimator, plan.skip_buried, plan.params.iso_count, plan.faces};
 }
 
 passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
@@ -96,9 +95,10 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .iso_count = plan.params.iso_count,
             .edges = plan.edge_field,
             .buried = plan.buried,
-            .smooth = plan.edge_field && marches(plan.estimator),
+            .smooth = plan.edge_field && marches(plan.estimator) && !plan.faces,
             .curved = plan.curved,
             .weighted = plan.weighted,
+            .faces = plan.faces,
             .clip = plan.clip,
             .transfer = !plan.transfer.empty()};
 }
@@ -266,7 +266,7 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
         const passes::EstimateEdges in = estimate_inputs(plan);
         const passes::EdgeRegion estimated = core_of(shader::ESTIMATE_MARGIN);
         run([&] { commands.span("1_estimate_edges", [&] { passes::estimate_only(commands, estimated, in); }); });
-        if (marches(plan.estimator)) {
+        if (passes::adopts(in)) {
             const passes::EdgeRegion adopting = core_of(shader::ADOPT_MARGIN);
             run([&] { commands.span("1_estimate_edges", [&] { passes::adopt_edges(commands, adopting, in); }); });
         }

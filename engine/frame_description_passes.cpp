@@ -78,7 +78,7 @@ class Passes {
         if (plan.edge_field) {
             std::vector<std::string> shaders{
                 variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))};
-            if (marches(plan.estimator))
+            if (passes::adopts(estimate_inputs(plan)))
                 shaders.push_back(variant("1c_adopt_edges.comp", passes::adopt_constants(estimate_inputs(plan))));
             const double rate = plan.estimator == EdgeEstimator::Off     ? kRates.normal_voxel
                                 : plan.estimator == EdgeEstimator::Cubic ? kRates.spline_voxel

@@ -129,9 +129,9 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
         out.push_back(buffer("classified values", f.splats.splats * sizeof(float), "(splats) float", "2", "5"));
     }
     out.push_back(buffer("splat list", f.splats.splats * sizeof(shader::Splat), "(splats) Splat", "2", "3, 5"));
-    if (plan.curved || plan.weighted != 0) {
-        out.push_back(
-            buffer("splat traits", f.splats.splats * sizeof(std::uint32_t), "(splats) curvature, weight", "2", "5"));
+    if (const std::size_t bytes = plan.trait_bytes(); bytes > 0) {
+        out.push_back(buffer("splat traits", f.splats.splats * bytes,
+                             plan.faces ? "(splats) second derivatives" : "(splats) curvature, weight", "2", "5"));
     }
 }
 

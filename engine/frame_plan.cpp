@@ -12,6 +12,7 @@
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/edge_weight.h"
+#include "footprints/face.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
@@ -28,6 +29,7 @@ constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
 constexpr double kFewNodesSpacing = 0.3;
+constexpr std::uint32_t kFaceNodes = 5;       // of a piece of a kernel that a face cuts
 constexpr double kFarthestPointLight = 1e12;  // mm
 
 /// Millimetres per voxel along the axis of shortest step.
@@ -166,6 +168,12 @@ SupportSpheres support_spheres(const Settings& drawn) {
     if (!draws_warped(drawn)) return {{}, kKernelRadius};
     const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
     SupportSpheres out;
+    if (draws_faces(drawn)) {
+        // Each face has a reach of its own, which the shaders find; no more than this.
+        out.farthest = kKernelRadius + kFaceDepth;
+        out.by_distance.assign(shader::SUPPORT_STEPS, {0, out.farthest, out.farthest});
+        return out;
+    }
     const bool plane = drawn.edge_shape != EdgeShape::Curved;
     out.by_distance = plane ? covering_supports(band, shader::SUPPORT_STEPS)
                             : covering_supports_of_curved(band, shader::SUPPORT_STEPS);
@@ -224,7 +232,7 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
-           curved == other.curved && weighted == other.weighted &&
+           curved == other.curved && faces == other.faces && weighted == other.weighted &&
            std::ranges::equal(transfer, other.transfer, same_row) && a.curvature_unit == b.curvature_unit &&
            a.estimate_mask == b.estimate_mask && a.strength == b.strength && a.iso_count == b.iso_count &&
            std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
@@ -263,10 +271,11 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     if (plan.buried)
         plan.clip =
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
-    params.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
+    params.band = static_cast<float>(edge_reach(settings));
+    plan.faces = draws_faces(settings);
     plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     plan.weighted = weighting(settings);
-    params.estimate_mask = plan.weighted == shader::WEIGHTED_VOXEL ? ~0U : params.visible_mask;
+    params.estimate_mask = plan.weighted == shader::WEIGHTED_VOXEL || plan.faces ? ~0U : params.visible_mask;
     params.half_width = static_cast<float>(settings.edge_half_width);
     // Only weights depend on the strength here.
     params.strength = plan.weighted == shader::WEIGHTED_VOXEL ? static_cast<float>(settings.edge_strength) : 0.0F;
@@ -320,6 +329,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
                              : curved                                             ? 16U
                              : settings.warp == WarpFamily::Paper                 ? 10U
+                             : draws_faces(settings)                              ? kFaceNodes
                                                                                   : 8U};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
@@ -363,7 +373,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                                    static_cast<float>(bounded(scene.materials[m].extinction, volume.geometry)));
     }
 
-    p.band = static_cast<float>(kKernelRadius + settings.edge_half_width);
+    p.band = static_cast<float>(edge_reach(settings));
     plan.variant.antialias = scene.effects.antialias;
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 

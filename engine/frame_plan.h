@@ -26,7 +26,10 @@ struct CollectionPlan {
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
     /// voxel may adopt an edge that two of them share.
     bool skip_buried = true;
-    bool curved = false;         ///< splats carry the curvature of their edge
+    bool curved = false;  ///< splats carry the curvature of their edge
+    bool faces = false;   ///< edges are faces, found on both sides, and splats carry their second derivatives
+    /// Bytes of a splat's traits; 0 where it has none.
+    std::size_t trait_bytes() const { return faces ? 8 : (curved || weighted != 0 ? 4 : 0); }
     std::uint32_t weighted = 0;  ///< splats carry a weight: shader::WEIGHTED_*
                                  ///< (VOXEL: edges are estimated on both sides, also where nothing is drawn)
     /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not

@@ -4,13 +4,20 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/overlay_font.h"
 #include "engine/picture_library_internal.h"
 
 namespace edgesplat {
 namespace {
 
-constexpr const char* kFont = "DejaVuSans";
 constexpr float kRimOpacity = 0.85F;
+
+/// By its path: which names OpenImageIO finds, and in which folders, changes with its version. Where distributions do
+/// not put it, it may still know better.
+const char* font() {
+    static const std::string file = font_file().value_or("DejaVuSans");
+    return file.c_str();
+}
 
 /// What there is of a text where there is a font for it.
 template <typename Found>
@@ -25,7 +32,7 @@ Found found(std::optional<Found> of_text) {
 
 glm::ivec2 text_size(std::string_view text, int height) {
     if (text.empty()) return {0, 0};
-    return found(picture_library().text_size(std::string(text), height, kFont));
+    return found(picture_library().text_size(std::string(text), height, font()));
 }
 
 Canvas::Canvas(const PixelBox& box, int rim)
@@ -67,7 +74,7 @@ void Canvas::rectangle(const glm::dvec2& low, const glm::dvec2& high, const glm:
 
 void Canvas::text(std::string_view text, const glm::dvec2& center, int height, const glm::dvec3& color) {
     if (text.empty()) return;
-    const TextMask mask = found(picture_library().text(std::string(text), height, kFont));
+    const TextMask mask = found(picture_library().text(std::string(text), height, font()));
     const glm::ivec2 corner(glm::round(center - glm::dvec2(mask.width, mask.height) / 2.0));
     std::size_t pixel = 0;
     for (int y = 0; y < mask.height; ++y)

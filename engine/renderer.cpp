@@ -16,11 +16,6 @@ namespace {
 
 using Place = gpu::Buffer::Place;
 using Usage = vk::ImageUsageFlagBits;
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
 Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {

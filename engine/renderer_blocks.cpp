@@ -14,11 +14,6 @@ namespace {
 
 using Place = gpu::Buffer::Place;
 using Usage = vk::ImageUsageFlagBits;
-using Clock = std::chrono::steady_clock;
-
-double milliseconds_since(Clock::time_point start) {
-    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
 
 // A level of so many voxels is there in a moment.
 constexpr std::size_t kCoarseVoxels = std::size_t{1} << 17U;
@@ -169,8 +164,9 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
         }
         list = std::move(closed);
     };
+    const std::size_t room = lists.splats ? lists.splats.bytes() / sizeof(shader::Splat) : 1;
     close_up(lists.splats, sizeof(shader::Splat), "splat list");
-    close_up(lists.traits, sizeof(std::uint32_t), "splat traits");
+    close_up(lists.traits, lists.traits ? lists.traits.bytes() / room : 0, "splat traits");
     close_up(lists.values, sizeof(float), "classified values");
     auto& params = lists.scene.mapped<shader::SceneParams>(1)[0];
     params.splats = lists.splats.address();

@@ -15,15 +15,13 @@
 namespace edgesplat {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Adds the time between its making and its end to a sum, and the processor's to another.
 class AddedTime {
   public:
     explicit AddedTime(double& milliseconds, double* processor = nullptr)
         : sum_(&milliseconds), processor_(processor) {}
     ~AddedTime() {
-        *sum_ += std::chrono::duration<double, std::milli>(Clock::now() - start_).count();
+        *sum_ += milliseconds_since(start_);
         if (processor_) *processor_ += 1e3 * static_cast<double>(std::clock() - ticks_) / CLOCKS_PER_SEC;
     }
     AddedTime(const AddedTime&) = delete;

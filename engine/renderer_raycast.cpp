@@ -28,10 +28,6 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
 
 RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, const Settings& wanted,
                                     const RaycastSettings& raycast, int width, int height) {
-    using Clock = std::chrono::steady_clock;
-    const auto milliseconds_since = [](Clock::time_point start) {
-        return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-    };
     auto& self = *state_;
     const Settings settings = drawn_as(wanted);
     RenderResult result;

@@ -1,6 +1,7 @@
 // What a Renderer owns. Tests of single passes look in here; embedders do not.
 #pragma once
 
+#include <chrono>
 #include <future>
 #include <limits>
 #include <optional>
@@ -15,6 +16,11 @@
 #include "footprints/footprint_table.h"
 
 namespace edgesplat {
+
+using Clock = std::chrono::steady_clock;
+inline double milliseconds_since(Clock::time_point start) {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
 
 /// Blocks of a volume whose splats are in the list.
 struct Residence {

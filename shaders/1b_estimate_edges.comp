@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 const uint OFF = 0u, TAYLOR = 1u, QUADRATIC = 2u, MARCH = 3u, CUBIC = 4u;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -36,6 +37,13 @@ vec3 field_gradient(vec3 p) {
     }
     return g;
 }
+
+// (gradient, value).
+vec4 field_slope(vec3 p) {
+    if (ESTIMATOR == CUBIC) return bspline_slope(p);
+    return vec4(field_gradient(p), trilinear(p));
+}
+#include "shaders/lib/find_surfel.glsl"
 
 // Direction in which the data change most around a voxel: principal axis of the structure tensor; 0 where flat.
 vec3 change_axis(ivec3 p) {
@@ -177,7 +185,9 @@ void main() {
         float high = params.scene.iso[material];
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR || ESTIMATOR == QUADRATIC) e = extrapolate(p, value, low, high, params.scene.band);
-        if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) e = march(p, value, low, high);
+        bool marched = ESTIMATOR == MARCH || ESTIMATOR == CUBIC;
+        if (marched && FACES == 0u) e = march(p, value, low, high);
+        if (marched && FACES == 1u) e = find_surfel(p, value, low, high);
         if (e.state == EDGE_NONE) {
             vec3 g = voxel_gradient(p);
             float slope = length(g);

@@ -12,18 +12,21 @@ layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
 layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 
 ivec3 dims;
 #include "shaders/lib/material.glsl"
-#include "shaders/lib/trilinear.glsl"
+#include "shaders/lib/volume_sampling.glsl"
 #include "shaders/lib/transfer.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/lib/edge_smoothing.glsl"
 #include "shaders/lib/kernel_weight.glsl"
+#include "shaders/lib/fit_face.glsl"
 #include "shaders/lib/edge_weight.glsl"
 
 // With the other side of the edge, a voxel beyond it.
@@ -71,8 +74,20 @@ void main() {
         if (CURVED == 1u || WEIGHTED == WEIGHTED_EDGE)
             UintsRef(params.scene.traits).at[i] = pack_traits(
                 curvature, WEIGHTED == WEIGHTED_EDGE ? edge_weight(e, contrast) : 1.0, params.scene.curvature_unit);
+        uint normal = code.x;
+        if (FACES == 1u) {
+            // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.
+            Face face = fit_face(p, material);
+            bool cut = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
+            vec3 g = cut ? vec3(0.0) : voxel_gradient(p);
+            float slope = length(g);
+            e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
+            normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
+            BendingsRef(params.scene.traits).at[i] =
+                cut ? uvec2(pack_bending(face.h.diagonal), pack_bending(face.h.mixed)) : uvec2(0u);
+        }
         with_edge = e.state >= EDGE_LOWER;
-        splats.at[i] = Splat(splat.voxel, code.x, pack_edge(e) | (material << 28));
+        splats.at[i] = Splat(splat.voxel, normal, (e.state == EDGE_NONE ? 0u : pack_edge(e)) | (material << 28));
     }
     uint edges_here = subgroupAdd(with_edge ? 1u : 0u);
     if (subgroupElect() && edges_here > 0u) atomicAdd(UintsRef(params.scene.run_offsets).at[params.scene.edge_count_at], edges_here);

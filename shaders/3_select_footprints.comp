@@ -8,6 +8,7 @@
 
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
+layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
@@ -52,7 +53,7 @@ void main() {
         i = batch.x + min(slot % SPLAT_BATCH, batch.y - 1u);
     }
     Splat splat = SplatsRef(params.frame.splats).at[i];
-    Projection p = place_splat(splat.voxel, unpack_edge(splat.normal, splat.edge));
+    Projection p = place_splat(i, splat.voxel, unpack_edge(splat.normal, splat.edge));
     project_support(p);
     ivec4 box = pixel_box(p);
     bool drawn = there && p.visible && box.x < box.z && box.y < box.w;

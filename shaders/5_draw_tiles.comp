@@ -51,6 +51,7 @@ vec2 pixels;
 vec3 matter;
 uvec2 number_material;
 vec4 filtered;
+FaceForm face_form;
 #define CLIP_PARAMS params.frame
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/prepared_splat.glsl"
@@ -154,10 +155,14 @@ void main() {
                 shape = vec4(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, CURVED == 1u ? h.inputs.shape.y : 0.0,
                              SLICED == 1u ? h.inputs.shape.zw : vec2(0.0));
                 if (BANDS) band = h.band;
+                if (FACES) {
+                    face_form = h.inputs.face;
+                    number_material = h.inputs.number_material;
+                }
                 if (CLIP_KEEP + CLIP_REMOVE > 0u) {
                     from_eye = h.inputs.from_eye;
                     matter = h.inputs.matter;
-                    number_material = h.inputs.number_material;
+                    if (!FACES) number_material = h.inputs.number_material;
                 }
                 vec3 offset = h.start + h.plane * across;
                 if (ANTIALIAS == 1u) {

@@ -28,11 +28,21 @@ layout(location = 5) in vec2 pixels;
 layout(location = 6) flat in vec3 matter;
 layout(location = 7) flat in uvec2 number_material;
 layout(location = 8) flat in vec4 filtered;
+layout(location = 9) flat in vec4 face_slope;
+layout(location = 10) flat in vec4 face_diagonal;
+layout(location = 11) flat in vec4 face_mixed;
+layout(location = 12) flat in vec2 face_cut_ends;
 layout(location = 0) out vec4 sheet;
+
+#include "shaders/lib/face_form.glsl"
+FaceForm face_form;
 
 #include "shaders/lib/splat_value.glsl"
 
 void main() {
+    if (FACES)
+        face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
+                             FaceCut(face_diagonal.w, face_cut_ends.x, face_mixed.w, face_cut_ends.y, 0.0, 0.0));
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));

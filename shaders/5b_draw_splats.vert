@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
+layout(constant_id = SPEC_WARP) const uint WARP = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
@@ -32,6 +33,10 @@ layout(location = 5) out vec2 pixels;              // from the voxel's centre to
 layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
 layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
 layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; with antialias only
+layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
+layout(location = 10) flat out vec4 face_diagonal; // depth last
+layout(location = 11) flat out vec4 face_mixed;    // thickness last
+layout(location = 12) flat out vec2 face_cut_ends; // bend, reach2
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -40,7 +45,7 @@ void main() {
     uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
     Splat splat = SplatsRef(params.frame.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = place_splat(splat.voxel, e);
+    Projection p = place_splat(number, splat.voxel, e);
     uint layer = 0u;
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
@@ -73,10 +78,14 @@ void main() {
     color_sigma = s.color_sigma;
     normal_distance = s.normal_distance;
     shape = s.shape;
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-        matter = s.matter;
-        number_material = s.number_material;
+    if (FACES) {
+        face_slope = vec4(s.face.slope, s.face.value);
+        face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
+        face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
+        face_cut_ends = vec2(s.face.cut.bend, s.face.cut.reach2);
     }
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) matter = s.matter;
+    if (CLIP_KEEP + CLIP_REMOVE > 0u || FACES) number_material = s.number_material;
     if (ANTIALIAS == 1u) {
         pixels = (p.slope + slope - p.view.xy / p.view.z) / params.frame.pixel;
         filtered = s.filtered;

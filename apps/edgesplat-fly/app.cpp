@@ -3,7 +3,9 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <exception>
 #include <filesystem>
 
 #include "apps/edgesplat-fly/gui_input.h"
@@ -11,6 +13,7 @@
 #include "apps/edgesplat-fly/picture_view.h"
 #include "engine/error.h"
 #include "engine/image_file.h"
+#include "engine/overlay_font.h"
 #include "engine/scene/nearest_name.h"
 #include "engine/srgb.h"
 #include "engine/viewer/keeping.h"
@@ -91,10 +94,8 @@ void App::load_font() {
     state_.em = std::round(kTextSize * scale);
     ImGuiIO& io = ImGui::GetIO();
     static const ImWchar ranges[] = {0x20, 0xFF, 0};
-    for (const char* path : {"/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf", "/usr/share/fonts/TTF/DejaVuSans.ttf"})
-        if (fs::exists(path) &&
-            io.Fonts->AddFontFromFileTTF(path, static_cast<float>(state_.em), nullptr, ranges) != nullptr)
-            break;
+    if (const auto file = edgesplat::font_file())
+        io.Fonts->AddFontFromFileTTF(file->c_str(), static_cast<float>(state_.em), nullptr, ranges);
     if (io.Fonts->Fonts.empty()) {
         io.Fonts->AddFontDefault();
         io.FontGlobalScale = static_cast<float>(scale);

@@ -2,6 +2,8 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
+#include <algorithm>
+
 #include "apps/edgesplat-fly/controls.h"
 #include "apps/edgesplat-fly/panels.h"
 #include "engine/viewer/keeping.h"

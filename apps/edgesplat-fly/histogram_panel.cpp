@@ -14,7 +14,7 @@ namespace {
 
 namespace viewer = edgesplat::viewer;
 using edgesplat::SceneDocument;
-using Kind = PlotState::Kind;
+using PlotKind = PlotState::Kind;
 using Target = PlotState::Target;
 
 constexpr double kPointReach = 0.55, kLineReach = 0.4, kSnap = 0.25;  // em
@@ -33,22 +33,22 @@ Target target_at(const AppState& state, const ValuePlot& plot) {
         const double distance = glm::length(at - plot.mouse);
         if (distance > reach) continue;
         reach = distance;
-        target = {Kind::Point, i};
+        target = {PlotKind::Point, i};
     }
-    if (target.kind == Kind::Point) return target;
+    if (target.kind == PlotKind::Point) return target;
     reach = kLineReach * state.em;
     for (std::size_t i = 0; i < document.iso_values.size(); ++i) {
         const double distance = std::abs(plot.x_of(document.iso_values[i]) - plot.mouse.x);
         if (distance > reach) continue;
         reach = distance;
-        target = {Kind::Iso, i};
+        target = {PlotKind::Iso, i};
     }
     return target;
 }
 
 glm::dvec2 place_of(const AppState& state, const ValuePlot& plot, const Target& target) {
     const SceneDocument& document = state.session.document();
-    if (target.kind == Kind::Iso) return {plot.x_of(document.iso_values[target.place]), plot.mouse.y};
+    if (target.kind == PlotKind::Iso) return {plot.x_of(document.iso_values[target.place]), plot.mouse.y};
     const auto& point = document.transfer[target.place];
     return {plot.x_of(point.value), plot.y_of(point.extinction)};
 }
@@ -77,7 +77,7 @@ Target added(AppState& state, const ValuePlot& plot) {
                                         gap_of(volume));
         },
         false);
-    return place ? Target{point ? Kind::Point : Kind::Iso, *place} : Target{};
+    return place ? Target{point ? PlotKind::Point : PlotKind::Iso, *place} : Target{};
 }
 
 void drag(AppState& state, const ValuePlot& plot) {
@@ -86,7 +86,7 @@ void drag(AppState& state, const ValuePlot& plot) {
     const glm::dvec2 to = plot.mouse - now.offset;
     state.session.edit(
         [&](SceneDocument& d) {
-            if (now.grabbed.kind == Kind::Iso)
+            if (now.grabbed.kind == PlotKind::Iso)
                 now.grabbed.place = viewer::move_iso_value(d, volume, now.grabbed.place, snapped(state, plot, to.x));
             else
                 viewer::move_transfer_point(d.transfer, now.grabbed.place, plot.value_at(to.x),
@@ -98,38 +98,38 @@ void drag(AppState& state, const ValuePlot& plot) {
 void take_away(AppState& state, const Target& target) {
     bool gone = false;
     state.session.edit([&](SceneDocument& d) {
-        gone = target.kind == Kind::Iso ? viewer::remove_iso_value(d, target.place)
-                                        : viewer::remove_transfer_point(d.transfer, target.place);
+        gone = target.kind == PlotKind::Iso ? viewer::remove_iso_value(d, target.place)
+                                            : viewer::remove_transfer_point(d.transfer, target.place);
     });
     if (!gone) state.session.say("the last one stays");
-    if (gone && target.kind == Kind::Point) state.editing.plot.chosen.reset();
+    if (gone && target.kind == PlotKind::Point) state.editing.plot.chosen.reset();
 }
 
 bool there(const AppState& state, const Target& target) {
     const SceneDocument& document = state.session.document();
-    return (target.kind == Kind::Iso && target.place < document.iso_values.size()) ||
-           (target.kind == Kind::Point && target.place < document.transfer.size());
+    return (target.kind == PlotKind::Iso && target.place < document.iso_values.size()) ||
+           (target.kind == PlotKind::Point && target.place < document.transfer.size());
 }
 
 void mouse(AppState& state, const ValuePlot& plot, const Target& under) {
     PlotState& now = state.editing.plot;
-    if (plot.right && under.kind != Kind::None) take_away(state, under);
+    if (plot.right && under.kind != PlotKind::None) take_away(state, under);
     if (plot.pressed) {
         now.grabbed = under;
-        now.offset = under.kind == Kind::None ? glm::dvec2(0) : plot.mouse - place_of(state, plot, under);
-        if (plot.twice && under.kind == Kind::None) now.grabbed = added(state, plot);
-        if (now.grabbed.kind == Kind::Point) now.chosen = now.grabbed.place;
+        now.offset = under.kind == PlotKind::None ? glm::dvec2(0) : plot.mouse - place_of(state, plot, under);
+        if (plot.twice && under.kind == PlotKind::None) now.grabbed = added(state, plot);
+        if (now.grabbed.kind == PlotKind::Point) now.chosen = now.grabbed.place;
     }
     if (!plot.held || !there(state, now.grabbed)) now.grabbed = {};
     const ImVec2 way = ImGui::GetIO().MouseDelta;
-    if (now.grabbed.kind != Kind::None && !plot.pressed && (way.x != 0 || way.y != 0)) drag(state, plot);
+    if (now.grabbed.kind != PlotKind::None && !plot.pressed && (way.x != 0 || way.y != 0)) drag(state, plot);
 }
 
 void tooltip(const AppState& state, const ValuePlot& plot, const Target& target) {
     const SceneDocument& document = state.session.document();
-    if (target.kind == Kind::Iso) {
+    if (target.kind == PlotKind::Iso) {
         ImGui::SetTooltip("iso-value %g", document.iso_values[target.place]);
-    } else if (target.kind == Kind::Point) {
+    } else if (target.kind == PlotKind::Point) {
         const auto& point = document.transfer[target.place];
         ImGui::SetTooltip("%g: %g per mm", point.value, point.extinction);
     } else {
@@ -168,8 +168,8 @@ void histogram_panel(AppState& state) {
     PlotState& now = state.editing.plot;
     const Target under = plot.hovered ? target_at(state, plot) : Target{};
     mouse(state, plot, under);
-    const Target bright = now.grabbed.kind == Kind::None ? target_at(state, plot) : now.grabbed;
-    const auto is = [&](Kind kind, std::size_t i) {
+    const Target bright = now.grabbed.kind == PlotKind::None ? target_at(state, plot) : now.grabbed;
+    const auto is = [&](PlotKind kind, std::size_t i) {
         return (plot.hovered || plot.held) && bright.kind == kind && bright.place == i;
     };
     const SceneDocument& document = state.session.document();
@@ -178,10 +178,10 @@ void histogram_panel(AppState& state) {
     for (std::size_t i = 0; i < document.iso_values.size(); ++i) {
         const auto& material = state.session.scene().materials.at(i + 1);
         paint_iso(plot, document.iso_values[i], document.transfer.empty() ? material.color : glm::dvec3(0.8),
-                  is(Kind::Iso, i));
+                  is(PlotKind::Iso, i));
     }
     for (std::size_t i = 0; i < document.transfer.size(); ++i)
-        paint_point(plot, document.transfer[i], now.chosen == i || is(Kind::Point, i), state.em);
+        paint_point(plot, document.transfer[i], now.chosen == i || is(PlotKind::Point, i), state.em);
     plot.list->PopClipRect();
     if (plot.hovered || plot.held) tooltip(state, plot, bright);
     visible_range(state);

@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "apps/edgesplat-fly/panels.h"
 #include "engine/scene/ladder.h"
 #include "engine/viewer/pick.h"

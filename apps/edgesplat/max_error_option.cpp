@@ -1,5 +1,7 @@
 #include "apps/edgesplat/max_error_option.h"
 
+#include <exception>
+
 #include <fmt/format.h>
 
 #include "engine/scene/ladder.h"

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <exception>
 #include <glm/glm.hpp>
 #include <limits>
 #include <optional>

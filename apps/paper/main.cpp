@@ -1,6 +1,7 @@
 // Writes docs/paper.md and its pictures: the figures of the paper, and its misprints with their proofs.
 #include <fmt/format.h>
 
+#include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <fstream>

@@ -16,7 +16,7 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kPixels = 320;
+constexpr int kFigurePixels = 320;
 constexpr int kRounds = 6;  // the first is dropped
 
 struct Variant {
@@ -55,7 +55,7 @@ void write_picture(const std::filesystem::path& path, const Image& color, const 
 Image outline_of(Renderer& renderer, Scene scene, const Camera& camera, const Settings& settings) {
     for (std::size_t m = 0; m + 1 < scene.materials.size(); ++m)
         scene.materials[m].extinction = 0;
-    Image image = renderer.render(scene, camera, settings, kPixels, kPixels).color;
+    Image image = renderer.render(scene, camera, settings, kFigurePixels, kFigurePixels).color;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
             for (int c = 0; c < 3; ++c)
@@ -106,7 +106,7 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
     std::vector<Shot> shots(list.size());
     for (int round = 0; round < kRounds; ++round) {
         for (std::size_t i = 0; i < list.size(); ++i) {
-            RenderResult result = renderer.render(figure.scene, camera, list[i].settings, kPixels, kPixels);
+            RenderResult result = renderer.render(figure.scene, camera, list[i].settings, kFigurePixels, kFigurePixels);
             if (round > 0) {
                 shots[i].frame.push_back(result.stats.frame_milliseconds);
                 shots[i].setup.push_back(result.stats.setup_milliseconds);
@@ -143,8 +143,8 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
     return {"figure " + figure.number,
             fmt::format("## Figure {}: {}\n\n{}\n\n{}\nDevice: {}, {} x {} pixels, median of {} frames, the "
                         "variants by turns.\n",
-                        figure.number, figure.title, figure.text, table, shots[0].stats.device.name, kPixels, kPixels,
-                        kRounds - 1)};
+                        figure.number, figure.title, figure.text, table, shots[0].stats.device.name, kFigurePixels,
+                        kFigurePixels, kRounds - 1)};
 }
 
 Section seam_section() {

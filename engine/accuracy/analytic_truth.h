@@ -8,7 +8,7 @@
 
 namespace edgesplat::accuracy {
 
-/// Of "builtin:NAME" or "builtin:NAME:SIZE", on the grid that `builtin_volume` samples; nothing for other paths.
+/// Of "builtin:NAME" with its grid and noise, on the grid that `builtin_volume` samples; nothing for other paths.
 std::optional<AnalyticScene> analytic_scene_of(std::string_view path);
 
 }  // namespace edgesplat::accuracy

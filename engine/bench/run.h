@@ -1,6 +1,7 @@
 // A suite measured on one device.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>

@@ -1,4 +1,6 @@
 // bench.json and bench.csv.
+#include <algorithm>
+
 #include "engine/bench/run_output.h"
 
 namespace edgesplat::bench {

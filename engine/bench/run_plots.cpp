@@ -1,4 +1,5 @@
 // Plots of a measured suite, and its files.
+#include <algorithm>
 #include <array>
 
 #include "engine/accuracy/json_text.h"

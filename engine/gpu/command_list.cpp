@@ -1,5 +1,7 @@
 #include "engine/gpu/command_list.h"
 
+#include <cstdint>
+
 namespace edgesplat::gpu {
 namespace {
 

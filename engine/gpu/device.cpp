@@ -22,11 +22,18 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
-// Performance hints are left out: images stay in layout GENERAL on purpose (see Commands).
+// Performance hints are left out: images stay in layout GENERAL on purpose (see Commands). So is what is general: that
+// is the loader's, about drivers and layers of the machine, and no fault of ours.
+// By way of the C struct: Vulkan-Hpp changed its own type of callbacks, and deprecates the other one.
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
-    using Severity = vk::DebugUtilsMessageSeverityFlagBitsEXT;
-    using Type = vk::DebugUtilsMessageTypeFlagBitsEXT;
-    return {{}, Severity::eWarning | Severity::eError, Type::eValidation | Type::eGeneral, &on_message, log};
+    VkDebugUtilsMessengerCreateInfoEXT info{};
+    info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
+    info.messageSeverity =
+        VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
+    info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT;
+    info.pfnUserCallback = &on_message;
+    info.pUserData = log;
+    return info;
 }
 
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,

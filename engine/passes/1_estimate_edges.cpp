@@ -30,9 +30,14 @@ void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t 
     }
 }
 
+bool adopts(const EstimateEdges& in) {
+    return marches(in.estimator) && !in.faces;
+}
+
 gpu::Specialization estimate_constants(const EstimateEdges& in) {
     return {{shader::SPEC_ESTIMATOR, static_cast<std::uint32_t>(in.estimator)},
             {shader::SPEC_BURIED, in.skip_buried ? 1 : 0},
+            {shader::SPEC_FACES, in.faces ? 1 : 0},
             {shader::SPEC_ISO_COUNT, in.iso_count}};
 }
 
@@ -53,7 +58,7 @@ void adopt_edges(gpu::Commands& commands, const EdgeRegion& region, const Estima
 
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
     estimate_only(commands, region, in);
-    if (marches(in.estimator)) adopt_edges(commands, region, in);
+    if (adopts(in)) adopt_edges(commands, region, in);
 }
 
 }  // namespace edgesplat::passes

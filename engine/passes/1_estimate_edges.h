@@ -23,7 +23,11 @@ struct EstimateEdges {
     EdgeEstimator estimator = EdgeEstimator::March;
     bool skip_buried = true;  ///< voxels marked by mark_buried get no edge
     std::uint32_t iso_count = 1;
+    bool faces = false;  ///< the surface's point nearest to a voxel is found instead; nothing is adopted
 };
+
+/// Whether voxels without an edge take one from others.
+bool adopts(const EstimateEdges& in);
 
 /// Specialization of 1b_estimate_edges.comp and of 1c_adopt_edges.comp, which follows it where edges are marched to.
 gpu::Specialization estimate_constants(const EstimateEdges& in);

@@ -14,6 +14,7 @@ struct CollectSplats {
     bool smooth = true;          ///< edge distances are smoothed along the surface (`march`, `cubic`)
     bool curved = false;         ///< the curvature of each splat's edge is wanted
     std::uint32_t weighted = 0;  ///< how each splat's kernel is weighted: shader::WEIGHTED_*, 0: not at all
+    bool faces = false;          ///< splats get the faces that fit the surface around them
     ClipCount clip{};            ///< voxels whose kernels are cut away whole are dropped
     bool transfer = false;       ///< splats are classified by a transfer function
 };

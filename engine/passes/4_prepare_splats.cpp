@@ -7,7 +7,8 @@ namespace edgesplat::passes {
 
 std::uint32_t prepared_stride(const DrawVariant& variant) {
     std::uint32_t vectors = 4;  // conic, start, colour
-    if (variant.footprints != FootprintMode::Isotropic) vectors += 2;
+    const bool faces = variant.footprints != FootprintMode::Isotropic && variant.warp == WarpFamily::Face;
+    if (variant.footprints != FootprintMode::Isotropic) vectors += faces ? 4 : 2;
     if (variant.sliced) vectors += 1;
     if (variant.clip.keep + variant.clip.remove > 0) vectors += 2;
     if (variant.antialias) vectors += 2;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
 
@@ -19,7 +20,7 @@ constexpr double kSmoothAgreement = 0.8;
 constexpr double kSmoothReach = 1.5;  // voxels
 
 double reach_that_matters(const Settings& settings) {
-    return kKernelRadius + settings.edge_half_width;
+    return edge_reach(settings);
 }
 
 /// The normal of a voxel without an edge.
@@ -284,6 +285,7 @@ std::vector<VoxelEdge> estimate_own_edges(const Field& field, const ScaledScene&
             case EdgeEstimator::Cubic:
                 break;
         }
+        if (draws_faces(settings)) return find_surfel(field, scene, i, settings.edges == EdgeEstimator::Cubic);
         return march(field, scene, settings, i);
     });
 }
@@ -292,7 +294,8 @@ std::vector<VoxelEdge> adopt_edges(const Field& field, const ScaledScene& scene,
                                    const std::vector<VoxelEdge>& own) {
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = own[field.offset(i)];
-        if (!edge.has_edge && marches(settings.edges)) edge = adopted(field, scene, settings, own, i, edge);
+        if (!edge.has_edge && marches(settings.edges) && !draws_faces(settings))
+            edge = adopted(field, scene, settings, own, i, edge);
         return edge;
     });
 }
@@ -303,6 +306,11 @@ std::vector<VoxelEdge> smooth_edges(const Field& field, const ScaledScene& scene
     const bool curved = settings.edge_shape == EdgeShape::Curved && settings.warp == WarpFamily::Edge;
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         VoxelEdge edge = edges[field.offset(i)];
+        if (draws_faces(settings)) {
+            edge = fit_face(field, scene, edges, i);
+            return edge.has_edge && std::abs(edge.D) <= edge_reach(settings) ? edge
+                                                                             : normal_only(voxel_gradient(field, i));
+        }
         if (!edge.has_edge) return edge;
         if (marched || curved) {
             const SurfaceAround around = surface_around(field, scene, edges, i);
@@ -338,6 +346,7 @@ VoxelEdge quantise(const VoxelEdge& edge) {
     VoxelEdge stored = edge;
     if (edge.has_normal) stored.n = through_octahedron(edge.n);
     stored.D = 4 * snorm16(edge.D / 4);
+    stored.bending = quantise_bending(edge.bending);
     stored.weight = std::round(std::min(edge.weight / 4, 1.0) * 65535) / 65535 * 4;
     stored.D2 = edge.D2 >= 4 ? kInfinity : std::round(std::max(edge.D2, 0.0) / 4 * 1022) / 1022 * 4;
     return stored;

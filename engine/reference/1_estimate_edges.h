@@ -19,8 +19,9 @@ struct VoxelEdge {
     double D = 0;     ///< distance to the edge along n; -0.5 .. R + a
     double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to the second edge
     double curvature =
-        0;              ///< of the edge where it is drawn curved, 1/voxel, positive where n points away from its centre
-    double weight = 1;  ///< of the kernel, where kernels are normalised
+        0;  ///< of the edge where it is drawn curved, 1/voxel, positive where n points away from its centre
+    glm::dmat3 bending{0};  ///< of a face: second derivatives of its quadric, 1/voxel, symmetric
+    double weight = 1;      ///< of the kernel, where kernels are normalised
     bool has_normal = false;
     bool has_edge = false;
     bool upper = false;    ///< the edge is the upper end of the voxel's interval

@@ -114,7 +114,7 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
             rule.reset();
         }
     }
-    const double reach = kKernelRadius + settings.edge_half_width;
+    const double reach = edge_reach(settings);
     const std::vector<char> buried =
         rule ? buried_voxels(field, opaque, rule->distance) : std::vector<char>(opaque.size(), 0);
 

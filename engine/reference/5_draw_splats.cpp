@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
 
@@ -31,7 +32,7 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     // A surface faces its lower values, whichever side of it the splat is on.
     glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
     // A wall's kernel reaches both faces, and the one that is seen faces the eye.
-    const bool wall = edge.has_edge && edge.D2 < kKernelRadius + settings.edge_half_width;
+    const bool wall = edge.has_edge && edge.D2 < edge_reach(settings);
     if (wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0) {
         n = -n;
     }
@@ -52,7 +53,7 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
         case Payload::Depth:
             return {depth, 0, 0};
         case Payload::Distance:
-            if (!edge.has_edge) return {-(kKernelRadius + settings.edge_half_width), 0, 0};
+            if (!edge.has_edge) return {-edge_reach(settings), 0, 0};
             return {edge.upper ? edge.D : -edge.D, 0, 0};
         case Payload::Normal:
             break;
@@ -81,6 +82,33 @@ glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::d
             break;
     }
     return world_normal(view.geometry, face);
+}
+
+glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
+                        const Settings& settings, Payload payload, const Footprints& footprints, const glm::dvec3& p,
+                        const glm::dvec3& u, const Slice& slice) {
+    const VoxelEdge& edge = record.edge;
+    if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
+    glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
+    double z = 0;
+    if (footprints.cuts(edge)) {
+        const FaceFootprint seen = footprints.at_face(edge, p, u, slice);
+        z = seen.entry;
+        outward = face_sight(edge, p, u).outward(z, seen.from_behind);
+    }
+    const glm::dvec3 at = glm::dvec3(field.voxel(record.voxel)) + p + z * u;
+    const bool faceless = glm::length(outward) == 0;
+    const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, edge.upper ? -outward : outward);
+    if (payload == Payload::Depth) return {view.depth(at), 0, 0};
+    if (payload == Payload::Normal) return normal;
+    const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
+    return shade(scene,
+                 {.color = record.color(scene),
+                  .response = scene.materials[record.material].response,
+                  .normal = unlit ? glm::dvec3(0) : normal,
+                  .position = view.geometry.to_world(at),
+                  .depth = view.depth(at)},
+                 view.frame.eye);
 }
 
 SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,
@@ -154,13 +182,20 @@ double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<D
 
 glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                                      const std::optional<DepthRange>& cut) const {
-    if (clip_.empty()) return tau(splat, x, y, cut) * glm::dvec4(own, 1);
     const SplatRecord& record = records_[splat];
     const glm::dvec4& ray =
         rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
     const glm::dvec3 u(ray), center(field_.voxel(record.voxel));
     const double s0 = glm::dot(center - view_.eye_index, u);
     const glm::dvec3 p = view_.eye_index + s0 * u - center;
+    const bool faces = draws_faces(settings_);
+    const auto met = [&](const Slice& slice) {
+        return face_payload(record, field_, scene_, view_, settings_, payload, footprints_, p, u, slice);
+    };
+    if (clip_.empty()) {
+        const double share = tau(splat, x, y, cut);
+        return share > 0 ? share * glm::dvec4(faces ? met({}) : own, 1) : glm::dvec4(0);
+    }
     Slice slice{-s0, std::numeric_limits<double>::infinity()};
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
@@ -170,7 +205,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
     for (const KeptPiece& piece : clip_.kept_along(center + p, u)) {
         const Slice kept{std::max(piece.first, slice.low), std::min(piece.last, slice.high)};
         if (piece.empty() || !(kept.low < kept.high)) continue;
-        glm::dvec3 quantity = own;
+        glm::dvec3 quantity = faces ? met(kept) : own;
         const glm::dvec3 entry = p + piece.first * u;
         if (piece.face && piece.first > -s0 && in_matter(splat, x, y, p, u, piece.first)) {
             quantity = cap_payload(record.material, own, *piece.face, center + entry, scene_, view_, payload);

@@ -15,13 +15,14 @@ constexpr double kPanel = 0.5;  ///< voxels: the coarsest panels, and how far sp
 /// Integrates one ray after the other; one per row.
 class RayWalker {
   public:
-    RayWalker(const SplatCloud& cloud, const Footprints& footprints, const Scene& scene, const View& view,
+    RayWalker(const SplatCloud& cloud, const Footprints& footprints, const PreparedVolume& prepared, const View& view,
               double tolerance, bool tau_only)
         : cloud_(cloud),
           footprints_(footprints),
-          scene_(scene),
+          scene_(prepared.scene()),
           view_(view),
-          clip_(index_clip(scene.effects.clip, view.geometry)),
+          clip_(index_clip(prepared.scene().effects.clip, view.geometry)),
+          prepared_(prepared),
           tolerance_(tolerance),
           tau_only_(tau_only) {}
 
@@ -62,7 +63,7 @@ class RayWalker {
                 }
                 const double step = std::min(kPanel, last - t);
                 cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
-                light(cut_seen ? piece.face : std::nullopt, origin + piece.first * u);
+                light(cut_seen ? piece.face : std::nullopt, origin + piece.first * u, u);
                 if (!active_.empty()) integrator.add(t, step);
                 t += kPanel;
             }
@@ -77,14 +78,22 @@ class RayWalker {
 
   private:
     /// What the gathered splats emit along a piece that begins in a cut, if any, at `entry`.
-    void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry) {
+    void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry, const glm::dvec3& u) {
         emission_.clear();
         for (const ModelSplat* splat : active_) {
             const bool shows_cut = face && footprints_.in_matter(*splat->edge, entry - splat->center);
             emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->material, glm::dvec3(0), *face,
                                                                             entry, scene_, view_, Payload::Color)
-                                          : splat->emission);
+                                          : splat->extinction * own_light(*splat, entry, u));
         }
+    }
+
+    /// Faces are lit where the ray meets them, from whichever point of it that is seen.
+    glm::dvec3 own_light(const ModelSplat& splat, const glm::dvec3& on_ray, const glm::dvec3& u) const {
+        if (tau_only_ || !draws_faces(prepared_.settings())) return splat.emission / splat.extinction;
+        const glm::dvec3 off = on_ray - splat.center;
+        return face_payload(splat.record, prepared_.field(), scene_, view_, prepared_.settings(), Payload::Color,
+                            footprints_, off - glm::dot(off, u) * u, u);
     }
 
     const SplatCloud& cloud_;
@@ -92,6 +101,7 @@ class RayWalker {
     const Scene& scene_;
     const View& view_;
     IndexClip clip_;
+    const PreparedVolume& prepared_;
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
@@ -123,8 +133,8 @@ DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& cam
 
     const RayValue value = output == Output::Tau ? RayValue::Tau : RayValue::Opacity;
     const RayFrame frame = trace_rays(width, height, value, options.progress, [&]() -> RayTracer {
-        return [&, walker = RayWalker(cloud, footprints, prepared.scene(), view, options.tolerance,
-                                      output == Output::Tau)](int x, int y) mutable {
+        return [&, walker = RayWalker(cloud, footprints, prepared, view, options.tolerance, output == Output::Tau)](
+                   int x, int y) mutable {
             const glm::dvec3 u = view.ray(x, y);
             return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
         };

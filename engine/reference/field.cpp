@@ -11,7 +11,8 @@ namespace edgesplat::reference {
 
 namespace {
 
-double spline(const Field& field, const glm::dvec3& clamped_point) {
+/// The spline, or with `along` its derivative along that axis.
+double spline(const Field& field, const glm::dvec3& clamped_point, int along = -1) {
     const glm::dvec3 base = glm::floor(clamped_point);
     std::array<std::array<double, 4>, 3> weight{};
     std::array<std::array<int, 4>, 3> index{};
@@ -20,6 +21,7 @@ double spline(const Field& field, const glm::dvec3& clamped_point) {
         const double s = 1 - t;
         weight[axis] = {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
                         t * t * t / 6};
+        if (axis == along) weight[axis] = {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2};
         const int last = field.dims[axis] - 1;
         for (int k = 0; k < 4; ++k) {
             int i = static_cast<int>(base[axis]) + k - 1;
@@ -94,6 +96,11 @@ double sample(const Field& field, const glm::dvec3& p, bool cubic) {
     };
     const double a = slice(0);
     return a + t.z * (slice(1) - a);
+}
+
+glm::dvec3 spline_gradient(const Field& field, const glm::dvec3& p) {
+    const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
+    return {spline(field, q, 0), spline(field, q, 1), spline(field, q, 2)};
 }
 
 glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i) {

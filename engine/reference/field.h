@@ -40,6 +40,9 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume);
 /// T(p), trilinear; with `cubic` the cubic B-spline of the coefficients (mirrored at the borders).
 double sample(const Field& field, const glm::dvec3& p, bool cubic = false);
 
+/// The gradient of the cubic B-spline of the coefficients.
+glm::dvec3 spline_gradient(const Field& field, const glm::dvec3& p);
+
 /// g(i): central differences, one-sided at a border, 0 along an axis of one voxel.
 glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i);
 

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "engine/reference/1_estimate_edges.h"
+#include "footprints/face.h"
 #include "footprints/footprint_cache.h"
 #include "footprints/footprint_integral.h"
 
@@ -30,6 +31,10 @@ class Footprints {
 
     /// The same over a piece of the line.
     double along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
+
+    /// Whether the kernel is cut at a face, and how its ray, or a piece of it, then sees it.
+    bool cuts(const VoxelEdge& edge) const;
+    FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
     /// Whether r, relative to the voxel centre, is inside the voxel's matter: in its kernel, and on the voxel's own
     /// side of its edge. (For the paper's family the kernel is taken as the ball that holds it.)

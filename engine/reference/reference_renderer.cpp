@@ -58,7 +58,7 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     const bool family = draws_warped(settings_) && settings_.warp == WarpFamily::Edge;
     const bool weighted = family && settings_.normalisation == Normalisation::Voxel;
     ScaledScene estimated = scaled_;
-    if (weighted) estimated.drawn.assign(estimated.drawn.size(), true);
+    if (weighted || draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
     std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (weighted) weigh_kernels(field(), settings_, edges);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);

@@ -27,6 +27,7 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
         splat.emission = extinction * payload_of(record, field_, scene, view, prepared.settings(), Payload::Color);
         splat.material = record.material;
         splat.edge = &edge;
+        splat.record = record;
         splat_of_[at] = static_cast<std::int32_t>(splats_.size());
         splats_.push_back(splat);
         reach_ = std::max(reach_, std::abs(support.shift) + support.radius);

@@ -18,6 +18,7 @@ struct ModelSplat {
     glm::dvec3 emission{0};     ///< extinction times lit colour
     std::uint32_t material = 0;
     const VoxelEdge* edge = nullptr;
+    SplatRecord record;
 };
 
 /// Every voxel that absorbs, buried or not. `prepared` must outlive it.

@@ -1,6 +1,7 @@
 #include "engine/reference/surface_point.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "footprints/kernel.h"

@@ -1,6 +1,7 @@
 #include "engine/scene/clip_planes.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace edgesplat {
 namespace {

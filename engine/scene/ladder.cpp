@@ -62,9 +62,11 @@ std::vector<Knob> make_ladder() {
                      .get = get_name<&Settings::edges>,
                      .assign = [](Settings& s, const Knob&, View v) { s.edges = edge_estimator_named(v); }});
     knobs.push_back({.name = "warp",
-                     .help = "Shape of the warp: the paper's curve, or one that is defined by the distance to the edge",
+                     .help =
+                         "How kernels end at edges: warped in a band, by the distance to the edge or by the paper's "
+                         "curve, or cut at faces, which are surfaces found as quadrics and lit where rays meet them",
                      .kind = KnobKind::Model,
-                     .steps = {"edge"},
+                     .steps = {"edge", "face"},
                      .others = {"paper"},
                      .get = get_name<&Settings::warp>,
                      .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },

@@ -1,5 +1,6 @@
 // What a single key's range cannot tell: counts, order, what goes together, and what is not there.
 #include <algorithm>
+#include <exception>
 
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
@@ -48,6 +49,12 @@ class Checker {
                 const std::string nearest = nearest_name(name, names);
                 add("volume.path", "\"{}\": no builtin volume has this name; there are {}{}", v.path,
                     fmt::join(names, ", "), nearest.empty() ? "" : "; did you mean \"builtin:" + nearest + "\"?");
+            } else {
+                try {
+                    builtin_scene(v.path);
+                } catch (const Error& error) {
+                    add("volume.path", "{}", error.what());
+                }
             }
         } else {
             try {

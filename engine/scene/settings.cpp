@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/scene.h"
+#include "footprints/face.h"
 
 namespace edgesplat {
 
@@ -14,7 +15,7 @@ namespace {
 // In the order of the enums, which is from cheapest to best.
 constexpr std::array<std::string_view, 5> kEdgeEstimators{"off", "taylor", "quadratic", "march", "cubic"};
 constexpr std::array<std::string_view, 5> kFootprintModes{"isotropic", "warp2d", "table", "table-lerp", "procedural"};
-constexpr std::array<std::string_view, 2> kWarpFamilies{"edge", "paper"};
+constexpr std::array<std::string_view, 3> kWarpFamilies{"edge", "paper", "face"};
 constexpr std::array<std::string_view, 2> kEdgeShapes{"plane", "curved"};
 constexpr std::array<std::string_view, 3> kNormalisations{"off", "edge", "voxel"};
 constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
@@ -134,6 +135,14 @@ bool draws_warped(const Settings& settings) {
     return settings.edges != EdgeEstimator::Off && settings.footprints != FootprintMode::Isotropic;
 }
 
+bool draws_faces(const Settings& settings) {
+    return draws_warped(settings) && settings.warp == WarpFamily::Face;
+}
+
+double edge_reach(const Settings& settings) {
+    return kKernelRadius + (settings.warp == WarpFamily::Face ? kFaceDepth : settings.edge_half_width);
+}
+
 bool asks_for_table(const Settings& settings) {
     return settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
 }
@@ -165,6 +174,7 @@ Settings drawn_as(const Settings& settings, bool clipped) {
         s.edge_shape = EdgeShape::Plane;
         s.normalisation = usual.normalisation;
     }
+    if (draws_faces(s)) s.footprints = FootprintMode::Procedural;
     if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
     // Kernels of curved edges sum to one as they are; one side alone is another matter.
     if (s.edge_shape == EdgeShape::Curved && s.normalisation == Normalisation::Voxel)

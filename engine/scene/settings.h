@@ -14,7 +14,9 @@ constexpr bool marches(EdgeEstimator estimator) {
     return estimator == EdgeEstimator::March || estimator == EdgeEstimator::Cubic;
 }
 enum class FootprintMode { Isotropic, Warp2d, Table, TableLerp, Procedural };
-enum class WarpFamily { Edge, Paper };
+/// How a kernel ends at an edge: cut at a face, or warped in a band around a plane, by the distance to it or as in the
+/// paper.
+enum class WarpFamily { Edge, Paper, Face };
 enum class EdgeShape { Plane, Curved };  ///< what an edge is within a kernel's reach: its tangent plane or a sphere
 /// How kernels are weighted: not at all, by their distance to the edge so that each of its sides has its volume, or so
 /// that they sum to one at each voxel.
@@ -78,6 +80,12 @@ std::span<const std::string_view> accumulation_names();
 
 /// Whether any kernel is warped: otherwise edges are not estimated and footprints are the plain ones.
 bool draws_warped(const Settings& settings);
+
+/// Whether kernels are cut at faces: surfaces are found as quadrics, and light falls where rays meet them.
+bool draws_faces(const Settings& settings);
+
+/// How far from its voxel an edge may be and still matter to its kernel, voxels.
+double edge_reach(const Settings& settings);
 
 /// Whether footprints are asked for from a table. `drawn_as` says whether they are taken from it.
 bool asks_for_table(const Settings& settings);

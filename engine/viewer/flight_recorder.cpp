@@ -9,7 +9,7 @@ namespace edgesplat::viewer {
 namespace {
 
 constexpr double kMostDegrees = 0.5;
-constexpr double kReach = 100;  // mm from the eye to a key's target
+constexpr double kTargetReach = 100;  // mm from the eye to a key's target
 
 /// Whether the curve through `keys` is where it was at the recorded steps between the last two.
 bool follows(const std::vector<CameraKey>& keys, const std::vector<CameraKey>& steps, std::size_t first,
@@ -37,7 +37,7 @@ void FlightRecorder::step(const Camera& camera, double seconds) {
     if (!keys_.empty()) time_ += seconds;
     if (!keys_.empty() && !(seconds > 0)) return;
     keys_.push_back(
-        {time_, camera.eye, camera.eye + kReach * glm::normalize(camera.direction), camera.up, camera.fov_y});
+        {time_, camera.eye, camera.eye + kTargetReach * glm::normalize(camera.direction), camera.up, camera.fov_y});
 }
 
 CameraPath FlightRecorder::path(double tolerance) const {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kRoomThatCounts = 16;  // voxels: more is not sought
 constexpr double kLeastRoom = 0.3;      // voxels: added to all, so that no step costs too much
-constexpr int kReach = 5;               // voxels that an end may be moved
+constexpr int kEndReach = 5;            // voxels that an end may be moved
 constexpr int kRounds = 24;             // of smoothing
 constexpr std::size_t kMostKeys = 256;
 
@@ -88,7 +88,7 @@ class Grid {
         const VolumeGeometry& g = walls_.geometry();
         const glm::dvec3 index = glm::clamp(g.to_index(place), glm::dvec3(0), glm::dvec3(dims_ - 1));
         const glm::dvec3 base = g.to_world(index);
-        const double reach = kReach * walls_.voxel();
+        const double reach = kEndReach * walls_.voxel();
         const glm::ivec3 span(glm::ceil(reach / g.spacing()) + 1.0);
         const glm::ivec3 low = glm::max(glm::ivec3(glm::round(index)) - span, glm::ivec3(0));
         const glm::ivec3 high = glm::min(glm::ivec3(glm::round(index)) + span, dims_ - 1);

@@ -13,7 +13,7 @@ constexpr double kMoveTime = 0.12, kLookTime = 0.04, kOrbitTime = 0.06, kPanTime
 constexpr double kRollRate = 1.2;                                                                          // radians/s
 constexpr double kZoomFactor = 0.85;                                                                       // a step
 constexpr double kLevelling = 2;  // of a roll, per radian orbited
-constexpr double kReach = 8;      // extents of the volume that the eye may be away from it
+constexpr double kEyeReach = 8;   // extents of the volume that the eye may be away from it
 constexpr double kHomeSeconds = 0.8;
 constexpr double kPole = glm::half_pi<double>();
 
@@ -275,7 +275,7 @@ void Motion::glide(const Controls& rates, double dt) {
     const double zoom = arriving(m.zoom, rates.zoom, dt, kZoomTime);
     if (zoom == 0) return;
     const glm::dvec3 from_center = camera_.eye - center_;
-    const double least = walls_ ? walls_->voxel() / 2 : 1e-4 * extent(), most = kReach * extent();
+    const double least = walls_ ? walls_->voxel() / 2 : 1e-4 * extent(), most = kEyeReach * extent();
     const double old = std::max(glm::length(from_center), 1e-9 * extent());
     const double length = std::clamp(old * std::pow(kZoomFactor, zoom), std::min(least, old), std::max(most, old));
     const bool together = from_center == glm::dvec3(0);
@@ -326,7 +326,7 @@ void Motion::shift(const glm::dvec3& way) {
     // Nobody gets lost in empty space.
     const glm::dvec3 middle = walls_ ? walls_->geometry().center() : home_center_;
     const glm::dvec3 next = camera_.eye + done - middle;
-    const double far = std::max(kReach * extent(), glm::length(camera_.eye - middle)), length = glm::length(next);
+    const double far = std::max(kEyeReach * extent(), glm::length(camera_.eye - middle)), length = glm::length(next);
     if ((walls_ || has_home_) && length > far) done += next * (far / length - 1);
     camera_.eye += done;
     if (!flies) center_ += done;

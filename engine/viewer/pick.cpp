@@ -12,8 +12,6 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// By what the ray came into the matter it is in.
 enum class Entry { Eye, Plane, Side, Contour, Gradual };
 

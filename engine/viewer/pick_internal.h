@@ -2,10 +2,13 @@
 #pragma once
 
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "engine/viewer/samples.h"
 
 namespace edgesplat::viewer {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A ray in index space; t in mm from its origin.
 struct IndexRay {

@@ -11,8 +11,6 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
 /// Along a ray the place nearest to t, at most two voxels away, where `field` reaches `value`.
 template <typename Field>
 std::optional<double> crossing_near(const Field& field, const IndexRay& ray, double t, double value) {

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <sstream>
 
 #include "engine/image_file.h"

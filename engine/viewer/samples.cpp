@@ -1,5 +1,6 @@
 #include "engine/viewer/samples.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace edgesplat::viewer {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/scene/default_materials.h"
 #include "engine/scene/transfer_function.h"

@@ -32,13 +32,15 @@ struct AnalyticScene {
     std::function<double(const glm::dvec3&)> value;         ///< f(x)
     std::function<glm::dvec3(const glm::dvec3&)> gradient;  ///< df/dx per voxel; 0 in binary scenes
     /// Distance to the nearest edge of iso_values[0], voxels, negative inside (value >= iso). Empty where the scene has
-    /// no closed form (marschner-lobb, orbital, phantom).
+    /// no closed form (marschner-lobb, orbital, phantom). Exact, but for gyroid: there it is 0 on the surface, with a
+    /// slope of unit length, and wrong by a few per cent a voxel away.
     std::function<double(const glm::dvec3&)> signed_distance;
+    double rise = 1;               ///< what noise is given as a share of: inside less outside, else the range of values
     double noise = 0;              ///< standard deviation added by `sample`, in the unit of the value
     std::uint32_t noise_seed = 1;  ///< the same seed gives the same samples on every machine
 };
 
-/// Names that `analytic_scene` knows: cube-hole, sphere, torus, plates, plane, marschner-lobb, orbital, phantom.
+/// Names that `analytic_scene` knows (docs/method.md, Builtin scenes, says what each is).
 std::span<const std::string_view> analytic_scene_names();
 
 /// The scene of that name with its default grid. Throws Error listing the names.
@@ -73,10 +75,11 @@ Volume sample(const AnalyticScene& scene);
 /// Whether the path has the form "builtin:NAME" (NAME may be unknown).
 bool is_builtin(std::string_view path);
 
-/// The scene of "builtin:NAME", or of "builtin:NAME:64" / "builtin:NAME:64x48x32" on another grid. Throws Error.
+/// The scene of "builtin:NAME", followed by any of ":64" or ":64x48x32" (another grid), ":noise=0.02" (standard
+/// deviation as a share of `rise`, 0 to 10, in place of the scene's own) and ":seed=3" (noise_seed). Throws Error.
 AnalyticScene builtin_scene(std::string_view path);
 
-/// Samples "builtin:NAME", or "builtin:NAME:64" / "builtin:NAME:64x48x32" on another grid. Throws Error.
+/// Samples such a scene. Throws Error.
 Volume builtin_volume(std::string_view path);
 
 }  // namespace edgesplat

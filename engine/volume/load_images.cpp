@@ -1,6 +1,7 @@
 // Stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <memory>
 #include <optional>
 

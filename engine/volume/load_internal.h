@@ -40,6 +40,9 @@ void check_netcdf_is_whole(const std::string& path);
 std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count);
 std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count);
 
+/// Without white space at the ends.
+std::string trimmed(const std::string& text);
+
 void report(const LoadOptions& options, double fraction, std::string_view what);
 /// Replaces the lengths of the axes by options.spacing, where given.
 void apply_spacing(Volume& volume, const LoadOptions& options);

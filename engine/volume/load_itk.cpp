@@ -8,8 +8,10 @@
 #include <itkNrrdImageIO.h>
 #include <itkVTKImageIO.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
+#include <exception>
 
 #include "engine/volume/load_internal.h"
 #include "engine/volume/load_itk.h"

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
 #include <fstream>
 #include <sstream>
 
@@ -14,12 +15,6 @@ namespace edgesplat::detail {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string trimmed(const std::string& text) {
-    const auto first = text.find_first_not_of(" \t\r\n");
-    const auto last = text.find_last_not_of(" \t\r\n");
-    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
 
 // Data files after "LIST", without blank lines at the end.
 struct ListedFiles {
@@ -89,7 +84,7 @@ void check_line(const std::string& path, int number, const std::string& line) {
         fail("{}: not a MetaImage header: line {} is no 'key = value' of at most 80 and 4000 characters", path, number);
 }
 
-MetaHeader parse(const std::string& path) {
+MetaHeader meta_header(const std::string& path) {
     MetaHeader header;
     std::ifstream file(path, std::ios::binary);
     int number = 0;
@@ -183,7 +178,7 @@ void check_axes(const std::string& path, const MetaHeader& header) {
 }  // namespace
 
 std::optional<FileLayout> meta_layout(const std::string& path, Volume& description) {
-    const auto header = parse(path);
+    const auto header = meta_header(path);
     check_axes(path, header);
     const bool plain = header.plain && !header.compressed && !has_several_files(header) && header.dims.size() == 3 &&
                        (header.spacings == 0 || header.spacings == header.axes);
@@ -197,7 +192,7 @@ std::optional<FileLayout> meta_layout(const std::string& path, Volume& descripti
 }
 
 Volume load_meta(const std::string& path, const LoadOptions& options) {
-    const auto header = parse(path);
+    const auto header = meta_header(path);
     const bool local = is_local(header), several = has_several_files(header);
     const auto data = local ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
     ItkRequest request{.format = ItkFormat::Meta, .path = path};

@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cctype>
+#include <cstdio>
+#include <exception>
 #include <fstream>
 #include <map>
 #include <sstream>
@@ -36,12 +39,6 @@ struct NrrdHeader {
     bool detached() const { return has("datafile"); }
 };
 
-std::string trimmed(const std::string& text) {
-    const auto first = text.find_first_not_of(" \t\r");
-    const auto last = text.find_last_not_of(" \t\r");
-    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
-}
-
 std::vector<std::string> words_of(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> words;
@@ -57,7 +54,7 @@ std::vector<std::string> words_of(const std::string& text) {
     return words;
 }
 
-NrrdHeader parse(const std::string& path) {
+NrrdHeader nrrd_header(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     NrrdHeader header;
     std::string line;
@@ -194,7 +191,7 @@ std::string kinds_with_list(const NrrdHeader& header, std::size_t axes, std::siz
 }  // namespace
 
 std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& description) {
-    const auto header = parse(path);
+    const auto header = nrrd_header(path);
     const auto sizes = words_of(header.value("sizes"));
     const bool of_one_file = header.listed_files.empty() && header.value("datafile").find('%') == std::string::npos;
     const bool plain = header.value("encoding") == "raw" && sizes.size() == 3 && of_one_file &&
@@ -215,7 +212,7 @@ std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& descripti
 }
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options) {
-    const auto header = parse(path);
+    const auto header = nrrd_header(path);
     const long long byte_skip = header.has("byteskip") ? number(path, "byte skip", header.value("byteskip")) : 0;
     const long long line_skip = header.has("lineskip") ? number(path, "line skip", header.value("lineskip")) : 0;
     if (byte_skip < -1) fail("{}: NRRD field 'byte skip': {} is neither -1 nor a count of bytes", path, byte_skip);

@@ -1,4 +1,5 @@
 // Header-less files, described on the command line.
+#include <algorithm>
 #include <bit>
 #include <charconv>
 

@@ -167,6 +167,12 @@ void apply_spacing(Volume& volume, const LoadOptions& options) {
     }
 }
 
+std::string trimmed(const std::string& text) {
+    constexpr auto kBlanks = " \t\r\n";
+    const auto first = text.find_first_not_of(kBlanks), last = text.find_last_not_of(kBlanks);
+    return first == std::string::npos ? "" : text.substr(first, last - first + 1);
+}
+
 std::string tidy(std::string_view message) {
     static const std::regex noise(
         R"((^|\n)[^\n]*\.(cxx|hxx|txx|h|cpp):\d+:|\b(itk::|ITK )?ERROR: |\w+ ?\(0x[0-9a-f]+\): )"

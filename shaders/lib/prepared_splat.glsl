@@ -8,7 +8,7 @@
 const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
 
 // Supports of plain and of cut kernels are spheres, and those of kernels that are widened.
-const bool SPHERES = FOOTPRINTS == 0u || SLICED == 1u;
+const bool SPHERES = FOOTPRINTS == 0u || SLICED == 1u || FACES;
 
 struct PreparedSplat {
     SplatConic conic;
@@ -23,7 +23,7 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     PreparedSplat s;
     Splat splat = SplatsRef(params.frame.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = place_splat(splat.voxel, e);
+    Projection p = place_splat(number, splat.voxel, e);
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
         float near = params.frame.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
@@ -45,7 +45,7 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
 }
 
 const uint PREPARED_KERNEL = 2u;
-const uint PREPARED_START = FOOTPRINTS != 0u ? 4u : 2u;
+const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != 0u ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
 const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
@@ -61,7 +61,15 @@ void keep_prepared(uint entry, PreparedSplat s) {
     uint at = prepared_slot(entry);
     imageStore(prepared, prepared_texel(at), vec4(s.conic.centre, s.conic.form.xy));
     imageStore(prepared, prepared_texel(at + 1u), vec4(s.conic.form.z, s.conic.linear, s.conic.depth));
-    if (FOOTPRINTS != 0u) {
+    if (FACES) {
+        FaceForm f = s.inputs.face;
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), vec4(f.slope, f.value));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(f.h.diagonal, f.cut.depth));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
+                   vec4(f.cut.bend, f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y)));
+    }
+    if (FOOTPRINTS != 0u && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
         vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.xy, ends));
@@ -89,7 +97,13 @@ SplatConic load_conic(uint entry) {
 // What draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);
-    if (FOOTPRINTS != 0u) {
+    if (FACES) {
+        vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
+        vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, d.x, c.w, d.y, 0.0, 0.0));
+        s.inputs.number_material = uvec2(floatBitsToUint(d.z), floatBitsToUint(d.w));
+    }
+    if (FOOTPRINTS != 0u && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
         vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         s.inputs.shape.xy = v.xy;
@@ -109,7 +123,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
         vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));
         s.inputs.from_eye = place.xyz;
         s.inputs.matter = matter.xyz;
-        s.inputs.number_material = uvec2(floatBitsToUint(matter.w), floatBitsToUint(place.w));
+        if (!FACES) s.inputs.number_material = uvec2(floatBitsToUint(matter.w), floatBitsToUint(place.w));
     }
     if (ANTIALIAS == 1u) {
         s.slopes = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER)).xy;

@@ -9,7 +9,8 @@ struct SplatInputs {
     vec4 normal_distance;  // n, D
     vec4 shape;            // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
     vec3 matter;           // colour before light: what a cut shows; with clip planes only
-    uvec2 number_material; // of the splat, likewise
+    uvec2 number_material; // of the splat, likewise or with faces, and how its surface is lit
+    FaceForm face;         // with faces only: light falls where a ray meets it, and color_sigma has the colour before light
     vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
 };
 
@@ -41,10 +42,21 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     }
     if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
     s.color_sigma = vec4(payload, material.a);
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
-        s.matter = material.rgb;
-        s.number_material = uvec2(number, splat.edge >> 28);
+    s.number_material = uvec2(number, splat.edge >> 28);
+    if (FACES) {
+        bool is_cut = e.state >= EDGE_LOWER;
+        bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
+        s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
+        Bending h = Bending(vec3(0.0), vec3(0.0));
+        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 0.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
+        for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
+            h = bending_of(number);
+            vec3 at_foot = bent(h, e.d * e.n);
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut_of(e, h));
+        }
+        if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;
     s.normal_distance = vec4(e.n, e.d);
     bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
     vec2 traits = vec2(0.0, 1.0);
@@ -58,6 +70,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         float matter = (warped ? matter_of_voxel(e.d, e.d2) : 1.0) / (WEIGHTED == 1u ? traits.y : 1.0);
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
+        if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;
     }
 
     return s;

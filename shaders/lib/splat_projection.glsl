@@ -1,9 +1,10 @@
 // Where a splat's support lies on the screen. The including shader declares the uniform block `params.frame` (its fields are
-// read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS and ANTIALIAS.
+// read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS, WARP and ANTIALIAS.
 #ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
 #define EDGESPLAT_SPLAT_PROJECTION_GLSL
 #include "shaders/lib/antialias.glsl"
 #include "shaders/lib/edge_record.glsl"
+#include "shaders/lib/face_form.glsl"
 #include "shaders/shared/frame_params.h"
 
 struct Projection {
@@ -25,6 +26,16 @@ vec3 view_position(vec3 position) {
 }
 
 uint support_cell(float d) { return min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u); }
+
+Bending bending_of(uint number) {
+    uvec2 code = BendingsRef(params.frame.traits).at[number];
+    return Bending(unpack_bending(code.x), unpack_bending(code.y));
+}
+
+FaceCut cut_of(Edge e, Bending h) {
+    float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
+    return face_cut(e.d, dot(e.n, bent(h, e.n)), bending_norm(h), thickness);
+}
 
 // Centre (along n) and radius of a sphere that holds what is warped around a face.
 vec2 face_support(float d) {
@@ -100,12 +111,16 @@ void filter_splat(inout Projection p) {
 }
 
 // Position and support; project_support() finds where they lie on the screen.
-Projection place_splat(uint voxel, Edge e) {
+Projection place_splat(uint number, uint voxel, Edge e) {
     Projection p;
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
     p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
     p.view = view_position(p.position);
-    vec2 support = splat_support(e);
+    vec2 support = FACES ? vec2(0.0, params.frame.support) : splat_support(e);
+    for (uint run = FACES && e.state >= EDGE_LOWER ? 1u : 0u; run > 0u; --run) {
+        FaceCut cut = cut_of(e, bending_of(number));
+        support = vec2(cut.shift, cut.radius);
+    }
     p.centre = support.x * e.n;
     p.radius = support.y;
     if (ANTIALIAS == 1u) filter_splat(p);

@@ -1,11 +1,13 @@
 // One splat at one pixel: the optical depth of its kernel along the pixel's own ray, and that times its colour.
 // docs/method.md, pass 5; design (8). The including shader declares the uniform block `params.frame`, the constants of the
-// draw, `table`, and what shaders/lib/splat_inputs.glsl finds, as variables; with antialias `pixels`, from the voxel's centre.
+// draw, `table`, and what shaders/lib/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
 const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
-const uint EDGE = 0u, PAPER = 1u;
+const uint EDGE = 0u, PAPER = 1u, FACE = 2u;
 #include "shaders/lib/footprint.glsl"
+#include "shaders/lib/face_form.glsl"
+#include "shaders/lib/face.glsl"
 // The including shader may have it from elsewhere.
 #ifndef FACE_BAND
 #define FACE_BAND(d, d2, faces) face_band(d, d2, faces, params.frame.footprint)
@@ -72,8 +74,60 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     return shade(Surface(matter, number_material.y, number_material.x, true, world_normal, false, entry, to_eye, depth));
 }
 
+// What a ray sees of the splat's face. z counts from p, its point nearest to the voxel.
+struct FaceSight {
+    FaceRay ray;
+    vec3 slope;  // grad phi at p
+    vec3 turn;   // of it along u
+};
+
+FaceSight face_sight(vec3 p, vec3 u) {
+    vec3 hp = bent(face_form.h, p), hu = bent(face_form.h, u);
+    vec3 slope = face_form.slope + hp;
+    FaceRay ray;
+    ray.rho2 = dot(p, p);
+    ray.phi = Quadratic(face_form.value + 0.5 * dot(face_form.slope + slope, p), dot(slope, u), 0.5 * dot(u, hu));
+    ray.slope2 = Quadratic(dot(slope, slope), 2.0 * dot(slope, hu), dot(hu, hu));
+    ray.along = Quadratic(dot(p, slope), dot(u, slope) + dot(p, hu), dot(u, hu));
+    return FaceSight(ray, slope, hu);
+}
+
+// What the surface shows where the ray meets it, z from p. `ahead`: of the eye's way to p.
+vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead) {
+    bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
+    vec3 slope = sight.slope + z * sight.turn;
+    vec3 outward = (upward ? -side : side) * slope;
+    vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
+    if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
+    vec3 way = params.frame.index_to_world * u;
+    float depth = (ahead + z) * dot(params.frame.view_z, u);
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
+    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal, world_normal, side < 0.0,
+                         (ahead + z) * way, -normalize(way), depth));
+}
+
+// (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
+vec4 face_value(FaceSight sight, vec3 u, float ahead, float z, Slice slice) {
+    bool plain = face_form.cut.depth < 0.0;
+    FaceFootprint f;
+    f.integral = footprint_isotropic(sight.ray.rho2, slice);
+    f.entry = 0.0;
+    f.side = 1.0;
+    for (int run = plain ? 0 : 1; run > 0; --run) f = footprint_face(sight.ray, face_form.cut, slice);
+    if (ANTIALIAS == 1u) {
+        float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
+        f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;
+    }
+    vec3 payload = vec3(0.0);
+    for (int run = f.integral > 0.0 && PAYLOAD != PAYLOAD_TAU ? 1 : 0; run > 0; --run)
+        payload = face_payload(sight, f.entry, f.side, u, ahead);
+    return f.integral * vec4(payload, 1.0);
+}
+
 // The splat between `slice`, in the pieces of the ray that clip planes leave: (sum of integrals times payload, their sum).
-vec4 clipped_footprint(vec3 p, vec3 u, Slice slice) {
+vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
+    FaceSight sight;
+    if (FACES) sight = face_sight(p, u);
     float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
     Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
     // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
@@ -94,10 +148,22 @@ vec4 clipped_footprint(vec3 p, vec3 u, Slice slice) {
         bool cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 &&
                    is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
                                 CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
+        if (FACES) {
+            float level = quadratic_at(sight.ray.phi, piece.low);
+            bool plain = face_form.cut.depth < 0.0;
+            bool inside = level <= 0.0 && level >= -face_form.cut.thickness && face_kernel(sight.ray, face_form.cut, piece.low) > 0.0;
+            cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 && (plain ? matter2 < KERNEL_R2 : inside);
+        }
         vec3 payload = color_sigma.rgb;
         for (int run = cap ? 1 : 0; run > 0; --run) payload = cap_payload(face, p, u, piece.low);
         Slice cut = Slice(piece.low < -far ? -1e9 : piece.low, piece.high > far ? 1e9 : piece.high);
         cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
+        if (FACES) {
+            vec4 value = vec4(0.0);
+            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, u, ahead, z, cut);
+            sum += vec4(cap ? value.a * payload : value.rgb, value.a);
+            continue;
+        }
         float value = cut.low < cut.high ? drawn_footprint(rho2, pn, un, z, cut) : 0.0;
         sum += value * vec4(payload, 1.0);
     }
@@ -117,8 +183,9 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
         // Only the part of the kernel in front of the eye counts.
         in_front = smoothstep(-params.frame.support, params.frame.support, ahead);
     }
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, slice);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, ahead, slice);
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
+    if (FACES) return color_sigma.a * mm * in_front * face_value(face_sight(p, u), u, ahead, z, slice);
     float value = drawn_footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), z, slice);
     float tau = color_sigma.a * mm * value * in_front;
     return vec4(tau * color_sigma.rgb, tau);

@@ -31,6 +31,30 @@ float bspline(vec3 p) {
     return sum;
 }
 
+vec4 bspline_slopes(float t) {
+    float s = 1.0 - t;
+    return vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t);
+}
+
+// (gradient, value) of the spline.
+vec4 bspline_slope(vec3 p) {
+    p = clamp(p, vec3(0.0), vec3(dims - 1));
+    vec3 c = floor(p), t = p - c;
+    vec4 wx = bspline_weights(t.x), wy = bspline_weights(t.y), wz = bspline_weights(t.z);
+    vec4 sx = bspline_slopes(t.x), sy = bspline_slopes(t.y), sz = bspline_slopes(t.z);
+    ivec3 b = ivec3(c) - 1;
+    vec4 sum = vec4(0.0);
+    for (int k = 0; k < 4; ++k)
+        for (int j = 0; j < 4; ++j) {
+            ivec3 row = ivec3(0, mirrored(b.y + j, dims.y), mirrored(b.z + k, dims.z));
+            vec2 line = vec2(0.0);
+            for (int i = 0; i < 4; ++i)
+                line += vec2(wx[i], sx[i]) * imageLoad(coefficients, ivec3(mirrored(b.x + i, dims.x), row.yz)).r;
+            sum += vec4(line.y * wy[j] * wz[k], line.x * sy[j] * wz[k], line.x * wy[j] * sz[k], line.x * wy[j] * wz[k]);
+        }
+    return sum;
+}
+
 // Central difference at a voxel, one-sided at the border, 0 along an axis of one voxel; value range per voxel.
 vec3 voxel_gradient(ivec3 p) {
     ivec3 low = max(p - 1, ivec3(0)), high = min(p + 1, dims - 1);

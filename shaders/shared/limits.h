@@ -10,6 +10,17 @@ EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;  // value range per voxel; flatte
 EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 of D / 4: steps of 1.2e-4 voxel
 EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
 EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge in reach
+// Faces (docs/method.md, passes 1 and 2).
+EDGESPLAT_CONSTANT float FACE_REACH = 2.4f;     // R and the depth at which kernels are sampled: faces further off cut nothing
+EDGESPLAT_CONSTANT float SURFEL_REACH = 1.25f;  // voxels: how far from a voxel the point of the surface may be that it finds
+EDGESPLAT_CONSTANT int SURFEL_STEPS = 12;       // of Newton's method
+EDGESPLAT_CONSTANT float FACE_SEARCH = 3.0f;    // voxels: how far from a voxel the nearest of these may be
+EDGESPLAT_CONSTANT float FIT_RADIUS = 1.5f;     // voxels around it from which a face is fitted
+EDGESPLAT_CONSTANT float FIT_RIDGE = 1e-3f;     // voxels^2: weight of H = 0 against the scatter of what is fitted
+EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave less of the squared error than one quadric
+EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
+EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
+EDGESPLAT_CONSTANT float BENDING_UNIT = 2.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 2), 1/voxel
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
 EDGESPLAT_CONSTANT uint MAX_CLIP_PLANES = 8u;        // of either kind
 // A block's border holds all that its splats depend on. From a splat outwards, voxels: kernels of its weight, edges that those
@@ -86,6 +97,7 @@ EDGESPLAT_CONSTANT uint SPEC_WIDE_MARKS = 33u;  // 1: entries are marked for 4 x
 EDGESPLAT_CONSTANT uint SPEC_LIST_PARTS = 34u;  // parts of 32 entries of a list that are marked at once
 EDGESPLAT_CONSTANT uint SPEC_CULLED = 35u;  // 1: splats are those of batches, of bricks in view; 0: all of the list
 EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
+EDGESPLAT_CONSTANT uint SPEC_FACES = 36u;  // 1: faces are found
 EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
 
 // Payload: the quantity that a frame carries in place of colour.

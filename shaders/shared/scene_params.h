@@ -60,6 +60,9 @@ static_assert(sizeof(edgesplat::shader::Splat) == 12);
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer UintsRef {
     uint at[];
 };
+layout(buffer_reference, scalar, buffer_reference_align = 8) buffer BendingsRef {
+    uvec2 at[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer SplatsRef {
     Splat at[];
 };

@@ -1,4 +1,5 @@
 // Single keys of a scene, as `--set KEY=VALUE` gives them, one a line.
+#include <algorithm>
 #include <cstdlib>
 
 #include "engine/error.h"

@@ -1,5 +1,6 @@
 // Command lines, an argument a line: everything up to the command's own work.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <string>
 #include <vector>
 

@@ -1,5 +1,7 @@
 #include "tests/image/image_cases.h"
 
+#include <algorithm>
+
 #include "engine/scene/views.h"
 
 namespace edgesplat::test {
@@ -303,6 +305,7 @@ std::vector<ImageCase> reference_cases() {
     from(plane, "oblique");
     cases.push_back({"plane, paper family", with(plane, F::Procedural, E::March, WarpFamily::Paper)});
     cases.push_back({"torus, the paper's own", with(torus_shot(), F::Warp2d, E::Taylor, WarpFamily::Paper)});
+    cases.push_back({"torus, faces", with(torus_shot(), F::Procedural, E::Cubic, WarpFamily::Face)});
     Shot inside = inside_torus();
     inside.settings.sheet_format = SheetFormat::Float;
     inside.settings.saturation = 1;

@@ -1,5 +1,6 @@
 // Pass 1 against the reference: the same plane for the same voxel, up to float32 and the 64 stored bits.
 #include <algorithm>
+#include <cmath>
 
 #include "tests/passes/pass_fixture.h"
 

@@ -1,4 +1,6 @@
 // Pass 2 against the reference: exactly the same voxels, brick by brick.
+#include <cmath>
+
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {

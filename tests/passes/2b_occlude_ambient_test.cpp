@@ -1,4 +1,6 @@
 // Pass 2b against the reference, and against what closed forms say of planes, corners, boxes and haze.
+#include <cmath>
+
 #include "engine/reference/2b_occlude_ambient.h"
 
 #include "footprints/kernel.h"

@@ -1,4 +1,6 @@
 // Passes 2c and 2d against the reference's optical depths, and against closed forms of slabs, balls and cones of light.
+#include <cmath>
+
 #include "engine/reference/2c_sweep_light.h"
 
 #include "footprints/kernel.h"

@@ -1,4 +1,5 @@
 // Bricks outside the picture: which are left out, and that nothing of the picture is.
+#include <cstdio>
 #include <random>
 
 #include "tests/passes/pass_fixture.h"

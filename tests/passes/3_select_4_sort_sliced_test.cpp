@@ -1,5 +1,6 @@
 // Passes 3 and 4 with sliced sheets: every splat in exactly the sheets that its support touches.
 #include <algorithm>
+#include <cmath>
 
 #include "engine/reference/footprints.h"
 #include "footprints/kernel.h"

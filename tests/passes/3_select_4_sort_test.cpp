@@ -1,5 +1,6 @@
 // Passes 3 and 4 against the reference and against what a sort promises.
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include "engine/reference/footprints.h"

@@ -1,6 +1,8 @@
 // Which pixels the entries of tiles are marked for, against footprints in double precision.
 #include <gtest/gtest.h>
 
+#include <cstdio>
+
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {

@@ -1,5 +1,7 @@
 // Passes 5, 6 and 7 against the reference, each fed with what the device's pass before it left.
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"

@@ -4,21 +4,35 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <memory>
 #include <string_view>
 
 #include "engine/renderer_state.h"
 
 namespace edgesplat::test {
 
-/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one ("gpu").
-inline RendererState& device_under_test() {
-    static RendererState state([] {
-        const char* device = std::getenv("EDGESPLAT_TEST_DEVICE");
-        const bool first = device == nullptr || std::string_view(device) == "gpu";
-        return DeviceChoice{.device = first ? "" : device, .validation = true};
-    }());
+inline std::unique_ptr<RendererState>& held_device() {
+    static std::unique_ptr<RendererState> state;
     return state;
 }
+
+/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one ("gpu"). Opened when first asked for.
+inline RendererState& device_under_test() {
+    auto& state = held_device();
+    if (state == nullptr) {
+        const char* device = std::getenv("EDGESPLAT_TEST_DEVICE");
+        const bool first = device == nullptr || std::string_view(device) == "gpu";
+        state = std::make_unique<RendererState>(DeviceChoice{.device = first ? "" : device, .validation = true});
+    }
+    return *state;
+}
+
+/// Closes the device before main ends: the validation layer's own statics are gone when ours would be destroyed.
+class DeviceClosesInMain : public testing::Environment {
+    void TearDown() override { held_device().reset(); }
+};
+/// In every program that may open it.
+inline const testing::Environment* const kDeviceCloses = testing::AddGlobalTestEnvironment(new DeviceClosesInMain);
 
 /// Fails any test during which validation spoke.
 class ValidationIsSilent : public testing::EmptyTestEventListener {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <barrier>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <random>

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include "engine/gpu/read_back.h"
@@ -137,6 +138,18 @@ inline RendererState& prepared(const PassScene& s) {
     return state;
 }
 
+/// A face's second derivatives from their two stored words (shaders/lib/face_record.glsl).
+inline glm::dmat3 decode_bending(const glm::uvec2& code) {
+    const auto part = [](std::uint32_t word, int k) {
+        const int bits = static_cast<int>(word << (22 - 10 * k)) >> 22;
+        const double root = bits / 511.0;
+        return root * std::abs(root) * static_cast<double>(shader::BENDING_UNIT);
+    };
+    const double xx = part(code.x, 0), yy = part(code.x, 1), zz = part(code.x, 2);
+    const double yz = part(code.y, 0), xz = part(code.y, 1), xy = part(code.y, 2);
+    return {glm::dvec3(xx, xy, xz), glm::dvec3(xy, yy, yz), glm::dvec3(xz, yz, zz)};
+}
+
 /// The device's splat list as the reference writes it, with curvature, weight and classification where the device has
 /// them.
 inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
@@ -156,6 +169,12 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
             records[i].classified = transfer_at(points, static_cast<double>(values[i]));
     }
     if (!state.volume_resources.traits) return records;
+    if (state.collected->faces) {
+        const auto bendings = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
+        for (std::size_t i = 0; i < records.size(); ++i)
+            records[i].edge.bending = decode_bending(bendings[i]);
+        return records;
+    }
     const auto traits = download<std::uint32_t>(state, state.volume_resources.traits, records.size());
     const auto curvature_unit = static_cast<double>(state.collected->params.curvature_unit);
     for (std::size_t i = 0; i < records.size(); ++i) {

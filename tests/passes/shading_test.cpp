@@ -1,5 +1,7 @@
 // Light, materials' response, silhouettes, fog and transfer functions: passes 2 and 5 against the reference.
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
 
 #include "tests/passes/pass_fixture.h"
 

@@ -1,4 +1,6 @@
-// Registers the listener that fails any test of this program during which validation spoke.
+// Registers the listener that fails any test of this program during which validation spoke, and what closes the device.
+#include <exception>
+
 #include "tests/passes/device_under_test.h"
 
 namespace edgesplat::test {

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cctype>
+#include <iterator>
 #include <numeric>
 
 #include "engine/gpu/shader.h"

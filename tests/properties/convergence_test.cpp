@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <tuple>
 
 #include "engine/accuracy/metrics.h"
 #include "engine/reference/direct_evaluation.h"

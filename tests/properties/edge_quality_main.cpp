@@ -101,9 +101,12 @@ int main(int argc, char** argv) {
         if (runs("silhouettes")) silhouettes();
         if (runs("unity")) unity();
         if (runs("walls")) walls();
-        fmt::print("\nValidation messages: {}\n", test_renderer().validation_messages());
-        return test_renderer().validation_messages() == 0 ? 0 : 1;
+        const auto messages = test_renderer().validation_messages();
+        fmt::print("\nValidation messages: {}\n", messages);
+        close_test_renderer();
+        return messages == 0 ? 0 : 1;
     } catch (const std::exception& error) {
+        close_test_renderer();
         fmt::print(stderr, "edge_quality: {}\n", error.what());
         return 1;
     }

@@ -1,6 +1,7 @@
 // Every row of the table of effects says when it is called for, and only then.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <set>
 
 #include "engine/effect_table.h"

@@ -1,6 +1,7 @@
 // The description of a frame says what the device really runs and holds; what does not fit is refused beforehand.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <map>
 
 #include "engine/error.h"

@@ -1,6 +1,10 @@
 // A homogeneous slab is as opaque as its thickness says, whatever the sheets: alpha = 1 - exp(-sigma L).
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
 #include "engine/reference/3_select_footprints.h"
 #include "tests/properties/scenes.h"
 

@@ -1,6 +1,7 @@
 // What must not change the picture, and what must change it in a known way.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <glm/ext/matrix_transform.hpp>
 #include <numbers>

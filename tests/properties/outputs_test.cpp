@@ -1,6 +1,7 @@
 // Depth, normal and edge distance against a plane whose place is known.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "tests/properties/scenes.h"

@@ -1,7 +1,9 @@
 // Settings::pixels: pictures of which some pixels are drawn and the others follow.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 #include "engine/reference/5_refine_pixels.h"
 #include "shaders/shared/limits.h"

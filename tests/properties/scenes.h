@@ -1,6 +1,8 @@
 // Small scenes that the property and image tests look at.
 #pragma once
 
+#include <algorithm>
+
 #include "engine/image_compare.h"
 #include "engine/volume/analytic_volumes.h"
 #include "tests/properties/measuring.h"

@@ -1,6 +1,7 @@
 // Light, silhouettes, fog and transfer functions against closed forms.
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <functional>
 
 #include "engine/error.h"

@@ -1,4 +1,5 @@
-// Registers the listener that fails any test of this program during which validation spoke.
+// Registers the listener that fails any test of this program during which validation spoke, and what closes the
+// renderer.
 #include <gtest/gtest.h>
 
 #include "tests/properties/test_renderer.h"
@@ -15,8 +16,13 @@ class ValidationIsSilent : public testing::EmptyTestEventListener {
     std::uint64_t seen_ = 0;
 };
 
+class RendererClosesInMain : public testing::Environment {
+    void TearDown() override { close_test_renderer(); }
+};
+
 const bool kListening = [] {
     testing::UnitTest::GetInstance()->listeners().Append(new ValidationIsSilent);
+    testing::AddGlobalTestEnvironment(new RendererClosesInMain);
     return true;
 }();
 

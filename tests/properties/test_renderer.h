@@ -9,15 +9,27 @@
 
 namespace edgesplat::test {
 
+inline std::unique_ptr<Renderer>& held_renderer() {
+    static std::unique_ptr<Renderer> renderer;
+    return renderer;
+}
+
+/// To be called before main ends: the validation layer's own statics are gone when ours would be destroyed.
+inline void close_test_renderer() {
+    held_renderer().reset();
+}
+
 /// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one; "gpu" is the first usable one, too (`./dev
-/// test` then leaves the choice of the driver to the machine).
+/// test` then leaves the choice of the driver to the machine). Opened when first asked for.
 inline Renderer& test_renderer() {
-    static Renderer renderer([] {
+    auto& renderer = held_renderer();
+    if (renderer == nullptr) {
         const char* wanted = std::getenv("EDGESPLAT_TEST_DEVICE");
         const std::string device = wanted == nullptr ? "" : wanted;
-        return DeviceChoice{.device = device == "gpu" ? "" : device, .validation = true};
-    }());
-    return renderer;
+        renderer =
+            std::make_unique<Renderer>(DeviceChoice{.device = device == "gpu" ? "" : device, .validation = true});
+    }
+    return *renderer;
 }
 
 using VolumePointer = std::shared_ptr<const Volume>;

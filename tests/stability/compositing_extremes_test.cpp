@@ -1,4 +1,5 @@
 // Where adding up and compositing is trouble: next to nothing, far too much, very many sheets and splats, few bits.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/stability/hazard.h"

@@ -1,5 +1,6 @@
 // Pass 1 where the shape is trouble: no gradient, walls and edges closer than a voxel, borders, grids that are not
 // cubes, volumes of a few voxels and of very many.
+#include <algorithm>
 #include <cmath>
 
 #include "engine/reference/3_select_footprints.h"

@@ -1,4 +1,5 @@
 // Pass 1 where values are trouble: none that differ, too small, too large, not a number, too few bits.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

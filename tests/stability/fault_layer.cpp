@@ -11,6 +11,7 @@
 #include <vulkan/vulkan.h>
 
 #include <atomic>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>

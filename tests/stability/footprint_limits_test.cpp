@@ -1,9 +1,11 @@
 // Warps and footprints at the corners of what is legal, where something is about to vanish or to overflow.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <stdexcept>
 
 #include "footprints/edge_warp.h"
 #include "footprints/edge_weight.h"

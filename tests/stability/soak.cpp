@@ -124,7 +124,7 @@ class Shots {
         s.edges = one_of({EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::Quadratic, EdgeEstimator::March,
                           EdgeEstimator::Cubic});
         s.footprints = one_of({FootprintMode::Isotropic, FootprintMode::Warp2d, FootprintMode::Procedural});
-        s.warp = one_of({WarpFamily::Edge, WarpFamily::Paper});
+        s.warp = one_of({WarpFamily::Edge, WarpFamily::Paper, WarpFamily::Face});
         s.normalisation = one_of({Normalisation::Off, Normalisation::Edge, Normalisation::Voxel});
         s.edge_shape = one_of({EdgeShape::Plane, EdgeShape::Curved});
         s.sheets = one_of({SheetCut::Whole, SheetCut::Sliced});

@@ -1,5 +1,6 @@
 // The same object stored, placed or measured otherwise is the same picture: mirrored, turned, with its axes in another
 // order, in another unit, with other values.
+#include <algorithm>
 #include <cmath>
 
 #include "tests/stability/hazard.h"

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 
 #include "engine/accuracy/picture_store.h"
 #include "engine/accuracy/work_list.h"

@@ -1,6 +1,7 @@
 // Every figure of the accuracy report on input whose answer is known in closed form.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

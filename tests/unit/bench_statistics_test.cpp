@@ -1,6 +1,7 @@
 // Medians, percentiles and fits on data of which the answer is known; what runs come to next to each other.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "engine/bench/compare.h"

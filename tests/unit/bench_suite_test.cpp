@@ -1,6 +1,8 @@
 // Suites of benchmarks: what is read, and what is said of what is wrong.
 #include <gmock/gmock.h>
 
+#include <algorithm>
+
 #include "engine/bench/embedded_suites.h"
 #include "engine/bench/suite.h"
 #include "tests/unit/refusal.h"

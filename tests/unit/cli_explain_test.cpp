@@ -3,6 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include <cstdint>
+
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

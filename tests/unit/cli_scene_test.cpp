@@ -1,7 +1,10 @@
 // `edgesplat scene`, `render SCENE.toml` and `rerun` from end to end.
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <cstring>
+#include <sstream>
+#include <tuple>
 
 #include "engine/image_file.h"
 #include "engine/scene/scene_file.h"

@@ -1,9 +1,11 @@
 // The warp around curved edges: what it becomes without curvature, that neighbours share it, how far it reaches.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
 
 #include "footprints/edge_warp.h"
 #include "footprints/kernel.h"

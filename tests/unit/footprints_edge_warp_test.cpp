@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <random>
+#include <stdexcept>
+#include <string>
 
 #include "footprints/kernel.h"
 #include "footprints/paper_warp.h"

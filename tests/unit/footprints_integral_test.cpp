@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "footprints/gauss_legendre.h"
 #include "tests/unit/footprints_samples.h"

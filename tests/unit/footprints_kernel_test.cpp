@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "footprints/gauss_legendre.h"
 #include "footprints/kernel_fit.h"

@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <glm/glm.hpp>
 #include <limits>
 #include <random>
 
+#include "footprints/face.h"
 #include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
 #include "tests/unit/footprints_samples.h"
@@ -77,6 +80,9 @@ inline Texel textureLod(sampler2DArray table, const vec3& at, double) {
 namespace nodes4 {
 const uint NODES = 4;
 #include "shaders/lib/footprint.glsl"
+
+// After what it needs.
+#include "shaders/lib/face.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
@@ -188,6 +194,48 @@ TEST(FootprintShader, MirrorsTheQuadratureAndTheShortCut) {
     EXPECT_LE(single.largest(), 1e-4);
     EXPECT_LE(wall.largest(), 1e-4);
     EXPECT_LE(warp2d.largest(), 1e-4);
+}
+
+TEST(FootprintShader, MirrorsFaces) {
+    namespace four = glsl::nodes4;
+    std::mt19937 random(31);
+    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
+    const auto f = [](double v) { return static_cast<float>(v); };
+    const auto quadratic = [&](const Quadratic& q) { return four::Quadratic{f(q.c), f(q.b), f(q.a)}; };
+    Errors error;
+    int entries = 0, cut = 0;
+    for (int i = 0; i < 20000; ++i) {
+        // A quadric about a foot point on the x axis, seen along any ray.
+        const double distance = uniform(-0.4, 2.3), bend = uniform(-1, 1);
+        const glm::dmat3 h = bend * glm::dmat3(0.3, 0.1, 0.05, 0.1, uniform(-1, 1), 0.1, 0.05, 0.1, uniform(-1, 1));
+        const glm::dvec3 u = glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
+        const glm::dvec3 any(uniform(-1.5, 1.5), uniform(-1.5, 1.5), uniform(-1.5, 1.5));
+        const glm::dvec3 p = any - glm::dot(any, u) * u, foot(distance, 0, 0), n(1, 0, 0);
+        const glm::dvec3 own = n - h * foot, slope = own + h * p, turn = h * u;
+        const double value = -distance + 0.5 * glm::dot(foot, h * foot);
+        const FaceRay ray{glm::dot(p, p),
+                          {value + 0.5 * glm::dot(own + slope, p), glm::dot(slope, u), 0.5 * glm::dot(u, turn)},
+                          {glm::dot(slope, slope), 2 * glm::dot(slope, turn), glm::dot(turn, turn)},
+                          {glm::dot(p, slope), glm::dot(u, slope) + glm::dot(p, turn), glm::dot(u, turn)}};
+        const double thickness = i % 3 == 0 ? distance + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
+        const FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness);
+        const four::FaceCut got =
+            four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)), thickness < 1e8 ? f(thickness) : 1e9F);
+        EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
+        EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
+        EXPECT_GE(static_cast<double>(got.shift + got.radius), 1.59);
+        const FaceFootprint a = face_footprint(ray, want, 4);
+        const four::FaceFootprint b = four::footprint_face(
+            {f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), quadratic(ray.along)}, got, {-1e9F, 1e9F});
+        error.add(static_cast<double>(b.integral), a.integral);
+        if (!(a.integral > 1e-3)) continue;
+        ++cut;
+        entries += std::abs(static_cast<double>(b.entry) - a.entry) > 1e-3 ? 1 : 0;
+    }
+    EXPECT_GT(cut, 5000);
+    // Where a ray but touches a face, rounding decides whether it meets it.
+    EXPECT_LE(entries, cut / 500);
+    EXPECT_LE(error.percentile(99.5), 1e-3);
 }
 
 TEST(FootprintShader, MirrorsThePapersWarp) {

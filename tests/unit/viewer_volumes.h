@@ -2,6 +2,7 @@
 // cavity, of a place in the volume's own frame (index times spacing).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <functional>
 #include <glm/glm.hpp>

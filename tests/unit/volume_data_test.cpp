@@ -1,4 +1,8 @@
 // Real volumes and odd files of other projects, in the folder EDGESPLAT_DATA names; skipped without it.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
 #include "volume_test_files.h"
 
 namespace {

@@ -6,7 +6,12 @@
 #include <itkVTKImageIO.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <cstdint>
 #include <cstring>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "volume_test_files.h"
 

@@ -3,6 +3,10 @@
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 
+#include <cstdint>
+#include <string>
+#include <vector>
+
 #include "volume_test_files.h"
 
 namespace {

@@ -1,0 +1,12 @@
+// The font of overlays and of the navigation app.
+#pragma once
+
+#include <optional>
+#include <string>
+
+namespace edgesplat {
+
+/// Path of DejaVu Sans; none where it is in no folder that distributions put it into.
+std::optional<std::string> font_file();
+
+}  // namespace edgesplat

@@ -1,0 +1,289 @@
+#include "engine/reference/faces.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "shaders/shared/limits.h"
+
+namespace edgesplat::reference {
+
+namespace {
+
+using glm::dmat3;
+using glm::dvec3;
+
+// The shaders' numbers.
+constexpr auto kFitRadius = static_cast<double>(shader::FIT_RADIUS);
+constexpr auto kFitRidge = static_cast<double>(shader::FIT_RIDGE);
+constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
+constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
+constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
+constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
+constexpr auto kBendingUnit = static_cast<double>(shader::BENDING_UNIT);
+
+VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
+    VoxelEdge edge;
+    const dvec3 g = voxel_gradient(field, i);
+    edge.has_normal = glm::length(g) >= kSmallestGradient;
+    if (edge.has_normal) edge.n = -g / glm::length(g);
+    return edge;
+}
+
+struct Crossed {
+    bool down = false, up = false;
+};
+
+/// Whether samples around a voxel leave its interval.
+Crossed crossed_around(const Field& field, const glm::ivec3& i, double low, double high) {
+    Crossed crossed;
+    const auto look = [&](const glm::ivec3& o) {
+        const double f = field.at(i + o);
+        crossed.down = crossed.down || f < low;
+        crossed.up = crossed.up || f >= high;
+    };
+    for (int k = 0; k < 27; ++k)
+        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 o(0);
+        o[axis] = 2;
+        look(o);
+        look(-o);
+    }
+    return crossed;
+}
+
+struct Surfel {
+    dvec3 at{0};  ///< relative to the voxel
+    dvec3 n{0};   ///< out of the voxel's material
+    bool upper = false;
+};
+
+/// What voxel j found, where it bounds material m.
+std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+                                const glm::ivec3& i, const glm::ivec3& j, int m) {
+    if (j != field.clamped(j)) return std::nullopt;
+    const VoxelEdge& edge = surfels[field.offset(j)];
+    if (!edge.has_edge) return std::nullopt;
+    const int own = scene.material(field.at(j));
+    // An upper end is the lower end of the material above.
+    const bool below = own + 1 == m && edge.upper, above = own == m + 1 && !edge.upper;
+    if (own != m && !below && !above) return std::nullopt;
+    return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above};
+}
+
+double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
+    const double along = glm::dot(r, n);
+    const double shorter = 1 - 0.5 * std::clamp(-2 * glm::dot(n, other), 0.0, 1.0);
+    const double w = 1 - (glm::dot(r, r) - along * along * (1 - shorter * shorter)) / (kFitRadius * kFitRadius);
+    return std::max(w, 0.0) * std::max(w, 0.0);
+}
+
+struct Moments {
+    double weight = 0;
+    dvec3 r{0}, m{0};
+    dmat3 places{0}, turns{0};
+    void add(const dvec3& at, const dvec3& normal, double w) {
+        weight += w;
+        r += w * at;
+        m += w * normal;
+        places += w * glm::outerProduct(at, at);
+        turns += w * glm::outerProduct(normal, at);
+    }
+};
+
+struct Quadric {
+    double c = 0;
+    dvec3 g{0};
+    dmat3 h{0};
+    double at(const dvec3& r) const { return c + glm::dot(g, r) + 0.5 * glm::dot(r, h * r); }
+    dvec3 slope(const dvec3& r) const { return g + h * r; }
+};
+
+/// Axes of a symmetric matrix by Jacobi's rotations, which leave its eigenvalues on the diagonal.
+dmat3 axes_of(dmat3& a) {
+    dmat3 axes(1);
+    for (int sweep = 0; sweep < 12; ++sweep) {
+        for (int p = 0; p < 2; ++p) {
+            for (int q = p + 1; q < 3; ++q) {
+                if (a[p][q] == 0) continue;
+                const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
+                const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
+                const double c = 1 / std::hypot(t, 1.0), s = t * c;
+                dmat3 turn(1);
+                turn[p][p] = turn[q][q] = c;
+                turn[q][p] = s;
+                turn[p][q] = -s;
+                a = glm::transpose(turn) * a * turn;
+                axes = axes * turn;
+            }
+        }
+    }
+    return axes;
+}
+
+Quadric quadric_of(const Moments& sums) {
+    const double share = 1 / std::max(sums.weight, 1e-20);
+    const dvec3 r = share * sums.r, m = share * sums.m;
+    const dmat3 turns = share * sums.turns - glm::outerProduct(m, r);
+    dmat3 scatter = share * sums.places - glm::outerProduct(r, r);
+    const dmat3 axes = axes_of(scatter);
+    dmat3 turned = glm::transpose(axes) * (turns + glm::transpose(turns)) * axes;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            turned[i][j] /= std::max(scatter[i][i], 0.0) + std::max(scatter[j][j], 0.0) + 2.0 * kFitRidge;
+    Quadric q;
+    q.h = axes * turned * glm::transpose(axes);
+    q.g = m - q.h * r;
+    double bent = 0;
+    for (int i = 0; i < 3; ++i)
+        bent += share * glm::dot(q.h[i], sums.places[i]);
+    q.c = -glm::dot(q.g, r) - 0.5 * bent;
+    return q;
+}
+
+}  // namespace
+
+VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+    const VoxelEdge none = normal_alone(field, i);
+    const double f = field.at(i);
+    const int m = scene.material(f);
+    const double low = scene.lower(m), high = scene.upper(m);
+    const Crossed crossed = crossed_around(field, i, low, high);
+    if (!crossed.down && !crossed.up) return none;
+    const bool upper = crossed.up && (!crossed.down || high - f < f - low);
+    const double iso = upper ? high : low;
+    const dvec3 x(i);
+    dvec3 at = x, n(0);
+    double off = 1;
+    for (int step = 0; step < shader::SURFEL_STEPS; ++step) {
+        const dvec3 g = cubic ? spline_gradient(field, at) : point_gradient(field, at);
+        const double slope = glm::length(g);
+        if (!(slope >= kSmallestGradient) || glm::distance(at, x) > 3) return none;
+        n = g / slope;
+        off = (sample(field, at, cubic) - iso) / slope;
+        if (step + 1 == shader::SURFEL_STEPS) break;
+        at -= std::clamp(off, -0.6, 0.6) * n;
+        const dvec3 from = at - x;
+        if (step >= 2 && step + 4 < shader::SURFEL_STEPS) at -= 0.8 * (from - glm::dot(from, n) * n);
+    }
+    const dvec3 from = at - x, last(field.dims - 1);
+    n = upper ? n : -n;
+    const double d = glm::dot(from, n);
+    const bool inside = glm::all(glm::greaterThanEqual(at, dvec3(0))) && glm::all(glm::lessThanEqual(at, last));
+    if (!(std::abs(off) < 2e-3 && glm::length(from - d * n) < 0.25 && std::abs(d) <= kSurfelReach && inside))
+        return none;
+    VoxelEdge edge;
+    edge.n = n;
+    edge.D = d;
+    edge.upper = upper;
+    edge.has_edge = edge.has_normal = true;
+    return edge;
+}
+
+VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+                   const glm::ivec3& i) {
+    const int m = scene.material(field.at(i));
+    const auto around = [&](const glm::ivec3& center, const auto& take) {
+        for (int k = 0; k < 125; ++k) {
+            const glm::ivec3 j = center + glm::ivec3(k % 5, k / 5 % 5, k / 25) - 2;
+            if (const auto s = surfel_of(field, scene, surfels, i, j, m)) take(*s);
+        }
+    };
+    Surfel nearest;
+    double distance = kFaceSearch;
+    around(i, [&](const Surfel& s) {
+        if (!(glm::length(s.at) < distance)) return;
+        distance = glm::length(s.at);
+        nearest = s;
+    });
+    if (!(distance < kFaceSearch)) return normal_alone(field, i);
+    const dvec3 middle = nearest.at, n = nearest.n;
+    const glm::ivec3 center = i + glm::ivec3(glm::roundEven(middle));
+    Moments all, same;
+    around(center, [&](const Surfel& s) {
+        const dvec3 r = s.at - middle;
+        const double w = surfel_weight(r, n, s.n);
+        all.add(r, s.n, w);
+        if (glm::dot(s.n, n) > 0) same.add(r, s.n, w);
+    });
+    const Quadric one = quadric_of(all), wall = quadric_of(same);
+    double of_one = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
+    around(center, [&](const Surfel& s) {
+        const dvec3 r = s.at - middle;
+        const double w = surfel_weight(r, n, s.n), facing = glm::dot(s.n, n), level = wall.at(r);
+        const double off = one.at(r) / std::max(glm::length(one.slope(r)), 0.2);
+        of_one += w * off * off;
+        if (facing > 0) of_same += w * level * level;
+        if (facing <= 0 && facing >= -0.5) of_same += w;
+        if (facing >= -0.5) return;
+        opposite += w;
+        sum += w * level;
+        sum2 += w * level * level;
+    });
+    // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
+    const double level = sum / std::max(opposite, 1e-20);
+    const bool is_wall =
+        opposite > 0 && level < -kThinnest && of_same + std::max(sum2 - sum * level, 0.0) < kWallShare * of_one;
+    const Quadric& q = is_wall ? wall : one;
+    // The foot point: where the quadric's own normal leads to the voxel.
+    dvec3 at(0);
+    for (int step = 0; step < shader::FOOT_STEPS; ++step) {
+        const double steep = glm::length(q.slope(at)), value = q.at(at);
+        const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
+        const double bend = glm::dot(up, q.h * up);
+        const double moved = -2 * value / (steep + std::sqrt(std::max(steep * steep - 2 * value * bend, 0.0)) + 1e-6);
+        at += std::clamp(moved, -1.0, 1.0) * up;
+        const dvec3 from = at + middle;
+        if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
+    }
+    const double steep = glm::length(q.slope(at));
+    const bool real = steep >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius;
+    VoxelEdge edge;
+    edge.has_edge = edge.has_normal = true;
+    edge.upper = nearest.upper;
+    edge.n = real ? q.slope(at) / steep : n;
+    edge.D = glm::dot(middle + (real ? at : dvec3(0)), edge.n);
+    if (real) edge.bending = q.h / steep;
+    if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
+    return edge;
+}
+
+dmat3 quantise_bending(const dmat3& bending) {
+    const auto through = [](double h) {
+        const double root = std::clamp(std::sqrt(std::abs(h) / kBendingUnit), 0.0, 1.0);
+        const double code = std::copysign(std::round(root * 511) / 511, h);
+        return code * std::abs(code) * kBendingUnit;
+    };
+    dmat3 stored;
+    for (int i = 0; i < 3; ++i)
+        for (int j = 0; j < 3; ++j)
+            stored[i][j] = through(0.5 * (bending[i][j] + bending[j][i]));
+    return stored;
+}
+
+FaceCut cut_of(const VoxelEdge& edge) {
+    double norm2 = 0;
+    for (int i = 0; i < 3; ++i)
+        norm2 += glm::dot(edge.bending[i], edge.bending[i]);
+    const bool wall = edge.D2 < kKernelRadius + kFaceDepth;
+    const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
+    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), std::sqrt(norm2), thickness);
+}
+
+FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
+    const dmat3& h = edge.bending;
+    const dvec3 at_foot = h * (edge.D * edge.n);
+    const double value = -edge.D + 0.5 * edge.D * glm::dot(edge.n, at_foot);
+    const dvec3 own = edge.n - at_foot, hp = h * p, hu = h * u, slope = own + hp;
+    FaceSight sight;
+    sight.slope = slope;
+    sight.turn = hu;
+    sight.ray.rho2 = glm::dot(p, p);
+    sight.ray.phi = {value + 0.5 * glm::dot(own + slope, p), glm::dot(slope, u), 0.5 * glm::dot(u, hu)};
+    sight.ray.slope2 = {glm::dot(slope, slope), 2 * glm::dot(slope, hu), glm::dot(hu, hu)};
+    sight.ray.along = {glm::dot(p, slope), glm::dot(u, slope) + glm::dot(p, hu), glm::dot(u, hu)};
+    return sight;
+}
+
+}  // namespace edgesplat::reference

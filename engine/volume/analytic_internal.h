@@ -1,0 +1,62 @@
+// What the builtin scenes are made of; for analytic_*.cpp alone.
+#pragma once
+
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "engine/volume/analytic_volumes.h"
+
+namespace edgesplat::analytic {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kSqrt2 = 1.41421356237309504880;
+
+/// Distance to a surface, voxels, negative inside, and its derivative; that has unit length almost everywhere.
+struct Distance {
+    double value;
+    glm::dvec3 gradient;
+};
+using DistanceFunction = std::function<Distance(const glm::dvec3&)>;
+
+/// Integral of a Gaussian of standard deviation `sd` from -infinity to t, and its derivative.
+inline double step(double t, double sd) {
+    return 0.5 * std::erfc(-t / (kSqrt2 * sd));
+}
+inline double bell(double t, double sd) {
+    return std::exp(-0.5 * t * t / (sd * sd)) / (sd * std::sqrt(2 * kPi));
+}
+
+/// Throws Error unless the profile rises and is blurred or binary.
+void check(const EdgeProfile& profile);
+
+/// Values by the profile of the distance to one surface. Throws Error as `check` does.
+AnalyticScene solid(std::string name, const glm::ivec3& dims, const EdgeProfile& profile, DistanceFunction distance);
+
+/// Throws Error naming `what` where v has no direction.
+glm::dvec3 unit(const glm::dvec3& v, const char* what);
+
+/// Of the grid, index space.
+inline glm::dvec3 middle(const glm::ivec3& dims) {
+    return (glm::dvec3(dims) - 1.0) * 0.5;
+}
+
+/// Plane walls of different thickness; a known sum of waves; an electron's density; a head.
+AnalyticScene plates();
+AnalyticScene marschner_lobb();
+AnalyticScene orbital();
+AnalyticScene phantom();
+
+/// Bodies in grids of 40^3 voxels, turned out of the axes (docs/method.md, Builtin scenes).
+AnalyticScene ellipsoid();
+AnalyticScene box(std::string name, double rounding);  ///< `rounding`: radius of the edges, voxels; 0: sharp
+AnalyticScene tilted_torus();
+AnalyticScene tube();
+AnalyticScene shell();
+AnalyticScene balls();
+AnalyticScene gyroid();
+AnalyticScene ball(std::string name, double radius, bool binary);
+AnalyticScene vessels();
+AnalyticScene specks();
+
+}  // namespace edgesplat::analytic

@@ -1,0 +1,20 @@
+// A splat's face as rays meet it. The including shader declares the constants FOOTPRINTS and WARP.
+#ifndef EDGESPLAT_FACE_FORM_GLSL
+#define EDGESPLAT_FACE_FORM_GLSL
+#include "shaders/shared/scene_params.h"
+#include "shaders/lib/face_record.glsl"
+#include "shaders/lib/kernel.glsl"
+#include "shaders/lib/face_cut.glsl"
+
+const bool FACES = FOOTPRINTS != 0u && WARP == 2u;  // kernels are cut at faces
+
+// Or a plain kernel with the normal it is lit by.
+struct FaceForm {
+    float value;  // phi at the voxel's centre
+    vec3 slope;   // its gradient there
+    Bending h;
+    FaceCut cut;  // depth < 0: the kernel is plain
+};
+
+const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u;  // of SplatInputs::number_material.y
+#endif

@@ -1,0 +1,28 @@
+// Packing of a face's second derivatives: 8 bytes of a splat. docs/method.md, 2_collect_splats.
+#ifndef FACE_RECORD_GLSL
+#define FACE_RECORD_GLSL
+
+// Symmetric: xx yy zz, yz xz xy; 1/voxel.
+struct Bending {
+    vec3 diagonal;
+    vec3 mixed;
+};
+
+vec3 bent(Bending h, vec3 v) {
+    return vec3(h.diagonal.x * v.x + h.mixed.z * v.y + h.mixed.y * v.z, h.mixed.z * v.x + h.diagonal.y * v.y + h.mixed.x * v.z,
+                h.mixed.y * v.x + h.mixed.x * v.y + h.diagonal.z * v.z);
+}
+
+float bending_norm(Bending h) { return sqrt(dot(h.diagonal, h.diagonal) + 2.0 * dot(h.mixed, h.mixed)); }
+
+// The root is stored, so that what is nearly plane is as exact as it is flat.
+uint pack_bending(vec3 v) {
+    ivec3 code = ivec3(round(clamp(sign(v) * sqrt(abs(v) / BENDING_UNIT), -1.0, 1.0) * 511.0));
+    return (uint(code.x) & 1023u) | (uint(code.y) & 1023u) << 10 | (uint(code.z) & 1023u) << 20;
+}
+
+vec3 unpack_bending(uint code) {
+    vec3 v = vec3(int(code << 22) >> 22, int(code << 12) >> 22, int(code << 2) >> 22) / 511.0;
+    return v * abs(v) * BENDING_UNIT;
+}
+#endif

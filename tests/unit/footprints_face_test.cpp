@@ -1,0 +1,144 @@
+// Kernels that a face cuts, against dense sums of the definition and closed forms.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "footprints/face.h"
+
+namespace edgesplat {
+namespace {
+
+/// A ray across a plane face at `distance`: u makes the angle `cosine` with n, and p lies `along` n and `across` it.
+FaceRay plane_ray(double distance, double cosine, double along, double across) {
+    const double pn = along, sine2 = 1 - cosine * cosine;
+    FaceRay ray;
+    ray.rho2 = sine2 > 0 ? along * along / sine2 + across * across : across * across;
+    ray.phi = {pn - distance, cosine, 0};
+    ray.slope2 = {1, 0, 0};
+    ray.along = {pn, cosine, 0};
+    return ray;
+}
+
+/// Dense sum of the definition over the pieces.
+double summed(const FaceRay& ray, const FaceCut& cut) {
+    constexpr int kSteps = 20000;
+    const double half = std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0));
+    double sum = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double z = -half + 2 * half * (i + 0.5) / kSteps, phi = ray.phi.at(z);
+        if (phi <= 0 && phi >= -cut.thickness) sum += face_kernel(ray, cut, z);
+    }
+    return sum * 2 * half / kSteps;
+}
+
+TEST(Face, ADeepKernelIsThePlainOne) {
+    const FaceRay ray = plane_ray(2.3, 0.6, 0.1, 0.4);
+    const FaceCut cut = face_cut(5, 0, 0, std::numeric_limits<double>::infinity());
+    FaceRay deep = ray;
+    deep.phi.c -= 3;
+    EXPECT_NEAR(face_footprint(deep, cut, 16).integral, kernel_footprint(ray.rho2), 1e-6);
+}
+
+TEST(Face, NothingLiesBeyondAFace) {
+    const FaceCut cut = face_cut(-3, 0, 0, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(face_footprint(plane_ray(-3, 0, 0.2, 0.1), cut, 8).integral, 0);
+    // Half a kernel, along the face: what is left is moved to where it is sampled.
+    const FaceCut at = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
+    EXPECT_EQ(face_footprint(plane_ray(0.5, 0, 0.51, 0), at, 8).integral, 0);
+    EXPECT_GT(face_footprint(plane_ray(0.5, 0, 0.49, 0), at, 8).integral, 0.1);
+}
+
+TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {
+    std::mt19937 random(5);
+    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
+    double squares = 0, worst_of_sixteen = 0;
+    constexpr int kRays = 400;
+    for (int i = 0; i < kRays; ++i) {
+        const double distance = uniform(0, 2.4);
+        const FaceRay ray = plane_ray(distance, uniform(-1, 1), uniform(-0.8, 0.8), uniform(0, 1));
+        const double thickness = i % 2 == 0 ? distance + uniform(0.5, 2) : std::numeric_limits<double>::infinity();
+        const FaceCut cut = face_cut(distance, 0, 0, thickness);
+        const double want = summed(ray, cut), peak = kernel_footprint(0);
+        squares += std::pow((face_footprint(ray, cut, 5).integral - want) / peak, 2);
+        worst_of_sixteen = std::max(worst_of_sixteen, std::abs(face_footprint(ray, cut, 16).integral - want) / peak);
+    }
+    EXPECT_LE(std::sqrt(squares / kRays), 0.02);
+    EXPECT_LE(worst_of_sixteen, 0.01);
+}
+
+/// The sum of all kernels at a point `below` a plane face that lies `shift` beyond a lattice plane with this normal.
+double sum_of_kernels(const std::array<double, 3>& n, double shift, double below) {
+    double sum = 0;
+    for (int z = -6; z <= 6; ++z)
+        for (int y = -6; y <= 6; ++y)
+            for (int x = -6; x <= 6; ++x) {
+                const double along = n[0] * x + n[1] * y + n[2] * z, distance = shift - along;
+                if (!(distance >= 0)) continue;
+                // The point, off the lattice sideways too, relative to the voxel.
+                const std::array<double, 3> r = {0.3 + (shift - below) * n[0] - x, 0.2 + (shift - below) * n[1] - y,
+                                                 (shift - below) * n[2] - z};
+                const double rn = r[0] * n[0] + r[1] * n[1] + r[2] * n[2];
+                FaceRay ray;
+                ray.rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+                ray.phi = {rn - distance, 1, 0};
+                ray.slope2 = {1, 0, 0};
+                ray.along = {rn, 1, 0};
+                const FaceCut cut = face_cut(distance, 0, 0, std::numeric_limits<double>::infinity());
+                if (ray.phi.c <= 0) sum += face_kernel(ray, cut, 0);
+            }
+    return sum;
+}
+
+TEST(Face, KernelsSumToAPlateauUpToTheFace) {
+    double least = 2, most = 0, total = 0;
+    int count = 0;
+    for (double shift = 0; shift < 1; shift += 0.1) {
+        const double at_face = sum_of_kernels({0, 0, 1}, shift, 1e-9), behind = sum_of_kernels({0, 0, 1}, shift, 0.7);
+        // One value from the face to where kernels are sampled: an edge that is a step.
+        EXPECT_NEAR(at_face, behind, 1e-6) << shift;
+        least = std::min(least, at_face);
+        most = std::max(most, at_face);
+        total += at_face;
+        ++count;
+    }
+    EXPECT_GE(least, 0.8);
+    EXPECT_LE(most, 1.01);
+    EXPECT_NEAR(total / count, 0.97, 0.02);
+    EXPECT_NEAR(sum_of_kernels({0, 0, 1}, 0.4, 2.2), 1, 1e-3);
+}
+
+TEST(Face, AWallIsEnteredFromEitherSide) {
+    const FaceRay through = plane_ray(0.6, 1, 0, 0), back = plane_ray(0.6, -1, 0, 0);
+    const FacePieces pieces = face_pieces(through, 1.5);
+    ASSERT_EQ(pieces.count, 2);
+    // The piece between both faces; the one beyond phi's second zero lies out of reach.
+    EXPECT_TRUE(pieces.piece[1].from_behind);
+    EXPECT_NEAR(pieces.piece[1].low, -0.9, 1e-5);
+    const FaceCut cut = face_cut(0.6, 0, 0, 1.5);
+    const FaceFootprint out = face_footprint(through, cut, 8), in = face_footprint(back, cut, 8);
+    EXPECT_TRUE(out.from_behind != in.from_behind);
+    EXPECT_NEAR(std::min(out.entry, in.entry), -0.9, 1e-4);
+    EXPECT_NEAR(std::max(out.entry, in.entry), -0.6, 1e-4);
+    EXPECT_NEAR(out.integral, in.integral, 1e-6);
+}
+
+TEST(Face, DegenerateFacesAreFinite) {
+    const double odd[] = {0, 1e-30, -1e-30, 1e6, -1e6, 1e30, 0.5};
+    for (const double a : odd)
+        for (const double b : odd)
+            for (const double c : odd) {
+                const FaceRay ray{0.3, {c, b, a}, {b * b, a * b, a * a}, {c, b, a}};
+                for (const double thickness : {0.05, 1.0, std::numeric_limits<double>::infinity()}) {
+                    const FaceFootprint f = face_footprint(ray, face_cut(0.4, a, std::abs(b), thickness), 4);
+                    EXPECT_TRUE(std::isfinite(f.integral) && f.integral >= 0 && f.integral < 2) << a << b << c;
+                    EXPECT_TRUE(std::isfinite(f.entry));
+                }
+            }
+}
+
+}  // namespace
+}  // namespace edgesplat
