@@ -19,6 +19,11 @@ struct Distance {
 };
 using DistanceFunction = std::function<Distance(const glm::dvec3&)>;
 
+/// Around the origin: a ball; a torus around the z axis; a box of these half sides, its edges rounded to that radius.
+Distance ball_distance(const glm::dvec3& p, double radius);
+Distance ring_distance(const glm::dvec3& p, double major_radius, double minor_radius);
+Distance box_distance(const glm::dvec3& p, const glm::dvec3& half, double rounding);
+
 /// Integral of a Gaussian of standard deviation `sd` from -infinity to t, and its derivative.
 inline double step(double t, double sd) {
     return 0.5 * std::erfc(-t / (kSqrt2 * sd));

@@ -43,18 +43,6 @@ DistanceFunction nearest_of(std::vector<DistanceFunction> parts) {
     };
 }
 
-Distance ball_distance(const glm::dvec3& p, double radius) {
-    const double r = glm::length(p);
-    return {r - radius, r > 0 ? p / r : glm::dvec3(1, 0, 0)};
-}
-
-/// Around the z axis.
-Distance ring_distance(const glm::dvec3& p, double major_radius, double minor_radius) {
-    const double r = std::hypot(p.x, p.y), away = r - major_radius, d = std::hypot(away, p.z);
-    const glm::dvec3 radial = r > 0 ? glm::dvec3(p.x / r, p.y / r, 0) : glm::dvec3(1, 0, 0);
-    return {d - minor_radius, d > 0 ? (away * radial + glm::dvec3(0, 0, p.z)) / d : radial};
-}
-
 /// The foot of the perpendicular is p_i r_i^2 / (t + r_i^2), where sum (r_i p_i / (t + r_i^2))^2 = 1. From where one
 /// term alone is 1 Newton's steps go up to the root, since the sum is convex and falls.
 Distance ellipsoid_distance(const glm::dvec3& x, const glm::dvec3& radii) {
@@ -74,19 +62,6 @@ Distance ellipsoid_distance(const glm::dvec3& x, const glm::dvec3& radii) {
     const glm::dvec3 normal = glm::normalize(foot / squares);
     const glm::dvec3 sign(x.x < 0 ? -1 : 1, x.y < 0 ? -1 : 1, x.z < 0 ? -1 : 1);
     return {t * glm::length(p / (t + squares)), sign * normal};
-}
-
-/// Half sides of the outer faces; `rounding`: radius of the edges.
-Distance box_distance(const glm::dvec3& p, const glm::dvec3& half, double rounding) {
-    const glm::dvec3 sign(p.x < 0 ? -1 : 1, p.y < 0 ? -1 : 1, p.z < 0 ? -1 : 1);
-    const glm::dvec3 q = glm::abs(p) - (half - rounding);
-    const glm::dvec3 beyond = glm::max(q, 0.0);
-    const double outside = glm::length(beyond);
-    if (outside > 0) return {outside - rounding, sign * beyond / outside};
-    const int axis = q.x > q.y ? (q.x > q.z ? 0 : 2) : (q.y > q.z ? 1 : 2);
-    glm::dvec3 gradient(0);
-    gradient[axis] = sign[axis];
-    return {q[axis] - rounding, gradient};
 }
 
 /// Two balls that overlap: where one's nearest surface point lies in the other, the crease between them is nearest.

@@ -11,21 +11,49 @@ namespace edgesplat {
 
 namespace analytic {
 
+Distance ball_distance(const glm::dvec3& p, double radius) {
+    const double r = glm::length(p);
+    return {r - radius, r > 0 ? p / r : glm::dvec3(1, 0, 0)};
+}
+
+Distance ring_distance(const glm::dvec3& p, double major_radius, double minor_radius) {
+    const double r = std::hypot(p.x, p.y), away = r - major_radius, d = std::hypot(away, p.z);
+    const glm::dvec3 radial = r > 0 ? glm::dvec3(p.x / r, p.y / r, 0) : glm::dvec3(1, 0, 0);
+    return {d - minor_radius, d > 0 ? (away * radial + glm::dvec3(0, 0, p.z)) / d : radial};
+}
+
+Distance box_distance(const glm::dvec3& p, const glm::dvec3& half, double rounding) {
+    const glm::dvec3 sign(p.x < 0 ? -1 : 1, p.y < 0 ? -1 : 1, p.z < 0 ? -1 : 1);
+    const glm::dvec3 q = glm::abs(p) - (half - rounding);
+    const glm::dvec3 beyond = glm::max(q, 0.0);
+    const double outside = glm::length(beyond);
+    if (outside > 0) return {outside - rounding, sign * beyond / outside};
+    const int axis = q.x > q.y ? (q.x > q.z ? 0 : 2) : (q.y > q.z ? 1 : 2);
+    glm::dvec3 gradient(0);
+    gradient[axis] = sign[axis];
+    return {q[axis] - rounding, gradient};
+}
+
 void check(const EdgeProfile& profile) {
     if (!(profile.inside > profile.outside))
         fail("edge profile: inside {} must be above outside {}", profile.inside, profile.outside);
     if (!profile.binary && !(profile.blur > 0)) fail("edge profile: blur {} must be above 0", profile.blur);
 }
 
-AnalyticScene solid(std::string name, const glm::ivec3& dims, const EdgeProfile& profile, DistanceFunction distance) {
+AnalyticScene with_profile(std::string name, const glm::ivec3& dims, const EdgeProfile& profile) {
     check(profile);
     AnalyticScene scene;
     scene.name = std::move(name);
     scene.dims = dims;
     scene.iso_values = {profile.iso_value()};
     scene.rise = profile.inside - profile.outside;
+    return scene;
+}
+
+AnalyticScene solid(std::string name, const glm::ivec3& dims, const EdgeProfile& profile, DistanceFunction distance) {
+    AnalyticScene scene = with_profile(std::move(name), dims, profile);
     const auto shared = std::make_shared<DistanceFunction>(std::move(distance));
-    const double rise = profile.inside - profile.outside;
+    const double rise = scene.rise;
     scene.signed_distance = [shared](const glm::dvec3& x) { return (*shared)(x).value; };
     if (profile.binary) {
         scene.value = [shared, profile](const glm::dvec3& x) {
@@ -58,22 +86,16 @@ using namespace analytic;
 
 // Cube with a hole along z, exact everywhere: beyond the hole's mouth the nearest solid is its rim.
 Distance cube_hole_distance(const glm::dvec3& p, double half, double hole) {
-    const glm::dvec3 sign(p.x < 0 ? -1 : 1, p.y < 0 ? -1 : 1, p.z < 0 ? -1 : 1);
-    const auto q = glm::abs(p) - half;
     const double r = std::hypot(p.x, p.y);
     const glm::dvec3 radial = r > 0 ? glm::dvec3(p.x / r, p.y / r, 0) : glm::dvec3(1, 0, 0);
     const Distance wall{hole - r, -radial};
-    if (r < hole && q.z > 0) {
-        const double d = std::hypot(wall.value, q.z);
-        return {d, (wall.value * wall.gradient + q.z * glm::dvec3(0, 0, sign.z)) / d};
+    const double above = std::abs(p.z) - half;
+    if (r < hole && above > 0) {
+        const double d = std::hypot(wall.value, above);
+        return {d, (wall.value * wall.gradient + above * glm::dvec3(0, 0, p.z < 0 ? -1 : 1)) / d};
     }
-    const auto beyond = glm::max(q, 0.0);
-    const double outside = glm::length(beyond);
-    if (outside > 0) return {outside, sign * beyond / outside};
-    const int axis = q.x > q.y ? (q.x > q.z ? 0 : 2) : (q.y > q.z ? 1 : 2);
-    glm::dvec3 gradient(0);
-    gradient[axis] = sign[axis];
-    return wall.value > q[axis] ? wall : Distance{q[axis], gradient};
+    const Distance cube = box_distance(p, glm::dvec3(half), 0);
+    return cube.value <= 0 && wall.value > cube.value ? wall : cube;
 }
 
 struct Slab {
@@ -83,13 +105,8 @@ struct Slab {
 };
 
 AnalyticScene slabs(std::string name, const glm::ivec3& dims, std::vector<Slab> walls, const EdgeProfile& profile) {
-    check(profile);
-    AnalyticScene scene;
-    scene.name = std::move(name);
-    scene.dims = dims;
-    scene.iso_values = {profile.iso_value()};
-    scene.rise = profile.inside - profile.outside;
-    const double rise = profile.inside - profile.outside;
+    AnalyticScene scene = with_profile(std::move(name), dims, profile);
+    const double rise = scene.rise;
     const auto shared = std::make_shared<std::vector<Slab>>(std::move(walls));
     scene.signed_distance = [shared](const glm::dvec3& x) {
         double nearest = INFINITY;
@@ -150,9 +167,7 @@ AnalyticScene sphere_scene(const glm::ivec3& dims, const glm::dvec3& center, dou
                            const EdgeProfile& profile) {
     if (!(radius > 0)) fail("sphere: radius {} must be above 0", radius);
     return solid("sphere", dims, profile, [center, radius](const glm::dvec3& x) {
-        const auto p = x - center;
-        const double r = glm::length(p);
-        return Distance{r - radius, r > 0 ? p / r : glm::dvec3(0)};
+        return ball_distance(x - center, radius);
     });
 }
 
@@ -161,11 +176,7 @@ AnalyticScene torus_scene(const glm::ivec3& dims, const glm::dvec3& center, doub
     if (!(minor_radius > 0 && major_radius > minor_radius))
         fail("torus: radii {} and {}: expected 0 < minor < major", major_radius, minor_radius);
     return solid("torus", dims, profile, [=](const glm::dvec3& x) {
-        const auto p = x - center;
-        const double r = std::hypot(p.x, p.y), away = r - major_radius, d = std::hypot(away, p.z);
-        const auto radial = r > 0 ? glm::dvec3(p.x / r, p.y / r, 0) : glm::dvec3(0);
-        const auto gradient = d > 0 ? (away * radial + glm::dvec3(0, 0, p.z)) / d : glm::dvec3(0);
-        return Distance{d - minor_radius, gradient};
+        return ring_distance(x - center, major_radius, minor_radius);
     });
 }
 
