@@ -30,8 +30,9 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 
     RaycastPlan plan;
     plan.size = size;
-    plan.variant = {light_code(scene), collection.params.iso_count, raycast.warped,
-                    raycast.warped && draws_warped(settings), raycast.skip_empty};
+    plan.variant = {light_code(scene),  collection.params.iso_count,
+                    raycast.warped,     raycast.warped && draws_warped(settings),
+                    raycast.skip_empty, static_cast<std::uint32_t>(raycast.filter)};
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;
     p.anchor = anchor;
@@ -86,22 +87,27 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
     block = plan.block;
     block.rays.pixels = output_.address();
     bindings_.write_volume(volume);
+    takes_coefficients_ = plan.variant.filter == shader::FILTER_CUBIC;
 }
 
 bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& commands, const RaycastPlan& plan) {
-    if (!plan.variant.skip_empty || same_bricks(classified_, plan.block.scene)) return false;
+    if (!plan.variant.skip_empty ||
+        (same_bricks(classified_, plan.block.scene) && classified_filter_ == plan.variant.filter))
+        return false;
     const gpu::GpuImage scratch = brick_image(device, plan.block.scene.dims, "brick scratch");
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, scratch);
     classified_ = {};
     commands.run([&] {
         commands.bind_compute_set(bindings_.set());
         commands.prepare({&scratch});
-        commands.span("raycast_bricks",
-                      [&] { passes::classify_bricks(commands, plan.block.scene.dims, plan.block.scene.iso_count); });
+        commands.span("raycast_bricks", [&] {
+            passes::classify_bricks(commands, plan.block.scene.dims, plan.block.scene.iso_count, plan.variant.filter);
+        });
     });
     // The slot must not be left with an image that is gone.
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks_);
     classified_ = plan.block.scene;
+    classified_filter_ = plan.variant.filter;
     return true;
 }
 

@@ -25,8 +25,8 @@ class RaycastResources {
     RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
                      const glm::ivec3& dims);
 
-    /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, and the edge field if
-    /// the plan's variant has edges.
+    /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, the edge field if the
+    /// plan's variant has edges, the spline's coefficients if its filter is cubic.
     void prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume);
 
     /// Finds the transparent bricks and waits, if the plan skips them and its materials are others than last time.
@@ -39,6 +39,9 @@ class RaycastResources {
     /// (height, width) vec4 of the last run.
     std::span<const float> pixels() const;
 
+    /// Whether the last picture was cast through the spline.
+    bool takes_coefficients() const { return takes_coefficients_; }
+
   private:
     Bindings bindings_;     ///< the common layout, with the bricks in it
     gpu::GpuImage bricks_;  ///< (z, y, x) r8ui: BIND_BRICKS
@@ -46,6 +49,8 @@ class RaycastResources {
     gpu::Buffer output_;    ///< (height, width) vec4, mapped
     glm::ivec2 size_{0};
     shader::SceneParams classified_{};  ///< what the bricks were made with; iso_count 0: nothing yet
+    std::uint32_t classified_filter_ = 0;
+    bool takes_coefficients_ = false;
 };
 
 }  // namespace edgesplat

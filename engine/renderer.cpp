@@ -100,25 +100,29 @@ void RendererState::collect_changes() {
 
 void RendererState::collect_anew(const CollectionPlan& wanted) {
     collected.reset();
-    if (changed) volume_resources.coefficients = {};
     occluded.reset();
     shadowed.reset();
     volume_resources.occlusion = {};
     volume_resources.shadows = {};
-    if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic && !volume_resources.coefficients) {
-        const auto coefficients = bspline_coefficients(scaled_field(*volume), wanted.dims);
-        volume_resources.coefficients = gpu::GpuImage(device,
-                                                      {.format = vk::Format::eR32Sfloat,
-                                                       .size = wanted.dims,
-                                                       .volume = true,
-                                                       .usage = Usage::eStorage | Usage::eTransferDst},
-                                                      "B-spline coefficients");
-        upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
-    }
+    if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic) provide_coefficients();
     collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
     if (wanted.edge_field) voxels_estimated += volume->geometry.voxel_count();
     collected = wanted;
     changed.reset();
+}
+
+bool RendererState::provide_coefficients() {
+    if (volume_resources.coefficients) return false;
+    const glm::ivec3 dims = volume->geometry.dims;
+    const auto coefficients = bspline_coefficients(scaled_field(*volume), dims);
+    volume_resources.coefficients = gpu::GpuImage(device,
+                                                  {.format = vk::Format::eR32Sfloat,
+                                                   .size = dims,
+                                                   .volume = true,
+                                                   .usage = Usage::eStorage | Usage::eTransferDst},
+                                                  "B-spline coefficients");
+    upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
+    return true;
 }
 
 void RendererState::choose_supports(const Settings& settings) {
@@ -139,7 +143,8 @@ void RendererState::release_unused(const Settings& drawn) {
         footprint_resources.table = {};
         table_band.reset();
     }
-    if (!draws_warped(drawn) || drawn.edges != EdgeEstimator::Cubic) volume_resources.coefficients = {};
+    const bool estimates = draws_warped(drawn) && drawn.edges == EdgeEstimator::Cubic;
+    if (!estimates && !(raycast && raycast->takes_coefficients())) volume_resources.coefficients = {};
 }
 
 void RendererState::provide_footprints(const Settings& settings) {

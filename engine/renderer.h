@@ -12,6 +12,7 @@
 #include "engine/image.h"
 #include "engine/renderer_parts.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/renderer_kind.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
 #include "engine/volume/volume.h"
@@ -47,7 +48,8 @@ struct AovRequest {
 
 /// How `Renderer::raycast` samples.
 struct RaycastSettings {
-    double step = 0.5;       ///< voxels between samples along the ray, (0.01, 4]
+    double step = 0.5;  ///< voxels between samples along the ray, (0.01, 4]
+    RaycastFilter filter = RaycastFilter::Trilinear;
     bool warped = false;     ///< materials at warped positions, by the edges that Settings ask for, instead of values
     bool skip_empty = true;  ///< leap over transparent bricks; the picture is the same
 };
@@ -173,8 +175,8 @@ class Renderer {
     RenderResult render(const Scene& scene, const Camera& camera, const Settings& settings, int width, int height,
                         const AovRequest& aovs = {});
 
-    /// The same scene by casting rays through the interpolated volume: colour only. Of Settings it uses `saturation`,
-    /// and with `warped` the edges and their band.
+    /// The same scene by casting rays through the field between the samples: colour only. Of Settings it uses
+    /// `saturation`, and with `warped` the edges and their band.
     RenderResult raycast(const Scene& scene, const Camera& camera, const Settings& settings,
                          const RaycastSettings& raycast, int width, int height);
 

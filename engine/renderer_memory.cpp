@@ -21,6 +21,7 @@ bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
     if (!box) return false;
     other = {};
     raycast.reset();
+    volume_resources.coefficients = {};
     original = volume = next;
     levels = {next};
     if (!changed) changed.emplace();

@@ -44,6 +44,9 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
         if (stats.setup_milliseconds > 0) add_times(self.collection_times);
     }
     auto start = Clock::now();
+    if (raycast.filter == RaycastFilter::Cubic && self.provide_coefficients())
+        stats.setup_milliseconds += milliseconds_since(start);
+    start = Clock::now();
     if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
     auto& rays = *self.raycast;
     const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,

@@ -147,6 +147,10 @@ struct RendererState : DeviceState, SplatSet {
     /// Of the splats that are there.
     FramePlan plan_picture(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
                            std::uint32_t payload) const;
+    /// Brings the spline through the samples to the device, of a volume that it holds as a whole; whether that was to
+    /// be done.
+    bool provide_coefficients();
+
     /// Passes 3 to 7 with one payload; the picture is left in targets.output. `offset`: of its rays from the pixels'
     /// centres, in pixels.
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,

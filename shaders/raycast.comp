@@ -8,6 +8,37 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 #include "shaders/lib/raycast.glsl"
 
+// Where the ray crosses an iso-value between low and high, where values less the iso-value have different signs.
+float crossing(Ray ray, float low, float high, float f_low, float f_high, float iso) {
+    float a = low, b = high, c = 0.0;
+    if (FILTER == FILTER_CUBIC) {
+        // Newton from the chord on, or the middle where that leads out of what is left: to 1e-3 voxel.
+        c = low + (high - low) * f_low / (f_low - f_high);
+        for (int k = 0; k < 3; ++k) {
+            vec4 s = bspline_slope(at(ray, c));
+            float f = s.w - iso;
+            bool near = (f < 0.0) == (f_low < 0.0);
+            low = near ? c : low;
+            high = near ? high : c;
+            float next = c - f / dot(s.xyz, ray.u);
+            c = next >= low && next <= high ? next : 0.5 * (low + high);
+        }
+    } else {
+        // Regula falsi, Illinois: the end that stays counts half.
+        for (int k = 0; k < 2; ++k) {
+            c = low + (high - low) * f_low / (f_low - f_high);
+            float f = field(at(ray, c)) - iso;
+            bool near = (f < 0.0) == (f_low < 0.0);
+            f_high = near ? 0.5 * f_high : f;
+            f_low = near ? f : 0.5 * f_low;
+            low = near ? c : low;
+            high = near ? high : c;
+        }
+        c = clamp(low + (high - low) * f_low / (f_low - f_high), a, b);
+    }
+    return c;
+}
+
 void main() {
     ivec2 pixel = pixel_of_invocation();
     if (any(greaterThanEqual(pixel, params.rays.size))) return;
@@ -70,20 +101,9 @@ void main() {
         for (int pieces = found ? abs(int(to) - int(from)) + 1 : 0; pieces > 0; --pieces) {
             float c = b;
             float iso = 0.0;
-            // Regula falsi, Illinois: the end that stays counts half.
-            for (int crossing = pieces > 1 ? 1 : 0; crossing > 0; --crossing) {
+            for (int run = pieces > 1 ? 1 : 0; run > 0; --run) {
                 iso = params.scene.iso[way > 0 ? from : from - 1u];
-                float low = a, high = b, f_low = f_from - iso, f_high = current - iso;
-                for (int k = 0; k < 2; ++k) {
-                    c = low + (high - low) * f_low / (f_low - f_high);
-                    float f = field(at(ray, c)) - iso;
-                    bool near = (f < 0.0) == (f_low < 0.0);
-                    f_high = near ? 0.5 * f_high : f;
-                    f_low = near ? f : 0.5 * f_low;
-                    low = near ? c : low;
-                    high = near ? high : c;
-                }
-                c = clamp(low + (high - low) * f_low / (f_low - f_high), a, b);
+                c = crossing(ray, a, b, f_from - iso, current - iso, iso);
             }
             vec4 material = params.rays.materials[from];
             float weight = (1.0 - sum.a) * opacity(material.a * ray.mm * (c - a));

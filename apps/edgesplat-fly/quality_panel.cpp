@@ -98,7 +98,7 @@ void quality_panel(AppState& state) {
         if (knob.used(now)) step_slider(state, knob);
     bool best = state.session.best_when_still();
     if (ImGui::Checkbox("accurate on standstill", &best)) state.session.set_best_when_still(best);
-    constexpr std::array<const char*, 3> kRays{"splats", "rays on a processor", "rays"};
+    constexpr std::array<const char*, 4> kRays{"splats", "rays on a processor", "rays", "rays through the spline"};
     int rays = static_cast<int>(state.rays);
     if (ImGui::Combo("in motion", &rays, kRays.data(), static_cast<int>(kRays.size()))) {
         state.rays = static_cast<edgesplat::viewer::Drawer::Options::Rays>(rays);

@@ -8,35 +8,61 @@
 
 using edgesplat::SceneDocument;
 
+namespace {
+
+/// The kind of which `text` is the name; `what` says what it is.
+template <typename Kind, std::size_t count>
+Kind named(const std::array<std::string_view, count>& names, const std::string& option, std::string_view what,
+           const std::string& text) {
+    const auto found = std::ranges::find(names, text);
+    if (found == names.end())
+        throw CLI::ValidationError(
+            option, fmt::format("no {} is called '{}'; there are {}", what, text, fmt::join(names, ", ")));
+    return static_cast<Kind>(found - names.begin());
+}
+
+}  // namespace
+
 edgesplat::RaycastSettings raycast_settings(const edgesplat::OutputChoice& output) {
-    return {.step = output.raycast_step, .warped = output.renderer == edgesplat::RendererKind::RaycastWarped};
+    return {.step = output.raycast_step,
+            .filter = output.raycast_filter,
+            .warped = output.renderer == edgesplat::RendererKind::RaycastWarped};
 }
 
 void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
     constexpr const char* kGroup = "Renderer";
-    const auto& names = edgesplat::kRendererNames;
     const edgesplat::OutputChoice usual;
     command
         .add_option_function<std::string>(
             "--renderer",
-            [&edits, &names](const std::string& text) {
-                const auto found = std::find(names.begin(), names.end(), text);
-                if (found == names.end())
-                    throw CLI::ValidationError("--renderer", fmt::format("no renderer is called '{}'; there are {}",
-                                                                         text, fmt::join(names, ", ")));
-                const auto kind = static_cast<edgesplat::RendererKind>(found - names.begin());
+            [&edits](const std::string& text) {
+                const auto kind =
+                    named<edgesplat::RendererKind>(edgesplat::kRendererNames, "--renderer", "renderer", text);
                 edits.add([kind](SceneDocument& d) { d.output.renderer = kind; });
             },
             "raycast: rays through the interpolated volume; raycast-warped: through the voxels' materials, sharpened "
             "by the same edges as splats. reference: the sum of all kernels itself, to --tolerance; truth: a builtin "
             "volume's exact surfaces. These two take the processor and seconds to minutes")
-        ->type_name(fmt::format("{}", fmt::join(names, "|")))
+        ->type_name(fmt::format("{}", fmt::join(edgesplat::kRendererNames, "|")))
         ->default_str(std::string(name_of(usual.renderer)))
         ->group(kGroup);
     add_number_edit(command, edits, "--raycast-step", {0.01, 4, true},
                     "Between samples, in voxels (raycast, raycast-warped)",
                     [](SceneDocument& d, double value) { d.output.raycast_step = value; })
         ->default_str(fmt::format("{}", usual.raycast_step))
+        ->group(kGroup);
+    command
+        .add_option_function<std::string>(
+            "--raycast-filter",
+            [&edits](const std::string& text) {
+                const auto filter =
+                    named<edgesplat::RaycastFilter>(edgesplat::kRaycastFilterNames, "--raycast-filter", "filter", text);
+                edits.add([filter](SceneDocument& d) { d.output.raycast_filter = filter; });
+            },
+            "The field between the samples (raycast): interpolated, or the cubic B-spline through them, whose surfaces "
+            "are nearer to the truth and take several times as long")
+        ->type_name(fmt::format("{}", fmt::join(edgesplat::kRaycastFilterNames, "|")))
+        ->default_str(std::string(edgesplat::kRaycastFilterNames.at(static_cast<std::size_t>(usual.raycast_filter))))
         ->group(kGroup);
     add_number_edit(command, edits, "--tolerance", {0, 0.1, true},
                     "Largest error of a pixel, of full scale 1 (reference, truth)",

@@ -1,4 +1,4 @@
-// --renderer, --raycast-step and --tolerance of `edgesplat render`: which way to the picture.
+// --renderer, --raycast-step, --raycast-filter and --tolerance of `edgesplat render`: which way to the picture.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,5 +9,5 @@
 /// How the ray caster is to sample.
 edgesplat::RaycastSettings raycast_settings(const edgesplat::OutputChoice& output);
 
-/// Adds --renderer, --raycast-step and --tolerance.
+/// Adds --renderer, --raycast-step, --raycast-filter and --tolerance.
 void add_renderer_options(CLI::App& command, DocumentEdits& edits);

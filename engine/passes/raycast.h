@@ -9,17 +9,18 @@ namespace edgesplat::passes {
 /// Bricks along each axis of a volume.
 glm::ivec3 brick_count(const glm::ivec3& dims);
 
-/// Volume -> distance of every brick to the nearest one that is not transparent. `block` is a RaycastBlock; the ray
-/// caster's descriptor set is bound.
-void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count);
+/// Volume -> distance of every brick to the nearest one that is not transparent in the field of `filter`
+/// (RaycastFilter). `block` is a RaycastBlock; the ray caster's descriptor set is bound.
+void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, std::uint32_t filter);
 
 /// Pipeline variant of the ray caster: every member is a specialization constant.
 struct RaycastVariant {
     std::uint32_t light = 1;  ///< light_code()
     std::uint32_t iso_count = 1;
-    bool warped = false;     ///< materials are looked up at warped positions
-    bool edges = false;      ///< the edge field exists
-    bool skip_empty = true;  ///< transparent bricks are leapt over
+    bool warped = false;       ///< materials are looked up at warped positions
+    bool edges = false;        ///< the edge field exists
+    bool skip_empty = true;    ///< transparent bricks are leapt over
+    std::uint32_t filter = 0;  ///< RaycastFilter
 };
 
 /// Writes FrameParams::output_pixels of the block, (height, width) vec4, linear light.

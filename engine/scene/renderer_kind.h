@@ -13,6 +13,12 @@ enum class RendererKind { Splat, Raycast, RaycastWarped, Reference, Truth };
 inline constexpr std::array<std::string_view, 5> kRendererNames{"splat", "raycast", "raycast-warped", "reference",
                                                                 "truth"};
 
+/// What the ray caster takes the field between the voxels for: trilinear interpolation, or the cubic B-spline through
+/// the samples.
+enum class RaycastFilter { Trilinear, Cubic };
+
+inline constexpr std::array<std::string_view, 2> kRaycastFilterNames{"trilinear", "cubic"};
+
 /// Whether it computes on the processor alone and needs no Vulkan device.
 constexpr bool on_processor(RendererKind kind) {
     return kind == RendererKind::Reference || kind == RendererKind::Truth;

@@ -64,7 +64,8 @@ struct OutputChoice {
     bool compare_plain = false;     ///< conventional splatting beside it
     RendererKind renderer = RendererKind::Splat;
     double raycast_step = 0.5;  ///< voxels
-    double tolerance = 1e-4;    ///< of reference and truth
+    RaycastFilter raycast_filter = RaycastFilter::Trilinear;
+    double tolerance = 1e-4;  ///< of reference and truth
     bool operator==(const OutputChoice&) const = default;
 };
 

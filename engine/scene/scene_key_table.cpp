@@ -352,6 +352,10 @@ void add_output(Table& t) {
           {.help = "Which way to the picture", .choices = {kRendererNames.begin(), kRendererNames.end()}});
     t.add("output.raycast_step", MEMBER(output.raycast_step),
           {.unit = "voxels", .help = "Between samples (raycast, raycast-warped)", .range = {0.01, 4, true}});
+    t.add("output.raycast_filter", MEMBER(output.raycast_filter),
+          {.help = "The field between the samples: interpolated, or the cubic B-spline through them, whose surfaces "
+                   "are nearer to the truth and take several times as long (raycast)",
+           .choices = {kRaycastFilterNames.begin(), kRaycastFilterNames.end()}});
     t.add("output.tolerance", MEMBER(output.tolerance),
           {.help = "Largest error of a pixel, of full scale (reference, truth)", .range = {0, 0.1, true}});
 }

@@ -193,7 +193,8 @@ bool Drawer::is_software() {
 
 bool Drawer::casts_rays(const DrawRequest& request) {
     using Rays = Options::Rays;
-    const bool wanted = options_.rays == Rays::Always || (options_.rays == Rays::OnProcessor && is_software());
+    const bool wanted = options_.rays == Rays::Always || options_.rays == Rays::Cubic ||
+                        (options_.rays == Rays::OnProcessor && is_software());
     return wanted && !request.plain && !request.volume->values.empty() && beyond_ray_casting(request.scene).empty() &&
            request.settings.edges != EdgeEstimator::Off;
 }
@@ -303,8 +304,10 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     if (kind == Kind::Plain) settings = without_edges(settings);
     const glm::ivec2 size = scaled(request.size, rung.scale);
     if (lose_.exchange(false)) renderer.lose_device();
-    RenderResult result = rung.rays ? renderer.raycast(scene, request.camera, settings, {}, size.x, size.y)
-                                    : renderer.render(scene, request.camera, settings, size.x, size.y);
+    const auto filter = options_.rays == Options::Rays::Cubic ? RaycastFilter::Cubic : RaycastFilter::Trilinear;
+    RenderResult result = rung.rays
+                              ? renderer.raycast(scene, request.camera, settings, {.filter = filter}, size.x, size.y)
+                              : renderer.render(scene, request.camera, settings, size.x, size.y);
     out.setup += result.stats.setup_milliseconds + result.stats.pipeline_milliseconds;
     if (kind != Kind::Plain) out.stats = std::move(result.stats);
     const std::lock_guard lock(renderers_mutex_);

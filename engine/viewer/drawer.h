@@ -55,7 +55,8 @@ class Drawer {
         double target = 150;              ///< milliseconds a picture may take while something moves
         /// Where pictures in motion are cast with rays if the scene can be (`beyond_ray_casting`): on a processor they
         /// are there several times as soon as splats.
-        enum class Rays { Never, OnProcessor, Always } rays = Rays::OnProcessor;
+        /// Cubic: through the spline, which is nearer to the truth and takes longer.
+        enum class Rays { Never, OnProcessor, Always, Cubic } rays = Rays::OnProcessor;
         bool threaded = true;  ///< else pictures are drawn by `take`
     };
     explicit Drawer(Options options);

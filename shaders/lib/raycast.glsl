@@ -6,12 +6,14 @@
 layout(constant_id = SPEC_RAY_LIGHT) const uint LIGHT = 1u;
 layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;
 layout(constant_id = SPEC_SKIP) const uint SKIP = 1u;
+layout(constant_id = SPEC_RAY_FILTER) const uint FILTER = FILTER_TRILINEAR;
 const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u;
 
 // A new gradient is taken a voxel further on, or later, once what was drawn meanwhile adds up to this much of the pixel.
 const float STALE_LIGHT = 1.0 / 64.0, STALE_WAY = 1.0;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_BRICKS, r8ui) uniform readonly uimage3D bricks;
 
 ivec3 dims;
@@ -19,10 +21,11 @@ float iso_values[MAX_MATERIALS];
 uint visible_mask;
 
 #include "shaders/lib/opacity.glsl"
-#include "shaders/lib/trilinear.glsl"
+#include "shaders/lib/volume_sampling.glsl"
 
-// trilinear() with a cheaper choice of the cell: at the last sample it has no width.
+// trilinear() with a cheaper choice of the cell: at the last sample it has no width. Or the spline.
 float field(vec3 p) {
+    if (FILTER == FILTER_CUBIC) return bspline(p);
     p = clamp(p, vec3(0.0), vec3(dims - 1));
     ivec3 c = ivec3(p);
     return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
@@ -86,10 +89,11 @@ float leave(Ray ray, vec3 p) {
 }
 
 // Interpolated central differences of the voxels around p, moved to where both ends lie between voxels: the same as
-// differences of six interpolated values, in 32 loads for 48.
+// differences of six interpolated values, in 32 loads for 48. Of the spline its own slope there.
 vec3 gradient(vec3 p) {
     vec3 last = vec3(dims - 1);
     p = clamp(p, min(vec3(1.0), 0.5 * last), max(last - 1.0, 0.5 * last));
+    if (FILTER == FILTER_CUBIC) return bspline_slope(p).xyz;
     ivec3 c = ivec3(p);
     vec3 t = p - vec3(c);
     ivec3 end = dims - 1;

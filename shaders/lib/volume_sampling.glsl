@@ -8,24 +8,22 @@ vec4 bspline_weights(float t) {
 }
 
 // Mirror at the border, as the prefilter assumes.
-int mirrored(int i, int n) {
-    i = abs(i);
-    i = i >= n ? 2 * n - 2 - i : i;
-    return clamp(i, 0, n - 1);
+ivec4 mirrored(int i, int n) {
+    ivec4 m = abs(i + ivec4(-1, 0, 1, 2));
+    return clamp(min(m, 2 * n - 2 - m), 0, n - 1);
 }
 
 float bspline(vec3 p) {
     p = clamp(p, vec3(0.0), vec3(dims - 1));
     vec3 c = floor(p);
     vec4 wx = bspline_weights(p.x - c.x), wy = bspline_weights(p.y - c.y), wz = bspline_weights(p.z - c.z);
-    ivec3 b = ivec3(c) - 1;
+    ivec4 x = mirrored(int(c.x), dims.x), y = mirrored(int(c.y), dims.y), z = mirrored(int(c.z), dims.z);
     float sum = 0.0;
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
-            ivec3 row = ivec3(0, mirrored(b.y + j, dims.y), mirrored(b.z + k, dims.z));
             float line = 0.0;
             for (int i = 0; i < 4; ++i)
-                line += wx[i] * imageLoad(coefficients, ivec3(mirrored(b.x + i, dims.x), row.yz)).r;
+                line += wx[i] * imageLoad(coefficients, ivec3(x[i], y[j], z[k])).r;
             sum += wy[j] * wz[k] * line;
         }
     return sum;
@@ -42,14 +40,13 @@ vec4 bspline_slope(vec3 p) {
     vec3 c = floor(p), t = p - c;
     vec4 wx = bspline_weights(t.x), wy = bspline_weights(t.y), wz = bspline_weights(t.z);
     vec4 sx = bspline_slopes(t.x), sy = bspline_slopes(t.y), sz = bspline_slopes(t.z);
-    ivec3 b = ivec3(c) - 1;
+    ivec4 x = mirrored(int(c.x), dims.x), y = mirrored(int(c.y), dims.y), z = mirrored(int(c.z), dims.z);
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
-            ivec3 row = ivec3(0, mirrored(b.y + j, dims.y), mirrored(b.z + k, dims.z));
             vec2 line = vec2(0.0);
             for (int i = 0; i < 4; ++i)
-                line += vec2(wx[i], sx[i]) * imageLoad(coefficients, ivec3(mirrored(b.x + i, dims.x), row.yz)).r;
+                line += vec2(wx[i], sx[i]) * imageLoad(coefficients, ivec3(x[i], y[j], z[k])).r;
             sum += vec4(line.y * wy[j] * wz[k], line.x * sy[j] * wz[k], line.x * wy[j] * sz[k], line.x * wy[j] * wz[k]);
         }
     return sum;

@@ -116,11 +116,13 @@ TEST(ChangedRegion, SeveralChangesBeforeAPictureAreAllSeen) {
     fresh.set_volume(shot.volume);
     expect_same(picture(renderer, other, {}), picture(fresh, other, {}));
     // And rays.
+    renderer.raycast(shot.scene, shot.camera, {}, {.filter = RaycastFilter::Cubic}, 64, 48);
     renderer.set_volume(once);
     Renderer rays = own_renderer();
     rays.set_volume(once);
-    EXPECT_TRUE(renderer.raycast(shot.scene, shot.camera, {}, {}, 64, 48).color.pixels ==
-                rays.raycast(shot.scene, shot.camera, {}, {}, 64, 48).color.pixels);
+    for (const RaycastFilter filter : {RaycastFilter::Cubic, RaycastFilter::Trilinear})
+        EXPECT_TRUE(renderer.raycast(shot.scene, shot.camera, {}, {.filter = filter}, 64, 48).color.pixels ==
+                    rays.raycast(shot.scene, shot.camera, {}, {.filter = filter}, 64, 48).color.pixels);
     expect_same(picture(renderer, shot, {}), picture(rays, shot, {}));
 }
 

@@ -8,44 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "engine/accuracy/metrics.h"
-#include "engine/reference/truth.h"
-#include "tests/properties/scenes.h"
+#include "tests/properties/exact_scenes.h"
 
 namespace edgesplat::test {
 namespace {
 
-using accuracy::image_error;
-
-/// A builtin scene, opaque, whole in a picture of 120 x 120 pixels.
-struct Exact {
-    Shot shot;
-    Image truth;
-};
-
-Exact exact(const std::string& name, double extinction = 8) {
-    const AnalyticScene scene = builtin_scene("builtin:" + name);
-    Exact out;
-    Shot& shot = out.shot;
-    shot.volume = std::make_shared<const Volume>(sample(scene));
-    shot.scene.iso_values = scene.iso_values;
-    shot.scene.materials.resize(scene.iso_values.size() + 1);
-    shot.scene.materials.back() = {{1, 0.9, 0.8}, extinction};
-    const glm::dvec3 middle = glm::dvec3(scene.dims - 1) / 2.0;
-    shot.camera =
-        look(*shot.volume, middle + 2.3 * glm::length(middle) * glm::normalize(glm::dvec3(3.8, -5.2, 3)), middle, 32);
-    shot.width = shot.height = 120;
-    shot.settings.edges = EdgeEstimator::Cubic;
-    shot.settings.warp = WarpFamily::Face;
-    reference::DirectOptions options;
-    options.tolerance = 1e-3;
-    out.truth =
-        reference::truth(scene, shot.volume->geometry, shot.scene, shot.camera, shot.width, shot.height, options).image;
+/// A builtin scene whose kernels are cut at faces.
+Exact exact(const std::string& name) {
+    Exact out = exact_scene(name);
+    out.shot.settings.edges = EdgeEstimator::Cubic;
+    out.shot.settings.warp = WarpFamily::Face;
     return out;
-}
-
-double decibels(const Image& image, const Image& truth) {
-    return -20 * std::log10(image_error(image, truth).rms);
 }
 
 /// With noise of 5 % of the step faces are no gain yet: exact normals follow the noise, where the ray caster's
