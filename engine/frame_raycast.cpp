@@ -30,9 +30,8 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 
     RaycastPlan plan;
     plan.size = size;
-    plan.variant = {light_code(scene),  collection.params.iso_count,
-                    raycast.warped,     raycast.warped && draws_warped(settings),
-                    raycast.skip_empty, static_cast<std::uint32_t>(raycast.filter)};
+    plan.variant = {light_code(scene), collection.params.iso_count, raycast.skip_empty,
+                    static_cast<std::uint32_t>(raycast.filter)};
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;
     p.anchor = anchor;
@@ -57,8 +56,6 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
     p.size = size;
     p.saturation = settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
     p.step = static_cast<float>(raycast.step);
-    p.half_width = static_cast<float>(settings.edge_half_width);
-    p.strength = static_cast<float>(settings.edge_strength);
     return plan;
 }
 

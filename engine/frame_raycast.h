@@ -25,8 +25,8 @@ class RaycastResources {
     RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
                      const glm::ivec3& dims);
 
-    /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, the edge field if the
-    /// plan's variant has edges, the spline's coefficients if its filter is cubic.
+    /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, and the spline's
+    /// coefficients if the plan's filter is cubic.
     void prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume);
 
     /// Finds the transparent bricks and waits, if the plan skips them and its materials are others than last time.

@@ -50,7 +50,6 @@ struct AovRequest {
 struct RaycastSettings {
     double step = 0.5;  ///< voxels between samples along the ray, (0.01, 4]
     RaycastFilter filter = RaycastFilter::Trilinear;
-    bool warped = false;     ///< materials at warped positions, by the edges that Settings ask for, instead of values
     bool skip_empty = true;  ///< leap over transparent bricks; the picture is the same
 };
 
@@ -176,7 +175,7 @@ class Renderer {
                         const AovRequest& aovs = {});
 
     /// The same scene by casting rays through the field between the samples: colour only. Of Settings it uses
-    /// `saturation`, and with `warped` the edges and their band.
+    /// `saturation` alone.
     RenderResult raycast(const Scene& scene, const Camera& camera, const Settings& settings,
                          const RaycastSettings& raycast, int width, int height);
 

@@ -35,14 +35,9 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     const gpu::CommandCounts commands_before = self.commands.counts();
     self.show_whole();
     self.provide_volume();
-    const bool keep_buried = eye_in_opaque(*self.volume, scene, camera);
     const auto add_times = [&](const std::vector<PassTime>& times) {
         stats.passes.insert(stats.passes.end(), times.begin(), times.end());
     };
-    if (raycast.warped && draws_warped(settings)) {
-        stats.setup_milliseconds = self.collect(scene, settings, keep_buried);
-        if (stats.setup_milliseconds > 0) add_times(self.collection_times);
-    }
     auto start = Clock::now();
     if (raycast.filter == RaycastFilter::Cubic && self.provide_coefficients())
         stats.setup_milliseconds += milliseconds_since(start);
@@ -50,7 +45,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
     auto& rays = *self.raycast;
     const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
-                                   plan_collection(*self.volume, scene, settings, keep_buried), {width, height});
+                                   plan_collection(*self.volume, scene, settings, true), {width, height});
     rays.prepare(self.device, plan, self.volume_resources);
     if (rays.classify(self.device, self.commands, plan)) {
         stats.setup_milliseconds += milliseconds_since(start);

@@ -166,7 +166,7 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
     std::vector<RenderedFrame> frames(1);
     frames[0].settings = film.settings;
     frames[0].result =
-        casts_rays(output.renderer)
+        output.renderer == edgesplat::RendererKind::Raycast
             ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
             : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
     const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},

@@ -33,7 +33,7 @@ void check(const PictureRequest& request) {
             edgesplat::check_output_path(aov_path(output.file, aov));
     if (request.explain.explain && output.renderer != edgesplat::RendererKind::Splat)
         edgesplat::fail("--explain explains splatting; it needs --renderer splat");
-    if (casts_rays(output.renderer) && !output.aovs.empty())
+    if (output.renderer == edgesplat::RendererKind::Raycast && !output.aovs.empty())
         edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
     if (ranks::count() > 1 && output.renderer != edgesplat::RendererKind::Splat)
         edgesplat::fail("--renderer {} draws no sheets that ranks could divide; run it without mpirun",
@@ -75,7 +75,7 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
     renderer.divide_sheets(exchange.get());
     for (RenderedFrame& frame : frames) {
-        frame.result = casts_rays(output.renderer)
+        frame.result = output.renderer == edgesplat::RendererKind::Raycast
                            ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
                            : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
         frame.ranks = gather_reports(frame.result.stats, volume);
@@ -179,7 +179,7 @@ void make_picture(const PictureRequest& request) {
     if (!request.quiet && !measurements.empty())
         fmt::print("{}: {}, error at most about {:.1g}, {:.1f} s\n", output.file, name_of(output.renderer),
                    measurements.back().error_estimate, measurements.back().seconds);
-    else if (!request.quiet && casts_rays(output.renderer))
+    else if (!request.quiet && output.renderer == edgesplat::RendererKind::Raycast)
         fmt::print("{}: {}, {:.1f} ms on {}\n", output.file, name_of(output.renderer), stats.frame_milliseconds,
                    stats.device.name);
     else if (!request.quiet)

@@ -24,9 +24,7 @@ Kind named(const std::array<std::string_view, count>& names, const std::string& 
 }  // namespace
 
 edgesplat::RaycastSettings raycast_settings(const edgesplat::OutputChoice& output) {
-    return {.step = output.raycast_step,
-            .filter = output.raycast_filter,
-            .warped = output.renderer == edgesplat::RendererKind::RaycastWarped};
+    return {.step = output.raycast_step, .filter = output.raycast_filter};
 }
 
 void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
@@ -36,18 +34,21 @@ void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
         .add_option_function<std::string>(
             "--renderer",
             [&edits](const std::string& text) {
+                if (text == "raycast-warped")
+                    throw CLI::ValidationError("--renderer",
+                                               "'raycast-warped' is gone; write raycast --raycast-filter cubic for "
+                                               "rays whose surfaces are nearer to the truth");
                 const auto kind =
                     named<edgesplat::RendererKind>(edgesplat::kRendererNames, "--renderer", "renderer", text);
                 edits.add([kind](SceneDocument& d) { d.output.renderer = kind; });
             },
-            "raycast: rays through the interpolated volume; raycast-warped: through the voxels' materials, sharpened "
-            "by the same edges as splats. reference: the sum of all kernels itself, to --tolerance; truth: a builtin "
-            "volume's exact surfaces. These two take the processor and seconds to minutes")
+            "raycast: rays through the field between the samples (--raycast-filter). reference: the sum of all kernels "
+            "itself, to --tolerance; truth: a builtin volume's exact surfaces. These two take the processor and "
+            "seconds to minutes")
         ->type_name(fmt::format("{}", fmt::join(edgesplat::kRendererNames, "|")))
         ->default_str(std::string(name_of(usual.renderer)))
         ->group(kGroup);
-    add_number_edit(command, edits, "--raycast-step", {0.01, 4, true},
-                    "Between samples, in voxels (raycast, raycast-warped)",
+    add_number_edit(command, edits, "--raycast-step", {0.01, 4, true}, "Between samples, in voxels (raycast)",
                     [](SceneDocument& d, double value) { d.output.raycast_step = value; })
         ->default_str(fmt::format("{}", usual.raycast_step))
         ->group(kGroup);

@@ -17,8 +17,6 @@ void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint3
 struct RaycastVariant {
     std::uint32_t light = 1;  ///< light_code()
     std::uint32_t iso_count = 1;
-    bool warped = false;       ///< materials are looked up at warped positions
-    bool edges = false;        ///< the edge field exists
     bool skip_empty = true;    ///< transparent bricks are leapt over
     std::uint32_t filter = 0;  ///< RaycastFilter
 };

@@ -6,12 +6,11 @@
 
 namespace edgesplat {
 
-/// Splatting; rays cast through the interpolated volume, plain or through warped materials; the sum of all kernels
-/// itself; a builtin volume's exact surfaces.
-enum class RendererKind { Splat, Raycast, RaycastWarped, Reference, Truth };
+/// Splatting; rays cast through the field between the samples; the sum of all kernels itself; a builtin volume's exact
+/// surfaces.
+enum class RendererKind { Splat, Raycast, Reference, Truth };
 
-inline constexpr std::array<std::string_view, 5> kRendererNames{"splat", "raycast", "raycast-warped", "reference",
-                                                                "truth"};
+inline constexpr std::array<std::string_view, 4> kRendererNames{"splat", "raycast", "reference", "truth"};
 
 /// What the ray caster takes the field between the voxels for: trilinear interpolation, or the cubic B-spline through
 /// the samples.
@@ -22,11 +21,6 @@ inline constexpr std::array<std::string_view, 2> kRaycastFilterNames{"trilinear"
 /// Whether it computes on the processor alone and needs no Vulkan device.
 constexpr bool on_processor(RendererKind kind) {
     return kind == RendererKind::Reference || kind == RendererKind::Truth;
-}
-
-/// Whether it is the ray caster, in either way.
-constexpr bool casts_rays(RendererKind kind) {
-    return kind == RendererKind::Raycast || kind == RendererKind::RaycastWarped;
 }
 
 constexpr std::string_view name_of(RendererKind kind) {

@@ -349,9 +349,12 @@ void add_output(Table& t) {
           {.help = "Extra outputs", .choices = {"tau", "depth", "normal", "distance"}, .absent = "none"});
     t.add("output.compare_plain", MEMBER(output.compare_plain), {.help = "Conventional splatting beside it"});
     t.add("output.renderer", MEMBER(output.renderer),
-          {.help = "Which way to the picture", .choices = {kRendererNames.begin(), kRendererNames.end()}});
+          {.help = "Which way to the picture",
+           .choices = {kRendererNames.begin(), kRendererNames.end()},
+           .gone = {
+               {"raycast-warped", "\"raycast\", with raycast_filter = \"cubic\" for surfaces nearer to the truth"}}});
     t.add("output.raycast_step", MEMBER(output.raycast_step),
-          {.unit = "voxels", .help = "Between samples (raycast, raycast-warped)", .range = {0.01, 4, true}});
+          {.unit = "voxels", .help = "Between samples (raycast)", .range = {0.01, 4, true}});
     t.add("output.raycast_filter", MEMBER(output.raycast_filter),
           {.help = "The field between the samples: interpolated, or the cubic B-spline through them, whose surfaces "
                    "are nearer to the truth and take several times as long (raycast)",

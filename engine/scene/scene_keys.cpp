@@ -107,7 +107,9 @@ std::string SceneKey::refusal(const KeyValue& value) const {
     const auto chosen = [this](const std::string& text) {
         return choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end();
     };
-    const auto suggestion = [this](const std::string& text) {
+    const auto suggestion = [this](const std::string& text) -> std::string {
+        for (const auto& [choice, instead] : gone)
+            if (choice == text) return "; \"" + text + "\" is gone, write " + instead;
         const std::string name = nearest_name(text, choices);
         return name.empty() ? "" : "; did you mean \"" + name + "\"?";
     };

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -35,9 +36,11 @@ struct SceneKey {
     std::string unit, help;
     KeyRange range;
     std::vector<std::string> choices;  ///< the texts that are allowed; empty: any
-    std::string absent;                ///< what holds where the key is not given, in words; empty: `default_value`
-    bool direction = false;            ///< a vector other than 0,0,0
-    bool points = false;               ///< a list of [x, y, z]
+    /// Choices of earlier versions, each with what to write instead.
+    std::vector<std::pair<std::string, std::string>> gone;
+    std::string absent;      ///< what holds where the key is not given, in words; empty: `default_value`
+    bool direction = false;  ///< a vector other than 0,0,0
+    bool points = false;     ///< a list of [x, y, z]
     std::optional<KeyValue> default_value;
     /// Nothing where the document leaves it open. The table the key is in must be there.
     std::function<std::optional<KeyValue>(const SceneDocument&, std::size_t index)> get;

@@ -1,5 +1,5 @@
-// What both ray casters share: the ray, the leap over transparent bricks, light and accumulation. docs/method.md, Ray
-// caster. The including shader declares the uniform block `params`.
+// Parts of the ray caster: the ray, the field, the leap over transparent bricks, light. docs/method.md, Ray caster.
+// The including shader declares the uniform block `params`.
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/raycast_params.h"
 

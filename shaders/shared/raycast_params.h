@@ -8,43 +8,41 @@ EDGESPLAT_SHARED_BEGIN
 EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x), bricks to the nearest one that is not transparent
 EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 4u;  // r8ui, while distances are found
 
-EDGESPLAT_CONSTANT uint BIND_RAYS = 8u;  // RaycastBlock
+EDGESPLAT_CONSTANT uint BIND_RAYS = 8u;          // RaycastBlock
 
 EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured best on lavapipe, 8^3 takes 5-13 % longer
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this
 
 // Specialization constants beside those of limits.h.
-EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;        // 1: transparent bricks are leapt over
-EDGESPLAT_CONSTANT uint SPEC_RAY_LIGHT = 34u;   // 0 without light, else 1 + Light::Kind
-EDGESPLAT_CONSTANT uint SPEC_RAY_FILTER = 35u;  // RaycastFilter
+EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;       // 1: transparent bricks are leapt over
+EDGESPLAT_CONSTANT uint SPEC_RAY_LIGHT = 34u;  // 0 without light, else 1 + Light::Kind
+EDGESPLAT_CONSTANT uint SPEC_RAY_FILTER = 35u; // RaycastFilter
 
 EDGESPLAT_CONSTANT uint FILTER_TRILINEAR = 0u, FILTER_CUBIC = 1u;
 
 struct RayParams {
     // Rays begin on the plane across the view through `anchor`, the centre of the volume: a far eye costs no digits.
-    vec3 anchor;     // index space
-    float anchor_x;  // view coordinates of the anchor, mm: right, down, forward of the eye
-    vec3 ray_x;      // S^-1 right: index units per mm
+    vec3 anchor;          // index space
+    float anchor_x;       // view coordinates of the anchor, mm: right, down, forward of the eye
+    vec3 ray_x;           // S^-1 right: index units per mm
     float anchor_y;
-    vec3 ray_y;  // S^-1 down
+    vec3 ray_y;           // S^-1 down
     float anchor_z;
-    vec3 ray_z;  // S^-1 forward
+    vec3 ray_z;           // S^-1 forward
     float tan_half_x;
-    mat3 index_to_world;   // S
-    mat3 normal_to_world;  // S^-T
-    vec3 light;            // world unit vector towards the light (Directional)
+    mat3 index_to_world;  // S
+    mat3 normal_to_world; // S^-T
+    vec3 light;           // world unit vector towards the light (Directional)
     float tan_half_y;
-    vec3 background;  // linear light
+    vec3 background;      // linear light
     float ambient;
-    vec4 materials[16];  // rgb, extinction per mm
-    ivec2 size;          // pixels
+    vec4 materials[16];   // rgb, extinction per mm
+    ivec2 size;           // pixels
     float diffuse;
-    float saturation;  // alpha at which a ray ends
-    float step;        // voxels
-    float half_width;  // a, voxels
-    float strength;    // k
+    float saturation;     // alpha at which a ray ends
+    float step;           // voxels
     float pad;
-    Address pixels;  // (size.y, size.x) vec4
+    Address pixels;       // (size.y, size.x) vec4
 };
 
 #ifdef __cplusplus
@@ -60,6 +58,6 @@ EDGESPLAT_SHARED_END
 #ifdef __cplusplus
 static_assert(offsetof(edgesplat::shader::RayParams, index_to_world) == 64);
 static_assert(offsetof(edgesplat::shader::RayParams, materials) == 168);
-static_assert(sizeof(edgesplat::shader::RayParams) == 464);
+static_assert(sizeof(edgesplat::shader::RayParams) == 456);
 #endif
 #endif

@@ -91,6 +91,10 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{
             "ColorCount", "render builtin:sphere:16 -o a.png --color 1,1,1 --color 1,0,0", 1, {"--color", "2 times"}},
         Misuse{"UnknownDevice", "render builtin:sphere:16 -o a.png --device nosuchcard", 1, {"nosuchcard"}},
+        Misuse{"GoneRenderer",
+               "render builtin:sphere -o a.png --renderer raycast-warped",
+               2,
+               {"'raycast-warped' is gone", "--raycast-filter cubic"}},
         Misuse{"MaxError", "render builtin:sphere -o a.png --max-error 0", 2, {"--max-error", "'0'", "0.5%"}},
         Misuse{"MaxErrorReference",
                "render builtin:sphere:16 -o a.png --max-error 1% --renderer reference",

@@ -342,9 +342,9 @@ TEST_F(CliScene, RerunChecksEveryPixel) {
 
 TEST_F(CliScene, RerunOfEveryRenderer) {
     for (const char* options :
-         {"--renderer raycast", "--renderer raycast --raycast-filter cubic", "--renderer raycast-warped --raycast-step 0.3",
+         {"--renderer raycast", "--renderer raycast --raycast-filter cubic", "--renderer raycast --raycast-step 0.3",
           "--renderer reference --tolerance 0.01 --aov tau", "--renderer truth --tolerance 0.01",
-          "--compare plain --preset draft", "--compare plain --renderer raycast-warped", "--max-error 0.05"}) {
+          "--compare plain --preset draft", "--compare plain --renderer raycast", "--max-error 0.05"}) {
         good(std::string("render builtin:cube-hole:16 --size 8x8 -o a.exr --view oblique ") + options);
         good("rerun a.exr --check");
     }
