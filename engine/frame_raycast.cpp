@@ -59,18 +59,12 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
     return plan;
 }
 
-RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
-                                   const glm::ivec3& dims)
+RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands)
     : bindings_(device, pipelines),
-      bricks_(brick_image(device, dims, "bricks")),
       block_(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters") {
     bindings_.write({}, {}, {});
     bindings_.set().put_block(shader::BIND_RAYS, block_);
-    bindings_.set().put_image(shader::BIND_BRICKS, bricks_);
-    commands.run([&] {
-        bindings_.prepare(commands);
-        commands.prepare({&bricks_});
-    });
+    commands.run([&] { bindings_.prepare(commands); });
 }
 
 void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume) {
@@ -88,23 +82,24 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
 }
 
 bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& commands, const RaycastPlan& plan) {
-    if (!plan.variant.skip_empty ||
-        (same_bricks(classified_, plan.block.scene) && classified_filter_ == plan.variant.filter))
-        return false;
-    const gpu::GpuImage scratch = brick_image(device, plan.block.scene.dims, "brick scratch");
+    if (!plan.variant.skip_empty) return false;
+    auto& [bricks, made_for] = bricks_.at(plan.variant.filter);
+    const shader::SceneParams& scene = plan.block.scene;
+    if (!bricks) bricks = brick_image(device, scene.dims, "bricks");
+    bindings_.set().put_image(shader::BIND_BRICKS, bricks);
+    if (same_bricks(made_for, scene)) return false;
+    const gpu::GpuImage scratch = brick_image(device, scene.dims, "brick scratch");
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, scratch);
-    classified_ = {};
-    commands.run([&] {
+    made_for = {};
+    commands.run([&, &image = bricks] {
         commands.bind_compute_set(bindings_.set());
-        commands.prepare({&scratch});
-        commands.span("raycast_bricks", [&] {
-            passes::classify_bricks(commands, plan.block.scene.dims, plan.block.scene.iso_count, plan.variant.filter);
-        });
+        commands.prepare({&scratch, &image});
+        commands.span("raycast_bricks",
+                      [&] { passes::classify_bricks(commands, scene.dims, scene.iso_count, plan.variant.filter); });
     });
     // The slot must not be left with an image that is gone.
-    bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks_);
-    classified_ = plan.block.scene;
-    classified_filter_ = plan.variant.filter;
+    bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks);
+    made_for = scene;
     return true;
 }
 

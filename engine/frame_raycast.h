@@ -1,6 +1,8 @@
 // The ray caster's frame: what it is given, what it keeps, and the two passes it consists of.
 #pragma once
 
+#include <array>
+
 #include "engine/frame_plan.h"
 #include "engine/frame_resources.h"
 #include "engine/passes/raycast.h"
@@ -22,8 +24,7 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 /// What the ray caster keeps between pictures of one volume; nothing of it exists before the first.
 class RaycastResources {
   public:
-    RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands,
-                     const glm::ivec3& dims);
+    RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands);
 
     /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, and the spline's
     /// coefficients if the plan's filter is cubic.
@@ -43,13 +44,16 @@ class RaycastResources {
     bool takes_coefficients() const { return takes_coefficients_; }
 
   private:
-    Bindings bindings_;     ///< the common layout, with the bricks in it
-    gpu::GpuImage bricks_;  ///< (z, y, x) r8ui: BIND_BRICKS
-    gpu::Buffer block_;     ///< RaycastBlock, mapped
-    gpu::Buffer output_;    ///< (height, width) vec4, mapped
+    Bindings bindings_;  ///< the common layout, with the bricks in it
+    /// Transparent bricks of a filter's field.
+    struct Bricks {
+        gpu::GpuImage image;             ///< (z, y, x) r8ui: BIND_BRICKS
+        shader::SceneParams made_for{};  ///< iso_count 0: for nothing yet
+    };
+    std::array<Bricks, kRaycastFilterNames.size()> bricks_;  ///< an image where that filter was asked for
+    gpu::Buffer block_;                                      ///< RaycastBlock, mapped
+    gpu::Buffer output_;                                     ///< (height, width) vec4, mapped
     glm::ivec2 size_{0};
-    shader::SceneParams classified_{};  ///< what the bricks were made with; iso_count 0: nothing yet
-    std::uint32_t classified_filter_ = 0;
     bool takes_coefficients_ = false;
 };
 

@@ -42,7 +42,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     if (raycast.filter == RaycastFilter::Cubic && self.provide_coefficients())
         stats.setup_milliseconds += milliseconds_since(start);
     start = Clock::now();
-    if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands, self.volume->geometry.dims);
+    if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands);
     auto& rays = *self.raycast;
     const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
                                    plan_collection(*self.volume, scene, settings, true), {width, height});

@@ -12,7 +12,7 @@ namespace {
 
 using Names = std::initializer_list<std::string_view>;
 
-constexpr std::array<std::string_view, 4> kKindNames{"base", "step", "combination", "preset"};
+constexpr std::array<std::string_view, 6> kKindNames{"base", "plain", "rays", "step", "combination", "preset"};
 
 /// Collects combinations, each once; those that are the base itself are left out.
 class Combinations {
@@ -41,7 +41,7 @@ class Combinations {
             if (knob.used(settings)) knob.set(settings, value);
         }
         if (!seen_.insert(settings_key(settings)).second) return;
-        rows_.push_back({ConfigurationKind::Combination, difference(settings, base_), "", "", settings});
+        rows_.push_back({ConfigurationKind::Combination, difference(settings, base_), "", "", settings, {}});
     }
 
     Settings base_;
@@ -67,23 +67,34 @@ std::string_view name_of(ConfigurationKind kind) {
 std::vector<Configuration> configurations(const Settings& base, std::span<const std::string> knobs) {
     for (const std::string& name : knobs)
         knob_named(name);
-    std::vector<Configuration> rows{{ConfigurationKind::Base, "base", "", "", base}};
+    Settings plain = base;
+    plain.edges = EdgeEstimator::Off;
+    std::vector<Configuration> rows{
+        {ConfigurationKind::Base, "base", "", "", base, {}},
+        {ConfigurationKind::Plain, "plain splatting", "", "", plain, {}},
+        {ConfigurationKind::Rays, "trilinear rays", "", "", base, RaycastFilter::Trilinear},
+        {ConfigurationKind::Rays, "cubic rays", "", "", base, RaycastFilter::Cubic},
+    };
     for (const Knob& knob : ladder()) {
         const bool asked = knobs.empty() || std::find(knobs.begin(), knobs.end(), knob.name) != knobs.end();
         Settings from = base;
         if (knob.from != nullptr) knob.from(from);
         if (!asked || !knob.used(from) || knob.steps.size() < 2) continue;
         for (const std::string_view step : knob.steps) {
-            Configuration row{ConfigurationKind::Step, std::string(knob.name) + "=" + std::string(step),
-                              std::string(knob.name), std::string(step), from};
+            Configuration row{ConfigurationKind::Step,
+                              std::string(knob.name) + "=" + std::string(step),
+                              std::string(knob.name),
+                              std::string(step),
+                              from,
+                              {}};
             knob.set(row.settings, step);
             rows.push_back(std::move(row));
         }
     }
     if (knobs.empty()) add_combinations(base, rows);
     for (const Preset& preset : presets())
-        rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings});
-    rows.push_back({ConfigurationKind::Preset, "paper", "", "", papers_own(base)});
+        rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings, {}});
+    rows.push_back({ConfigurationKind::Preset, "paper", "", "", papers_own(base), {}});
     return rows;
 }
 
@@ -102,6 +113,11 @@ std::string settings_key(const Settings& settings) {
         key += (key.empty() ? "" : " ") + std::string(knob.name) + "=" + knob.get(plain);
     if (!settings.cull_buried) key += " keep-buried";
     return key;
+}
+
+std::string picture_key(const Configuration& row) {
+    if (!row.rays) return settings_key(row.settings);
+    return "rays " + std::string(kRaycastFilterNames.at(static_cast<std::size_t>(*row.rays)));
 }
 
 Settings model_of(const Settings& settings) {

@@ -46,9 +46,13 @@ void keep_passes(const RenderStats& stats, TimedVisit& visit) {
 
 TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& camera, const Settings& settings, int width,
                       int height, const VisitLimits& limits) {
+    return time_visit([&] { return renderer.render(scene, camera, settings, width, height).stats; },
+                      [&] { return renderer.raycast(scene, camera, settings, {}, width, height).stats; }, limits);
+}
+
+TimedVisit time_visit(const std::function<RenderStats()>& frame, const std::function<RenderStats()>& ray,
+                      const VisitLimits& limits) {
     TimedVisit visit;
-    const auto frame = [&] { return renderer.render(scene, camera, settings, width, height).stats; };
-    const auto ray = [&] { return renderer.raycast(scene, camera, settings, RaycastSettings{}, width, height).stats; };
     const RenderStats first = frame();
     visit.setup_milliseconds = first.setup_milliseconds;
     double once = ray().frame_milliseconds;

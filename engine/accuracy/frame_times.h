@@ -1,6 +1,7 @@
 // What a frame costs, next to the ray caster: measured so that the ratio is the same on a machine that others use too.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
@@ -36,8 +37,11 @@ struct VisitLimits {
     int triples = 6;  ///< at most
 };
 
-/// Renders and ray casts the camera in turns; the first frame of each is dropped. Always one triple; more where they
-/// are fast.
+/// Makes a frame and casts rays in turns; the first of each is dropped. Always one triple; more where they are fast.
+TimedVisit time_visit(const std::function<RenderStats()>& frame, const std::function<RenderStats()>& ray,
+                      const VisitLimits& limits = {});
+
+/// The same of splats.
 TimedVisit time_visit(Renderer& renderer, const Scene& scene, const Camera& camera, const Settings& settings, int width,
                       int height, const VisitLimits& limits = {});
 

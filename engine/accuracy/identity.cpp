@@ -14,7 +14,7 @@ nlohmann::ordered_json identity_of(const ReportInput& input, const ReportOptions
             {static_cast<int>(light.kind), light.direction.x, light.direction.y, light.direction.z, light.intensity});
     }
     return {{"program", input.program},
-            {"journal", 4},
+            {"journal", 5},
             {"volume", input.volume->name},
             {"checksum", fmt::format("{:016x}", input.volume->checksum)},
             {"iso_values", input.scene.iso_values},

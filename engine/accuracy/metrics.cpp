@@ -74,6 +74,10 @@ ImageError image_error(const Image& picture, const Image& expected) {
     return error;
 }
 
+double decibels(const ImageError& error) {
+    return -20 * std::log10(error.rms);
+}
+
 ImageError pooled(std::span<const ImageError> errors) {
     ImageError all;
     if (errors.empty()) return all;

@@ -17,6 +17,9 @@ struct ImageError {
     bool operator==(const ImageError&) const = default;
 };
 
+/// The same as a peak signal-to-noise ratio, dB; infinite where there is no error.
+double decibels(const ImageError& error);
+
 /// Over the first three channels (or all where there are fewer). Throws Error when the sizes differ.
 ImageError image_error(const Image& picture, const Image& expected);
 

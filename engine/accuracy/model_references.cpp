@@ -1,13 +1,18 @@
 #include "engine/accuracy/model_references.h"
 
 #include "engine/reference/direct_evaluation.h"
+#include "engine/reference/interpolated_scene.h"
 #include "engine/reference/truth.h"
 
 namespace edgesplat::accuracy {
 
 ModelReferences::ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder,
                                  Journal& journal, std::function<bool(double)> progress)
-    : input_(input), tolerance_(tolerance), store_(std::move(folder), journal), progress_(std::move(progress)) {}
+    : input_(input),
+      truth_(input.analytic ? *input.analytic : reference::interpolated_scene(*input.volume, RaycastFilter::Cubic)),
+      tolerance_(tolerance),
+      store_(std::move(folder), journal),
+      progress_(std::move(progress)) {}
 
 std::string ModelReferences::key(const Settings& model, const std::string& camera) const {
     return "reference|" + camera + "|" + settings_key(model);
@@ -35,8 +40,7 @@ ReferencePicture ModelReferences::evaluate(const Settings& model, const Camera& 
 
 ReferencePicture ModelReferences::evaluate_truth(const Camera& camera, glm::ivec2 size) {
     const reference::DirectOptions options{tolerance_, progress_};
-    auto result =
-        reference::truth(*input_.analytic, input_.volume->geometry, input_.scene, camera, size.x, size.y, options);
+    auto result = reference::truth(truth_, input_.volume->geometry, input_.scene, camera, size.x, size.y, options);
     return {std::move(result.image), result.error_estimate};
 }
 

@@ -1,5 +1,5 @@
-// The two truths that pictures are measured against: the converged evaluation of their own model, and for analytic
-// scenes the exact inside and outside.
+// What pictures are measured against: the truth, or what stands in for it, and the converged evaluation of their own
+// model.
 #pragma once
 
 #include <functional>
@@ -20,8 +20,6 @@ class ModelReferences {
     ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder, Journal& journal,
                     std::function<bool(double)> progress);
 
-    bool has_truth() const { return input_.analytic.has_value(); }
-
     // What the journal calls them, what it is to hold, and the pictures themselves.
     std::string key(const Settings& model, const std::string& camera) const;
     std::string truth_key(const std::string& camera) const;
@@ -38,6 +36,7 @@ class ModelReferences {
     ReferencePicture evaluate_truth(const Camera& camera, glm::ivec2 size);
 
     const ReportInput& input_;
+    AnalyticScene truth_;  ///< the exact scene where it is known, else the spline through the samples
     double tolerance_;
     PictureStore store_;
     std::function<bool(double)> progress_;

@@ -18,7 +18,8 @@ namespace edgesplat::accuracy {
 struct ReportInput {
     std::shared_ptr<const Volume> volume;
     Scene scene;
-    /// The scene that the volume's samples are of, on the volume's grid; empty where the truth is not known.
+    /// The scene that the volume's samples are of, on the volume's grid; empty where the truth is not known. Then what
+    /// stands in for it are the surfaces of the cubic B-spline through the samples, the best that they say.
     std::optional<AnalyticScene> analytic;
     std::string program;  ///< name and version
     std::string command;  ///< as it was given
@@ -40,25 +41,25 @@ struct ReportOptions {
 
 /// One configuration seen by one camera.
 struct CameraResult {
-    ImageError method;
-    double reference_error = 0;       ///< of the reference's worst pixel
-    std::optional<ImageError> model;  ///< against the truth
+    ImageError truth;            ///< against the truth
+    ImageError method;           ///< against the converged picture of the model; of rays: of the base's
+    double reference_error = 0;  ///< of the reference's worst pixel
     FrameTimes times;
     std::uint64_t splats_drawn = 0, sheets = 0;
 };
 
-/// Everything about one set of settings.
+/// Everything about one set of settings, or one ray caster.
 struct SettingsResult {
     Settings settings;
+    std::optional<RaycastFilter> rays;
     std::vector<CameraResult> cameras;  ///< as many as the report's, in their order
-    ImageError method;                  ///< all cameras together
-    std::optional<ImageError> model;
+    ImageError truth, method;           ///< all cameras together
     std::optional<EdgeFigures> edges;
     std::optional<Popping> popping;
-    double frame_ms = 0;             ///< mean of the cameras' medians
-    double wall_ratio = 0;           ///< the median by the wall clock
-    Spread ratio;                    ///< to the ray caster: geometric mean over cameras, of medians, of p10, of p90
-    double setup_ms = 0;             ///< edge estimation and collection, median; NaN where switching to it needed none
+    double frame_ms = 0;    ///< mean of the cameras' medians
+    double wall_ratio = 0;  ///< the median by the wall clock
+    Spread ratio;           ///< to the trilinear ray caster: geometric mean over cameras, of medians, of p10, of p90
+    double setup_ms = 0;    ///< edge estimation and collection, median; NaN where switching to it needed none
     std::uint64_t device_bytes = 0;  ///< of a renderer that has rendered nothing else, after all cameras
 };
 
@@ -70,19 +71,22 @@ struct Report {
     std::vector<Configuration> rows;
     std::vector<std::size_t> result_of_row;  ///< index into `results`
     std::vector<SettingsResult> results;
-    std::vector<std::size_t> front;  ///< rows that no other with the base's model beats in method error and time
-    std::vector<double> raycast_ms;  ///< median per camera
+    std::vector<std::size_t> front;  ///< rows that nothing is both nearer to the truth than and faster, cheapest first
+    std::vector<double> raycast_ms;  ///< of the trilinear ray caster, median per camera
     std::optional<SurfacePoints> surface;
     double largest_reference_error = 0;  ///< worst pixel of all references
     std::vector<std::string> notes;      ///< what was left out and why, one sentence each
 
+    /// What pictures are held against, in words.
+    std::string truth_in_words() const {
+        return input.analytic ? "the exact scene" : "the surfaces of the cubic spline through the samples";
+    }
     const SettingsResult& of_row(std::size_t row) const { return results[result_of_row[row]]; }
 };
 
 /// The pictures that a report shows, one camera. Colour over the background.
 struct ReportPictures {
-    Image plain, base, accurate, reference, accurate_reference, raycast;
-    std::optional<Image> truth;
+    Image plain, base, accurate, reference, trilinear_rays, cubic_rays, truth;
 };
 
 }  // namespace edgesplat::accuracy

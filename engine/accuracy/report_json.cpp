@@ -31,6 +31,12 @@ ordered_json optional_json(const std::optional<Value>& value) {
     return value ? to_json(*value) : ordered_json();
 }
 
+ordered_json truth_json(const ImageError& error) {
+    ordered_json json = to_json(error);
+    json["psnr_db"] = number(decibels(error));
+    return json;
+}
+
 ordered_json passes_json(const FrameTimes& times) {
     ordered_json json = ordered_json::object();
     for (const auto& [name, ms] : times.passes)
@@ -49,9 +55,9 @@ ordered_json camera_json(const ReportCamera& camera) {
 
 ordered_json camera_result_json(const ReportCamera& camera, const CameraResult& r) {
     return {{"camera", camera.name},
+            {"truth_error", truth_json(r.truth)},
             {"method_error", to_json(r.method)},
             {"reference_error", r.reference_error},
-            {"model_error", optional_json(r.model)},
             {"splats_drawn", r.splats_drawn},
             {"sheets", r.sheets},
             {"time",
@@ -68,10 +74,12 @@ ordered_json row_json(const Report& report, std::size_t row) {
     ordered_json json{{"kind", std::string(name_of(c.kind))}, {"name", c.name}};
     json["knob"] = c.knob.empty() ? ordered_json() : ordered_json(c.knob);
     json["step"] = c.step.empty() ? ordered_json() : ordered_json(c.step);
-    json["settings"] = settings_json(c.settings);
+    json["raycast_filter"] =
+        c.rays ? ordered_json(std::string(kRaycastFilterNames.at(static_cast<std::size_t>(*c.rays)))) : ordered_json();
+    json["settings"] = c.rays ? ordered_json() : settings_json(c.settings);
     json["on_front"] = std::find(report.front.begin(), report.front.end(), row) != report.front.end();
+    json["truth_error"] = truth_json(r.truth);
     json["method_error"] = to_json(r.method);
-    json["model_error"] = optional_json(r.model);
     json["edges_voxels"] = optional_json(r.edges);
     json["popping"] = optional_json(r.popping);
     json["device_bytes"] = r.device_bytes;
@@ -158,16 +166,16 @@ ordered_json report_json(const Report& report) {
                    {"left_out_near_border", report.surface->near_border},
                    {"left_out_disturbed", report.surface->disturbed}};
     const ReportOptions& o = report.options;
-    return {{"schema", "edgesplat accuracy report 1"},
+    return {{"schema", "edgesplat accuracy report 2"},
             {"program", report.input.program},
+            {"truth", report.input.analytic ? "exact scene" : "cubic spline"},
             {"command", report.input.command},
             {"volume",
              {{"name", volume.name},
               {"checksum", fmt::format("{:016x}", volume.checksum)},
               {"dims", {dims.x, dims.y, dims.z}},
               {"spacing_mm", vector_json(volume.geometry.spacing())},
-              {"iso_values", report.input.scene.iso_values},
-              {"truth_known", report.input.analytic.has_value()}}},
+              {"iso_values", report.input.scene.iso_values}}},
             {"device",
              {{"name", report.device.name},
               {"type", report.device.type},

@@ -67,14 +67,25 @@ TEST_F(AccuracyReport, GoesOnAfterCtrlCAndRepeatsItsErrorsExactly) {
     EXPECT_EQ(ordered_json::diff(errors_of("r"), errors_of("again")), ordered_json::array());
 
     const ordered_json json = errors_of("r");
-    for (const char* key : {"schema", "program", "volume", "device", "options", "largest_reference_error", "surface",
-                            "cameras", "rows", "notes"})
+    for (const char* key : {"schema", "program", "truth", "volume", "device", "options", "largest_reference_error",
+                            "surface", "cameras", "rows", "notes"})
         EXPECT_TRUE(json.contains(key)) << key;
-    for (const char* key : {"kind", "name", "knob", "step", "settings", "method_error", "model_error", "edges_voxels",
-                            "popping", "device_bytes", "cameras"})
+    for (const char* key : {"kind", "name", "knob", "step", "raycast_filter", "settings", "truth_error", "method_error",
+                            "edges_voxels", "popping", "device_bytes", "cameras"})
         EXPECT_TRUE(json["rows"][0].contains(key)) << key;
     EXPECT_THAT(text_of(folder_ / "r" / "steps.csv"),
-                StartsWith("kind,name,knob,step,on_front,method_rms,method_max,model_rms,model_max,rise_mean_voxels,"));
+                StartsWith("kind,name,knob,step,on_front,truth_psnr_db,truth_rms,truth_max,method_rms,method_max,"));
+    const auto row = [&](const std::string& kind, const std::string& name) -> const ordered_json& {
+        const auto found = std::ranges::find_if(
+            json["rows"], [&](const ordered_json& r) { return r["kind"] == kind && r["name"] == name; });
+        EXPECT_NE(found, json["rows"].end()) << kind << " " << name;
+        return *found;
+    };
+    const auto decibels = [&](const ordered_json& r) { return r["truth_error"]["psnr_db"].get<double>(); };
+    EXPECT_EQ(json["truth"], "exact scene");
+    for (const char* rays : {"trilinear rays", "cubic rays"})
+        EXPECT_GT(decibels(row("rays", rays)), decibels(row("plain", "plain splatting"))) << rays;
+    EXPECT_TRUE(row("rays", "cubic rays")["edges_voxels"].is_null()) << "rays have no kernels";
     const std::string page = text_of(folder_ / "r" / "index.html");
     EXPECT_THAT(page, HasSubstr("<svg"));
     EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <set>
+#include <string>
 
 #include "engine/accuracy/configurations.h"
 #include "engine/accuracy/edge_profiles.h"
@@ -39,6 +42,11 @@ TEST(AccuracyMetrics, ImageErrorIsOfTheColoursOnly) {
     b.at(0, 0, 0) = std::numeric_limits<float>::quiet_NaN();
     EXPECT_TRUE(std::isinf(image_error(a, b).max));
     EXPECT_THROW(image_error(a, Image(4, 4, 4)), Error);
+}
+
+TEST(AccuracyMetrics, DecibelsAreOfTheRootMeanSquare) {
+    EXPECT_DOUBLE_EQ(decibels({.rms = 0.01, .max = 1}), 40);
+    EXPECT_TRUE(std::isinf(decibels({})));
 }
 
 TEST(AccuracyMetrics, PooledErrorIsTheRootMeanSquare) {
@@ -145,6 +153,13 @@ TEST(AccuracyConfigurations, EveryUsedStepAndPresetIsThere) {
     EXPECT_GT(combinations, 10U);
     EXPECT_LE(combinations, 40U);
     EXPECT_EQ(rows.front().kind, ConfigurationKind::Base);
+    for (const RaycastFilter filter : {RaycastFilter::Trilinear, RaycastFilter::Cubic})
+        EXPECT_EQ(std::ranges::count(rows, std::optional(filter), &Configuration::rays), 1);
+    EXPECT_EQ(std::ranges::count(rows, ConfigurationKind::Plain, &Configuration::kind), 1);
+    std::set<std::string> pictures;
+    for (const Configuration& row : rows)
+        if (row.kind == ConfigurationKind::Base || row.rays) pictures.insert(picture_key(row));
+    EXPECT_EQ(pictures.size(), 3U) << "settings are the base's, pictures are not";
     for (const Preset& preset : presets())
         EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Configuration& row) {
             return row.kind == ConfigurationKind::Preset && row.name == preset.name && row.settings == preset.settings;
