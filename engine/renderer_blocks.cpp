@@ -291,6 +291,20 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
     std::vector<std::size_t> missing;
     std::ranges::copy_if(needed, std::back_inserter(missing), [&](std::size_t i) { return !residence->held[i]; });
     if (missing.empty()) return Gathered::All;
+    // Whatever ends this early has added blocks, and the next picture may show no other.
+    try {
+        const Gathered gathered = collect_missing(request, wanted, needed, std::move(missing), most_splats, wait);
+        bound_held_blocks();
+        return gathered;
+    } catch (...) {
+        bound_held_blocks();
+        throw;
+    }
+}
+
+Gathered RendererState::collect_missing(const FrameRequest& request, const CollectionPlan& wanted,
+                                        const std::vector<std::size_t>& needed, std::vector<std::size_t> missing,
+                                        std::uint64_t most_splats, double wait) {
     const auto start = Clock::now();
     release_for_collection();
     occluded.reset();
@@ -311,7 +325,7 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         const CollectionBlock& block = residence->blocks[missing[number]];
         load_block(block, read_block(missing, number));
         const auto collect = [&] {
-            return collect_block(device, commands, wanted, block, false, most_splats, resources);
+            return collect_block(device, commands, wanted, block, false, most_splats, volume_resources);
         };
         auto& held = residence->held[missing[number]];
         held = collect();
@@ -320,7 +334,6 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         add_times(collection_times, held->times);
         if (wanted.edge_field) voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
     }
-    bound_held_blocks();
     return Gathered::All;
 }
 
