@@ -27,6 +27,7 @@ struct LoadOptions {
     std::optional<int> frame;           ///< which frame of 4-D data, from 0 (5-D and above: all further axes in one)
     std::string series;                 ///< DICOM folder with several series: the number (from 0) or UID of one
     std::string raw;                    ///< header-less file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
+    bool resample = false;              ///< DICOM slices that are unevenly spaced are interpolated at even places
     std::optional<glm::dvec3> spacing;  ///< mm, replaces the file's spacing along i, j, k; directions are kept
     /// Called now and then with a fraction in [0, 1] and what is being done. Called on the loading thread only.
     std::function<void(double fraction, std::string_view what)> progress;

@@ -3,7 +3,9 @@
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -102,7 +104,46 @@ TEST_F(Series, DicomGantryTiltStaysInTheMatrix) {
 TEST_F(Series, DicomUnevenSpacingIsRefused) {
     for (const double z : {0.0, 2.0, 4.0, 6.1, 8.1})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
-    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)")));
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)"),
+                                                 HasSubstr("are 2.1 mm apart, the others 2 mm; --resample")));
+    write_slice("9.dcm", {0, 0, 10}, 0);
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("are 2.1 mm apart, the others 1.9 to 2 mm"));
+}
+
+TEST_F(Series, DicomUnevenSpacingIsResampledWhereThatIsAskedFor) {
+    // Pixels rise as a parabola does along the slices, 1 mm aside for each 10 mm along.
+    const auto value = [](double z) { return std::lround(4 * z * z); };
+    for (const double z : {0.0, 1.0, 2.0, 3.5, 4.5, 6.0})
+        write_slice(std::to_string(z) + ".dcm", {0.1 * z, 0, 5 + z}, static_cast<int>(value(z)));
+    const auto volume = load_volume(folder_.string(), {.resample = true});
+    ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 7));
+    EXPECT_LT(glm::length(volume.geometry.index_to_world_axes[2] - glm::dvec3(0.1, 0, 1)), 1e-9);
+    for (int z = 0; z < 7; ++z)
+        EXPECT_NEAR(volume.at(2, 1, z), static_cast<double>(value(z)) + 12, 1e-3) << z;
+    EXPECT_THAT(volume.warnings,
+                testing::ElementsAre(HasSubstr("6 unevenly spaced slices were resampled to 7, 1 mm apart")));
+    write_slice("aside.dcm", {3, 0, 12}, 0);
+    EXPECT_THAT(refusal(folder_.string(), {.resample = true}), HasSubstr("one line"));
+}
+
+TEST_F(Series, DicomThatIsBrokenIsLeftOutAndNamed) {
+    for (int z = 0; z < 4; ++z)
+        write_slice(std::to_string(z) + ".dcm", {0, 0, 2.0 * z}, 100 * z);
+    const auto whole = content_of(file("3.dcm"));
+    write("3.dcm", whole.substr(0, whole.size() - 10));
+    const auto volume = load_volume(folder_.string());
+    EXPECT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+    EXPECT_THAT(volume.warnings,
+                testing::ElementsAre(AllOf(HasSubstr("3.dcm"), HasSubstr("truncated"), HasSubstr("left out"))));
+    // One in the middle leaves a hole, which is told with its reason or interpolated.
+    write("3.dcm", whole);
+    write("2.dcm", content_of(file("2.dcm")).substr(0, whole.size() - 10));
+    EXPECT_THAT(refusal(folder_.string()),
+                AllOf(HasSubstr("a slice may be missing"), HasSubstr("left out:"), HasSubstr("2.dcm: truncated")));
+    EXPECT_EQ(load_volume(folder_.string(), {.resample = true}).warnings.size(), 2U);
+    for (int z = 0; z < 4; ++z)
+        write(std::to_string(z) + ".dcm", whole.substr(0, whole.size() - 10));
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("none of its 4 DICOM files"));
 }
 
 TEST_F(Series, DicomMissingSliceIsRefused) {
