@@ -277,15 +277,7 @@ bool is_dicom(const std::string& path) {
     char head[132] = {};
     file.read(head, sizeof(head));
     if (file.gcount() >= 132 && std::string_view(head + 128, 4) == "DICM") return true;
-    // Old files have no preamble: they begin with an element of group 2 or 8.
-    const bool group = file.gcount() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
-    if (!group) return false;
-    OutputCapture capture;
-    try {
-        return itk::GDCMImageIO::New()->CanReadFile(path.c_str());
-    } catch (const std::exception&) {
-        return false;
-    }
+    return begins_with_dicom_elements(path);
 }
 
 namespace {

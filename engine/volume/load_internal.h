@@ -34,6 +34,8 @@ void check_stored_size(const std::string& path, std::size_t needed, std::size_t 
 
 /// Fail with "truncated" when the structure of the file goes on after its end; files they do not understand pass.
 void check_dicom_is_whole(const std::string& path);
+/// Whether a file without DICOM's preamble begins as one with it goes on: with elements of group 2 or 8 in order.
+bool begins_with_dicom_elements(const std::string& path);
 void check_netcdf_is_whole(const std::string& path);
 
 /// Which component and frame to take of those the file has; fails with how to choose where it is not said.

@@ -146,6 +146,27 @@ TEST_F(Series, DicomThatIsBrokenIsLeftOutAndNamed) {
     EXPECT_THAT(refusal(folder_.string()), HasSubstr("none of its 4 DICOM files"));
 }
 
+TEST_F(Series, DicomWithoutPreambleIsRead) {
+    for (const bool meta : {true, false}) {
+        SCOPED_TRACE(meta);
+        for (int z = 0; z < 3; ++z) {
+            write_slice("whole", {0, 0, 2.0 * z}, 100 * z);
+            const std::string whole = content_of(file("whole"));
+            std::uint32_t bytes_of_meta = 0;
+            std::memcpy(&bytes_of_meta, &whole[140], 4);
+            write(std::to_string(z), whole.substr(meta ? 132 : 144 + bytes_of_meta));
+        }
+        fs::remove(file("whole"));
+        const auto volume = load_volume(folder_.string());
+        ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+        EXPECT_EQ(volume.at(3, 2, 1), 123.0F);
+        const auto part = content_of(file("0"));
+        for (std::size_t lost = 1; lost < part.size() - 20; lost += 1 + lost / 6)
+            EXPECT_THAT(refusal(write("cut.dcm", part.substr(0, part.size() - lost))), HasSubstr("cut.dcm")) << lost;
+        fs::remove(file("cut.dcm"));
+    }
+}
+
 TEST_F(Series, DicomMissingSliceIsRefused) {
     for (const double z : {0.0, 2.0, 6.0, 8.0})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
