@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif") only the folder can be told.
+/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif", "*.dcm") only the folder can be told.
 bool may_be_opened(const fs::path& path) {
     std::error_code ignored;
     if (fs::exists(path, ignored)) return true;
-    const bool pattern = path.filename().string().find('%') != std::string::npos;
+    const bool pattern = path.filename().string().find_first_of("%*?") != std::string::npos;
     return pattern && fs::is_directory(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
 }
 

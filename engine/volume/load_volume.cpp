@@ -1,6 +1,7 @@
 // Which family reads it: told by what the path is, then by the file's first bytes, then by its name.
 #include "engine/volume/load_volume.h"
 
+#include <glob.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -205,18 +206,41 @@ Volume load_pattern(const std::string& path, const LoadOptions& options) {
         const auto file = entry.path().filename().string();
         if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after))
             continue;
+// What a pattern found: a DICOM series, which says itself where its slices lie, or images in order of their numbers.
+Volume load_slices(const std::string& path, std::vector<std::string> files, const LoadOptions& options) {
+    if (!options.raw.empty()) fail("{}: --raw describes a file, this is a pattern", path);
+    if (files.empty()) fail("{}: no file matches this pattern", path);
+    std::vector<std::string> images;
+    for (const auto& file : files) {
+        check_readable_file(file);
+        if (!is_dicom(file)) images.push_back(file);
+    }
+    if (images.empty()) return load_dicom(path, files, options);
+    if (images.size() < files.size())
+        fail("{}: {} of the {} files that match are DICOM, and {} is not; expected one kind", path,
+             files.size() - images.size(), files.size(), images.front());
+    std::vector<std::string> notes;
+    files = ordered_slices(path, files, notes);
+    auto volume = load_images(path, files, options);
+    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
+    return volume;
+}
+
         const auto middle = file.substr(before.size(), file.size() - before.size() - after.size());
         if (std::all_of(middle.begin(), middle.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
             files.push_back(entry.path().string());
     }
-    if (files.empty()) fail("{}: no file matches this pattern", path);
-    std::vector<std::string> notes;
-    files = ordered_slices(path, files, notes);
-    for (const auto& file : files)
-        check_readable_file(file);
-    auto volume = load_images(path, files, options);
-    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
-    return volume;
+    return load_slices(path, files, options);
+}
+
+// "*.dcm", "slice_??.png": the files that match.
+Volume load_glob(const std::string& path, const LoadOptions& options) {
+    glob_t found{};
+    const int result = glob(path.c_str(), GLOB_NOSORT, nullptr, &found);
+    std::vector<std::string> files(found.gl_pathv, found.gl_pathv + (result == 0 ? found.gl_pathc : 0));
+    globfree(&found);
+    std::ranges::sort(files);
+    return load_slices(path, files, options);
 }
 
 }  // namespace
@@ -262,3 +286,5 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
 }
 
 }  // namespace edgesplat
+        } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {
+            volume = load_glob(path, options);

@@ -38,7 +38,7 @@ struct LoadOptions {
 ///    a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
 ///  - a packed volume (packed_volume.h), whose samples stay in the file and whose limits are other ones;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;
-///  - a pattern of slices with one printf number, e.g. "slice_%03d.tif";
+///  - a pattern of slices with one printf number or with * and ?, e.g. "slice_%03d.tif": likewise;
 ///  - "builtin:NAME" (see `analytic_volumes.h`).
 /// The format is told by content where it has a signature, by extension otherwise.
 /// Throws Error naming the file and the reason: missing or unreadable file, truncated data, a header that contradicts

@@ -167,6 +167,21 @@ TEST_F(Series, DicomWithoutPreambleIsRead) {
     }
 }
 
+TEST_F(Series, DicomByAPatternIsDicom) {
+    for (int z = 0; z < 3; ++z)
+        write_slice("s" + std::to_string(z) + ".dcm", {0, 0, 6.0 - 2.0 * z}, 100 * z);
+    for (const char* pattern : {"s%d.dcm", "s*.dcm", "s?.dcm"}) {
+        const auto volume = load_volume(file(pattern));
+        ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3)) << pattern;
+        EXPECT_EQ(volume.at(3, 2, 2), 23.0F) << "sorted by place, not by number";
+        EXPECT_EQ(volume.geometry.spacing().z, 2);
+    }
+    write_image("s3.png", {{1, 1, 1, 1}});
+    EXPECT_THAT(refusal(file("s*")), AllOf(HasSubstr("3 of the 4 files that match are DICOM"), HasSubstr("s3.png")));
+    EXPECT_THAT(refusal(file("t*")), HasSubstr("no file matches"));
+    EXPECT_EQ(load_volume(file("*.png")).geometry.dims, glm::ivec3(2, 2, 1));
+}
+
 TEST_F(Series, DicomMissingSliceIsRefused) {
     for (const double z : {0.0, 2.0, 6.0, 8.0})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
