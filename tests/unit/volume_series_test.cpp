@@ -182,6 +182,21 @@ TEST_F(Series, DicomByAPatternIsDicom) {
     EXPECT_EQ(load_volume(file("*.png")).geometry.dims, glm::ivec3(2, 2, 1));
 }
 
+TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
+    // The portable bitmap of 8 x 2 pixels.
+    const auto volume = load_volume(write("a.pbm", std::string("P4\n8 2\n") + '\x81' + '\x0f'));
+    EXPECT_EQ(volume.geometry.dims, glm::ivec3(8, 2, 1));
+    EXPECT_EQ(volume.min_value, 0.0F);
+    EXPECT_EQ(volume.max_value, 1.0F);
+    const auto output = OIIO::ImageOutput::create(file("b.tif"));
+    OIIO::ImageSpec spec(8, 1, 1, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:BitsPerSample", 1);
+    ASSERT_TRUE(output->open(file("b.tif"), spec));
+    const std::vector<std::uint8_t> pixels{255, 0, 0, 255, 255, 0, 0, 255};
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+    EXPECT_THAT(load_volume(file("b.tif")).values, testing::ElementsAre(1, 0, 0, 1, 1, 0, 0, 1));
+}
+
 TEST_F(Series, DicomMissingSliceIsRefused) {
     for (const double z : {0.0, 2.0, 6.0, 8.0})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
