@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using namespace detail;
 
 constexpr const char* kFormats =
-    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, VTI, GIPL, TIFF and other images, packed "
+    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, {}GIPL, TIFF and other images, packed "
     "volumes, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
 
 bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
@@ -142,7 +142,8 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
     if (is_image_file(path)) return load_images(path, {path}, options);
-    fail("{}: not a volume this program knows. It reads {}", path, kFormats);
+    fail("{}: not a volume this program knows. It reads {}", path,
+         fmt::format(kFormats, can_read_vti() ? "VTI, " : ""));
 }
 
 Volume load_folder(const std::string& path, const LoadOptions& options) {

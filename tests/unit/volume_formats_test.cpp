@@ -23,6 +23,7 @@ using edgesplat::load_volume;
 using edgesplat::LoadOptions;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Formats : public FolderTest {};
 
@@ -76,7 +77,6 @@ TEST_F(Formats, NiftiKeepsVoxelsAndGeometry) {
     }
 }
 
-TEST_F(Formats, VtkAndGiplKeepVoxels) {
 /// A NIfTI-1 file's header and voxels as NIfTI-2 says them, little or big endian.
 std::string as_nifti2(const std::string& one, bool big) {
     std::string two(544, '\0');
@@ -132,6 +132,7 @@ TEST_F(Formats, Nifti2KeepsVoxelsAndGeometry) {
                 HasSubstr("dim[1] = 40000; NIfTI-2 is read up to 32767 voxels along an axis"));
 }
 
+TEST_F(Formats, VtkAndGiplKeepVoxels) {
     const Place straight{.directions = glm::dmat3(1)};
     write_itk(itk::VTKImageIO::New(), file("a.vtk"), straight);
     const auto volume = load_volume(file("a.vtk"));
@@ -304,6 +305,7 @@ TEST_F(Formats, WhatIsNoReadableFileIsRefused) {
     if (!edgesplat::can_read_vti()) {
         EXPECT_THAT(refusal(write("a.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">\n")),
                     HasSubstr("EDGESPLAT_VTK"));
+        EXPECT_THAT(refusal(write("a.unknown", "nothing")), AllOf(HasSubstr("It reads"), Not(HasSubstr("VTI"))));
     }
     if (geteuid() != 0) {
         write("secret.nrrd", "NRRD0004\n");
