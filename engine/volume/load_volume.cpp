@@ -15,6 +15,7 @@
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/hdf5_internal.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/load_internal.h"
 #include "engine/volume/packed_volume.h"
 
@@ -271,6 +272,8 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
             volume = load_pattern(path, options);
         } else {
             check_readable_file(path);
+    if (const std::size_t count = labels_of(volume).size(); count > 0)
+        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
             volume = load_file(path, options);
         }
     } catch (const std::bad_alloc&) {
