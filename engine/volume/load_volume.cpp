@@ -27,7 +27,7 @@ using namespace detail;
 
 constexpr const char* kFormats =
     "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, {}GIPL, TIFF and other images, packed "
-    "volumes, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
+    "volumes, zip archives of one of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
 
 bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
     std::string lower;
@@ -123,10 +123,26 @@ Volume load_packed(const std::string& path, const LoadOptions& options) {
     return open_packed(path);
 }
 
+bool is_archive(std::string_view head) {
+    return head.starts_with("PK\x03\x04");
+}
+
+Volume load_folder(const std::string& path, const LoadOptions& options);
+Volume load_file(const std::string& path, const LoadOptions& options);
+
+Volume load_unpacked(const std::string& path, const LoadOptions& options) {
+    if (fs::is_directory(path)) return load_folder(path, options);
+    check_readable_file(path);
+    // They can be made to hold themselves.
+    if (is_archive(first_bytes(path))) fail("{}: an archive in an archive", path);
+    return load_file(path, options);
+}
+
 Volume load_file(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) return load_raw(path, options);
     const auto head = first_bytes(path);
     const auto starts = [&](std::string_view text) { return head.compare(0, text.size(), text) == 0; };
+    if (is_archive(head)) return load_archive(path, options, load_unpacked);
     if (starts("NRRD0")) return load_nrrd(path, options);
     if (starts("# vtk DataFile")) return load_vtk(path, head, options);
     if (head.find("<VTKFile") != std::string::npos) return load_vti(path, options);
@@ -190,24 +206,6 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     return volume;
 }
 
-// "slice_%03d.tif": the files of the folder that match, in order of their numbers.
-Volume load_pattern(const std::string& path, const LoadOptions& options) {
-    const auto name = fs::path(path).filename().string();
-    const auto percent = name.find('%');
-    auto end = percent + 1;
-    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0)
-        ++end;
-    const auto folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
-    const bool good = percent != std::string::npos && end < name.size() && (name[end] == 'd' || name[end] == 'u') &&
-                      name.find('%', end) == std::string::npos;
-    if (!good) fail("{}: no such file; a pattern of slices has one number in its last part, like slice_%03d.tif", path);
-    const auto before = name.substr(0, percent), after = name.substr(end + 1);
-    std::vector<std::string> files;
-    std::error_code error;
-    for (const auto& entry : fs::directory_iterator(folder, error)) {
-        const auto file = entry.path().filename().string();
-        if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after))
-            continue;
 // What a pattern found: a DICOM series, which says itself where its slices lie, or images in order of their numbers.
 Volume load_slices(const std::string& path, std::vector<std::string> files, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a pattern", path);
@@ -228,6 +226,24 @@ Volume load_slices(const std::string& path, std::vector<std::string> files, cons
     return volume;
 }
 
+// "slice_%03d.tif": the files of the folder that match, in order of their numbers.
+Volume load_pattern(const std::string& path, const LoadOptions& options) {
+    const auto name = fs::path(path).filename().string();
+    const auto percent = name.find('%');
+    auto end = percent + 1;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end])) != 0)
+        ++end;
+    const auto folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+    const bool good = percent != std::string::npos && end < name.size() && (name[end] == 'd' || name[end] == 'u') &&
+                      name.find('%', end) == std::string::npos;
+    if (!good) fail("{}: no such file; a pattern of slices has one number in its last part, like slice_%03d.tif", path);
+    const auto before = name.substr(0, percent), after = name.substr(end + 1);
+    std::vector<std::string> files;
+    std::error_code error;
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+        const auto file = entry.path().filename().string();
+        if (file.size() <= before.size() + after.size() || !file.starts_with(before) || !file.ends_with(after))
+            continue;
         const auto middle = file.substr(before.size(), file.size() - before.size() - after.size());
         if (std::all_of(middle.begin(), middle.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
             files.push_back(entry.path().string());
@@ -256,6 +272,8 @@ void detail::add_value_notes(Volume& volume) {
     if (volume.non_finite_count > 0)
         volume.notes.push_back(fmt::format("{} samples are not finite; {} stands in for them.", volume.non_finite_count,
                                            static_cast<double>(volume.min_value)));
+    if (const std::size_t count = labels_of(volume).size(); count > 0)
+        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
 }
 
 Volume load_volume(const std::string& path, const LoadOptions& options) {
@@ -270,10 +288,10 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
             volume = load_folder(path, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {
             volume = load_pattern(path, options);
+        } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {
+            volume = load_glob(path, options);
         } else {
             check_readable_file(path);
-    if (const std::size_t count = labels_of(volume).size(); count > 0)
-        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
             volume = load_file(path, options);
         }
     } catch (const std::bad_alloc&) {
@@ -290,5 +308,3 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
 }
 
 }  // namespace edgesplat
-        } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {
-            volume = load_glob(path, options);

@@ -37,6 +37,7 @@ struct LoadOptions {
 ///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, legacy VTK image data, GIPL, VTI (if built with VTK),
 ///    a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
 ///  - a packed volume (packed_volume.h), whose samples stay in the file and whose limits are other ones;
+///  - a zip archive of one such file, or of the files of a folder;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;
 ///  - a pattern of slices with one printf number or with * and ?, e.g. "slice_%03d.tif": likewise;
 ///  - "builtin:NAME" (see `analytic_volumes.h`).

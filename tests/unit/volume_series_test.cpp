@@ -1,5 +1,7 @@
 // DICOM series and sequences of images, written here.
 #include <OpenImageIO/imageio.h>
+#include <archive.h>
+#include <archive_entry.h>
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 
@@ -180,6 +182,59 @@ TEST_F(Series, DicomByAPatternIsDicom) {
     EXPECT_THAT(refusal(file("s*")), AllOf(HasSubstr("3 of the 4 files that match are DICOM"), HasSubstr("s3.png")));
     EXPECT_THAT(refusal(file("t*")), HasSubstr("no file matches"));
     EXPECT_EQ(load_volume(file("*.png")).geometry.dims, glm::ivec3(2, 2, 1));
+}
+
+/// A zip archive of files of the folder, under names of its own.
+void write_zip(const std::string& path, const std::vector<std::pair<std::string, std::string>>& entries) {
+    archive* out = archive_write_new();
+    archive_write_set_format_zip(out);
+    ASSERT_EQ(archive_write_open_filename(out, path.c_str()), ARCHIVE_OK);
+    for (const auto& [name, content] : entries) {
+        archive_entry* entry = archive_entry_new();
+        archive_entry_set_pathname(entry, name.c_str());
+        archive_entry_set_filetype(entry, AE_IFREG);
+        archive_entry_set_perm(entry, 0644);
+        archive_entry_set_size(entry, static_cast<la_int64_t>(content.size()));
+        EXPECT_EQ(archive_write_header(out, entry), ARCHIVE_OK);
+        EXPECT_EQ(archive_write_data(out, content.data(), content.size()), static_cast<la_ssize_t>(content.size()));
+        archive_entry_free(entry);
+    }
+    EXPECT_EQ(archive_write_free(out), ARCHIVE_OK);
+}
+
+TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (int z = 0; z < 3; ++z) {
+        write_slice("slice", {0, 0, 2.0 * z}, 100 * z);
+        entries.emplace_back("study/" + std::to_string(z) + "/IM", content_of(file("slice")));
+    }
+    entries.emplace_back("../../../README.txt", "nothing of it leaves the folder");
+    write_zip(file("a.zip"), entries);
+    const auto volume = load_volume(file("a.zip"));
+    ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+    EXPECT_EQ(volume.at(3, 2, 1), 123.0F);
+    EXPECT_EQ(volume.name, file("a.zip"));
+    write_image("b.tif", {{1, 2, 3, 4}, {5, 6, 7, 8}});
+    write_zip(file("b.zip"), {{"b.tif", content_of(file("b.tif"))}});
+    EXPECT_EQ(load_volume(file("b.zip")).geometry.dims, glm::ivec3(2, 2, 2));
+
+    const auto whole = content_of(file("a.zip"));
+    for (std::size_t lost = 1; lost < whole.size() - 4; lost += 1 + lost / 3) {
+        // Without its list of entries at the end an archive may be read from its beginning; what is cut is refused.
+        try {
+            EXPECT_EQ(load_volume(write("c.zip", whole.substr(0, whole.size() - lost))).values, volume.values) << lost;
+        } catch (const edgesplat::Error& error) {
+            EXPECT_THAT(error.what(), AllOf(HasSubstr("c.zip"), testing::Not(HasSubstr("/0000")))) << lost;
+        }
+    }
+    write_zip(file("d.zip"), {{"b.zip", content_of(file("b.zip"))}});
+    EXPECT_THAT(refusal(file("d.zip")), HasSubstr("an archive in an archive"));
+    write_zip(file("e.zip"), {});
+    EXPECT_THAT(refusal(file("e.zip")), HasSubstr("e.zip"));
+    entries[1].second.resize(500);
+    write_zip(file("f.zip"), entries);
+    EXPECT_THAT(load_volume(file("f.zip")).warnings,
+                testing::ElementsAre(AllOf(HasSubstr("f.zip: "), HasSubstr("left out"))));
 }
 
 TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
