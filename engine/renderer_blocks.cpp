@@ -388,7 +388,13 @@ bool RendererState::too_many_somewhere(Gathered gathered) {
 Gathered RendererState::provide_level(FrameRequest request, int finest, double wait, RenderStats& stats) {
     const Settings settings = drawn_settings(request);
     const int count = level_count(*original);
-    for (int at = finest;; ++at) {
+    const int countable = countable_level(original->geometry, count, finest);
+    if (countable == count) {
+        const glm::ivec3 dims = level_geometry(original->geometry, count - 1).dims;
+        fail("{}: {} x {} x {} voxels at the coarsest of its {} resolutions, expected at most 2^32", original->name,
+             dims.x, dims.y, dims.z, count);
+    }
+    for (int at = countable;; ++at) {
         settle(request, at, std::isfinite(patience));
         while (!agree_on_level(at))
             settle(request, at, std::isfinite(patience));

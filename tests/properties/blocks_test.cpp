@@ -371,6 +371,18 @@ TEST(Levels, AreAsCoarseAsPixelsAreWide) {
     EXPECT_EQ(level_at(-500, 1), 0);
 }
 
+TEST(Levels, HaveNoMoreVoxelsThanASplatCanNumber) {
+    VolumeGeometry g;
+    g.dims = {1 << 16, 1 << 15, 2};  // 2^32
+    EXPECT_EQ(countable_level(g, 4, 0), 0);
+    EXPECT_EQ(countable_level(g, 4, 2), 2) << "what is asked for is fine enough";
+    g.dims.z = 3;
+    EXPECT_EQ(countable_level(g, 4, 0), 1);
+    g.dims = {1 << 20, 1 << 14, 1 << 6};  // 2^40, the most that a packed volume has
+    EXPECT_EQ(countable_level(g, 4, 0), 3);
+    EXPECT_EQ(countable_level(g, 3, 0), 3) << "no level of the three";
+}
+
 TEST(Levels, KeepPlacesAndMeans) {
     const auto volume = sampled(
         {37, 20, 9}, [](const glm::dvec3& p) { return 2 * p.x - 3 * p.y + 5 * p.z; },
