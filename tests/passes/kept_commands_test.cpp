@@ -1,6 +1,8 @@
 // Recorded command buffers: which lists are replayed, and which are let go.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include "engine/error.h"
+#include "engine/frame_memory.h"
 #include "engine/gpu/kept_commands.h"
 #include "tests/passes/device_under_test.h"
 
@@ -89,6 +91,19 @@ TEST_F(KeptCommandsTest, WhatListsBringAlongCounts) {
     EXPECT_TRUE(records(bringing(3))) << "in the place of 1";
     EXPECT_FALSE(records(bringing(0)));
     EXPECT_TRUE(records(bringing(1)));
+}
+
+TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
+    RendererState& state = device_under_test();
+    const gpu::Buffer filled(state.device, std::size_t{1} << 28U, gpu::Buffer::Place::Host, "filled");
+    const std::uint64_t before = state.device.validation_messages();
+    state.commands.set_timeout(0);
+    const auto fill = [&](std::uint32_t value) { state.commands.run([&] { state.commands.fill(filled, value); }); };
+    EXPECT_THROW(fill(1), Error);
+    state.commands.set_timeout(gpu::Commands::kTimeout);
+    fill(2);
+    EXPECT_EQ(filled.mapped<std::uint32_t>(1)[0], 2U);
+    EXPECT_EQ(state.device.validation_messages(), before);
 }
 
 }  // namespace
