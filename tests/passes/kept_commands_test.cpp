@@ -106,5 +106,26 @@ TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
     EXPECT_EQ(state.device.validation_messages(), before);
 }
 
+TEST(Texels, AreCountedByTheirFormat) {
+    const gpu::Device& device = device_under_test().device;
+    const std::size_t most = device.physical().getProperties().limits.maxTexelBufferElements;
+    for (const auto& [format, bytes] : {std::pair{vk::Format::eR32Uint, std::size_t{4}},
+                                       {vk::Format::eR32G32Uint, std::size_t{8}},
+                                       {vk::Format::eR32G32B32A32Sfloat, std::size_t{16}}}) {
+        EXPECT_EQ(gpu::Buffer::beyond_texels(device, most * bytes, format), "");
+        EXPECT_NE(gpu::Buffer::beyond_texels(device, (most + 1) * bytes, format), "");
+    }
+}
+
+TEST(Texels, ThatAreTooManyDoNotFit) {
+    const gpu::Device& device = device_under_test().device;
+    FrameForecast forecast;
+    PlannedResource& pixels = forecast.resources.emplace_back();
+    pixels.name = "pixels";
+    pixels.texels = vk::Format::eR32Uint;
+    pixels.bytes = (std::size_t{device.physical().getProperties().limits.maxTexelBufferElements} + 1) * 4;
+    EXPECT_THAT(memory_need(device, forecast, 0).too_large, testing::Contains(testing::HasSubstr("texels")));
+}
+
 }  // namespace
 }  // namespace edgesplat::test
