@@ -128,6 +128,9 @@ struct RendererState : DeviceState, SplatSet {
     bool cast_shadows(const Scene& scene, const Settings& settings);
     /// Frees everything of a picture but what any picture needs.
     void drop_targets();
+    /// Throws Error where sheets must be layers of a target, in the picture or in one that a light takes, and the
+    /// device has no such targets.
+    void need_layers(const Scene& scene, const Settings& settings) const;
     /// What a request takes of the device's memory, if it does not fit with the volume as a whole.
     std::optional<MemoryNeed> beyond_memory(const FrameRequest& request);
     /// The furthest that a kernel of these settings reaches, voxels.

@@ -106,6 +106,20 @@ TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
     EXPECT_EQ(state.device.validation_messages(), before);
 }
 
+TEST(Devices, AreRefusedForWhatTheShadersNeed) {
+    vk::PhysicalDeviceLimits limits = device_under_test().device.physical().getProperties().limits;
+    vk::PhysicalDeviceSubgroupProperties subgroups;
+    subgroups.supportedStages = vk::ShaderStageFlagBits::eCompute;
+    subgroups.supportedOperations = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eArithmetic |
+                                    vk::SubgroupFeatureFlagBits::eBallot;
+    EXPECT_TRUE(gpu::beyond_limits(limits, subgroups).empty());
+    subgroups.supportedOperations &= ~vk::SubgroupFeatureFlags(vk::SubgroupFeatureFlagBits::eBallot);
+    EXPECT_THAT(gpu::beyond_limits(limits, subgroups), testing::ElementsAre(testing::HasSubstr("{ Ballot }")));
+    limits.maxPerStageDescriptorStorageImages = 4;
+    EXPECT_THAT(gpu::beyond_limits(limits, subgroups),
+                testing::ElementsAre("maxPerStageDescriptorStorageImages is 4, 15 are needed", testing::_));
+}
+
 TEST(Texels, AreCountedByTheirFormat) {
     const gpu::Device& device = device_under_test().device;
     const std::size_t most = device.physical().getProperties().limits.maxTexelBufferElements;
