@@ -21,7 +21,8 @@ struct Unpacked {
     std::string last;  // where it is
 };
 
-// Names in the folder are the entries' last parts behind their numbers: none leads out of it, none stands twice.
+// Names in the folder are the entries' last parts, behind their number where there is one like it: none leads out of
+// it.
 Unpacked unpack(const std::string& path, const fs::path& folder, const LoadOptions& options) {
     const std::unique_ptr<archive, int (*)(archive*)> in(archive_read_new(), &archive_read_free);
     archive_read_support_format_zip(in.get());
@@ -41,8 +42,9 @@ Unpacked unpack(const std::string& path, const fs::path& folder, const LoadOptio
         if (archive_entry_filetype(entry) != AE_IFREG || name.empty() || name.starts_with(".")) continue;
         if (archive_entry_is_encrypted(entry) != 0) fail("{}: {} in it is encrypted", path, full_name);
         if (++out.files > kMostFiles) fail("{}: more than {} files in it", path, kMostFiles);
-        out.last = folder / fmt::format("{:05}_{}", out.files,
-                                        name.substr(name.size() - std::min<std::size_t>(200, name.size())));
+        const std::string kept = name.substr(name.size() - std::min<std::size_t>(200, name.size()));
+        out.last = folder / kept;
+        if (fs::exists(out.last)) out.last = folder / fmt::format("{:05}_{}", out.files, kept);
         std::ofstream file(out.last, std::ios::binary);
         while (true) {
             const la_ssize_t got = archive_read_data(in.get(), part.data(), part.size());
@@ -73,9 +75,7 @@ Volume load_archive(const std::string& path, const LoadOptions& options,
     const TemporaryFolder folder;
     // The user never saw the folder.
     const std::string place = folder.path().string();
-    const auto as_seen = [&](const std::string& text) {
-        return replaced(replaced(text, place + "/", path + ": "), place, path);
-    };
+    const auto as_seen = [&](const std::string& text) { return replaced(text, place, path); };
     try {
         const Unpacked unpacked = unpack(path, folder.path(), options);
         if (unpacked.files == 0) fail("{}: a zip archive without files", path);

@@ -218,13 +218,20 @@ TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
     write_zip(file("b.zip"), {{"b.tif", content_of(file("b.tif"))}});
     EXPECT_EQ(load_volume(file("b.zip")).geometry.dims, glm::ivec3(2, 2, 2));
 
+    write_image("s.png", {{1, 2, 3, 4}});
+    const std::string slice = content_of(file("s.png"));
+    write_zip(file("s.zip"), {{"x/s10.png", slice}, {"x/s9.png", slice}});
+    EXPECT_EQ(load_volume(file("s.zip")).geometry.dims, glm::ivec3(2, 2, 2));
+
     const auto whole = content_of(file("a.zip"));
     for (std::size_t lost = 1; lost < whole.size() - 4; lost += 1 + lost / 3) {
         // Without its list of entries at the end an archive may be read from its beginning; what is cut is refused.
         try {
             EXPECT_EQ(load_volume(write("c.zip", whole.substr(0, whole.size() - lost))).values, volume.values) << lost;
         } catch (const edgesplat::Error& error) {
-            EXPECT_THAT(error.what(), AllOf(HasSubstr("c.zip"), testing::Not(HasSubstr("/0000")))) << lost;
+            EXPECT_THAT(error.what(),
+                        AllOf(HasSubstr("c.zip"), testing::Not(testing::ContainsRegex("edgesplat-[A-Za-z0-9]{6}/"))))
+                << lost;
         }
     }
     write_zip(file("d.zip"), {{"b.zip", content_of(file("b.zip"))}});
@@ -234,7 +241,7 @@ TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
     entries[1].second.resize(500);
     write_zip(file("f.zip"), entries);
     EXPECT_THAT(load_volume(file("f.zip")).warnings,
-                testing::ElementsAre(AllOf(HasSubstr("f.zip: "), HasSubstr("left out"))));
+                testing::ElementsAre(AllOf(HasSubstr("f.zip/"), HasSubstr("left out"))));
 }
 
 TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
