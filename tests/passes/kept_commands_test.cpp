@@ -124,8 +124,8 @@ TEST(Texels, AreCountedByTheirFormat) {
     const gpu::Device& device = device_under_test().device;
     const std::size_t most = device.physical().getProperties().limits.maxTexelBufferElements;
     for (const auto& [format, bytes] : {std::pair{vk::Format::eR32Uint, std::size_t{4}},
-                                       {vk::Format::eR32G32Uint, std::size_t{8}},
-                                       {vk::Format::eR32G32B32A32Sfloat, std::size_t{16}}}) {
+                                        {vk::Format::eR32G32Uint, std::size_t{8}},
+                                        {vk::Format::eR32G32B32A32Sfloat, std::size_t{16}}}) {
         EXPECT_EQ(gpu::Buffer::beyond_texels(device, most * bytes, format), "");
         EXPECT_NE(gpu::Buffer::beyond_texels(device, (most + 1) * bytes, format), "");
     }
