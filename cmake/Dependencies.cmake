@@ -32,6 +32,8 @@ find_package(HDF5 REQUIRED COMPONENTS C)
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)
 target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)
+# Series in zip archives.
+find_package(LibArchive REQUIRED)
 if(EDGESPLAT_VTK)
     find_package(VTK REQUIRED COMPONENTS IOXML CommonDataModel CommonExecutionModel)
     target_link_libraries(edgesplat_itk INTERFACE VTK::IOXML VTK::CommonDataModel VTK::CommonExecutionModel)

@@ -72,6 +72,14 @@ std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, cons
     return blocks;
 }
 
+int countable_level(const VolumeGeometry& geometry, int levels, int finest) {
+    constexpr std::uint64_t kMost = std::uint64_t{1} << (8 * sizeof(shader::Splat::voxel));
+    int level = finest;
+    while (level < levels && level_geometry(geometry, level).voxel_count() > kMost)
+        ++level;
+    return level;
+}
+
 int level_for(const VolumeGeometry& geometry, int levels, const Camera& camera, const glm::ivec2& size, double pixels) {
     if (!(pixels > 0)) return 0;
     const CameraFrame view = camera_frame(camera);

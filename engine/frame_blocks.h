@@ -17,6 +17,9 @@ CollectionBlock largest_block(const glm::ivec3& dims);
 std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, const Volume& volume,
                                                 const CollectionPlan& plan);
 
+/// The finest of `levels` levels, from `finest` on, whose voxels a splat can number; `levels` where none is.
+int countable_level(const VolumeGeometry& geometry, int levels, int finest);
+
 /// The coarsest of `levels` levels whose voxels are nowhere in the picture wider than `pixels`; 0 where level 0 is
 /// wider already, or the volume reaches the plane of the eye.
 int level_for(const VolumeGeometry& geometry, int levels, const Camera& camera, const glm::ivec2& size, double pixels);

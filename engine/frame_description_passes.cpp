@@ -29,15 +29,23 @@ constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4
 // No GPU was measured: how much faster one may be.
 constexpr double kGpuFactor = 200;
 
-constexpr std::array<const char*, 25> kConstants{
-    "ESTIMATOR", "FOOTPRINTS",  "WARP",      "PAYLOAD",  "LIGHT",     "AXIS",      "EDGES",   "BURIED",     "SMOOTH",
-    "SLICED",    "CURVED",      "WEIGHTED",  "NODES",    "GLOSS",     "LIT_EDGES", "FOG",     "SILHOUETTE", "TRANSFER",
-    "CLIP_KEEP", "CLIP_REMOVE", "ANTIALIAS", "RESPONSE", "OCCLUSION", "SHADOWS",   "GRADIENT"};
+struct Constant {
+    std::uint32_t id;
+    std::string_view name;
+};
+constexpr std::array kConstants{
+#define EDGESPLAT_SPECIALIZATION(name, id) Constant{id, #name},
+    EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
+#undef EDGESPLAT_SPECIALIZATION
+};
+constexpr std::string_view kPrefix = "SPEC_";
+// Their ids are their places: no name is missing, none stands twice.
+static_assert(std::ranges::all_of(kConstants, [](const Constant& c) { return &kConstants.at(c.id) == &c; }));
 
 std::string variant(const char* shader, const gpu::Specialization& constants) {
     std::string text = shader;
     for (const auto& [id, value] : constants)
-        text += fmt::format(" {}={}", id < kConstants.size() ? kConstants.at(id) : "?", value);
+        text += fmt::format(" {}={}", kConstants.at(id).name.substr(kPrefix.size()), value);
     return text;
 }
 

@@ -33,6 +33,7 @@ struct PlannedResource {
     std::string name;                      ///< as it is allocated
     std::optional<gpu::ImageShape> image;  ///< else a buffer
     std::uint64_t bytes = 0;               ///< of its texels or elements; the device may round up
+    vk::Format texels{};                   ///< of a buffer that shaders have as texels
     std::string contents;                  ///< "(splats) uint"
     std::string written, read;             ///< stems of passes, or "host"
     bool host = false;                     ///< in memory that the host reads or writes

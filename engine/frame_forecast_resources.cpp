@@ -1,5 +1,6 @@
 // The images and buffers of a frame, as renderer.cpp and frame.cpp allocate them; a test compares the bytes.
 #include <algorithm>
+#include <vulkan/vulkan_format_traits.hpp>
 
 #include "engine/frame_blocks.h"
 #include "engine/frame_forecast.h"
@@ -16,28 +17,12 @@ namespace {
 
 using Usage = vk::ImageUsageFlagBits;
 
-std::uint64_t texel_bytes(vk::Format format) {
-    switch (format) {
-        case vk::Format::eR8Uint:
-            return 1;
-        case vk::Format::eD16Unorm:
-        case vk::Format::eR16Sfloat:
-            return 2;
-        case vk::Format::eR32Sfloat:
-            return 4;
-        case vk::Format::eR32G32B32A32Sfloat:
-            return 16;
-        default:
-            return 8;  // rg32ui, rgba16f
-    }
-}
-
 PlannedResource image(std::string name, const gpu::ImageShape& shape, std::string contents, std::string written,
                       std::string read) {
     const glm::u64vec3 size(shape.size);
     return {.name = std::move(name),
             .image = shape,
-            .bytes = size.x * size.y * size.z * static_cast<std::uint64_t>(shape.layers) * texel_bytes(shape.format),
+            .bytes = size.x * size.y * size.z * static_cast<std::uint64_t>(shape.layers) * vk::blockSize(shape.format),
             .contents = std::move(contents),
             .written = std::move(written),
             .read = std::move(read)};
@@ -63,6 +48,11 @@ PlannedResource growing(PlannedResource resource) {
     return resource;
 }
 
+PlannedResource texels(vk::Format format, PlannedResource resource) {
+    resource.texels = format;
+    return resource;
+}
+
 /// What of all draws takes most, since each may make the target anew.
 const FramePlan& largest(const std::vector<FramePlan>& draws, std::uint64_t (*bytes)(const FramePlan&)) {
     return *std::ranges::max_element(draws, {}, bytes);
@@ -81,9 +71,9 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(
         on_host(buffer("numbers of groups", gpu::Commands::group_count_bytes(), "(dispatches) uvec3", "host", "all")));
 
-    out.push_back(buffer("placeholder texels", 16, "zeros", "-", "-"));
-    out.push_back(buffer("placeholder counts", 16, "zeros", "-", "-"));
-    out.push_back(buffer("placeholder entries", 16, "zeros", "-", "-"));
+    out.push_back(texels(vk::Format::eR32G32B32A32Sfloat, buffer("placeholder texels", 16, "zeros", "-", "-")));
+    out.push_back(texels(vk::Format::eR32Uint, buffer("placeholder counts", 16, "zeros", "-", "-")));
+    out.push_back(texels(vk::Format::eR32G32Uint, buffer("placeholder entries", 16, "zeros", "-", "-")));
     out.push_back(on_host(buffer("placeholder block", sizeof(shader::FrameParams), "zeros", "-", "-")));
     const auto add = [&](vk::Format format, bool volume, bool array, Usage usage) {
         out.push_back(image("placeholder",
@@ -167,10 +157,13 @@ void add_reach(const FrameForecast& f, std::vector<PlannedResource>& out) {
 
 /// Sheets as layers: images, and what their draws take.
 void add_layers(const std::vector<FramePlan>& f, std::vector<PlannedResource>& out) {
-    const auto sheet_bytes = [](const FramePlan& p) { return texel_bytes(p.sheet_format) * p.params.sheets_per_group; };
+    const auto sheet_bytes = [](const FramePlan& p) {
+        return std::uint64_t{vk::blockSize(p.sheet_format)} * p.params.sheets_per_group;
+    };
     const FramePlan& sheets = largest(f, sheet_bytes);
     const FramePlan& depth = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheets_per_group}; });
-    const FramePlan& accumulated = largest(f, [](const FramePlan& p) { return texel_bytes(p.accumulated_format); });
+    const FramePlan& accumulated =
+        largest(f, [](const FramePlan& p) { return std::uint64_t{vk::blockSize(p.accumulated_format)}; });
     const FramePlan& groups = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.group_count}; });
     const glm::ivec3 size(sheets.params.size, 1);
     out.push_back(image("sheet group",
@@ -211,29 +204,39 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(on_host(growing(buffer("pairs of sheets", sheets * word, "(sheets) uint", "3", "host"))));
     out.push_back(on_host(growing(buffer("sheet starts", (sheets + 1) * word, "(sheets + 1) uint", "4", "4, host"))));
     out.push_back(on_host(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
-    out.push_back(growing(buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
-                                 "(tiles, blocks) uint", "4", "4")));
-    out.push_back(on_host(growing(buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5, host"))));
-    out.push_back(on_host(
-        growing(buffer("tile order", tile_order_items(plan) * word, "(tiles) uint, longest list first", "host", "5"))));
-    out.push_back(growing(buffer("tile entries", tile_entry_pairs(plan) * 2 * word,
-                                 "(pairs at once) place in the order, sheet", "4", "5")));
-    out.push_back(growing(buffer("marks of tile entries", tile_mark_words(plan, chunk_pairs(plan.params.tiles)) * word,
-                                 "(pairs at once) blocks of the tile's pixels", "4", "5")));
+    out.push_back(growing(texels(vk::Format::eR32Uint,
+                                 buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
+                                        "(tiles, blocks) uint", "4", "4"))));
+    out.push_back(on_host(growing(
+        texels(vk::Format::eR32G32Uint, buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5, host")))));
+    out.push_back(
+        on_host(growing(texels(vk::Format::eR32Uint, buffer("tile order", tile_order_items(plan) * word,
+                                                            "(tiles) uint, longest list first", "host", "5")))));
+    out.push_back(
+        growing(texels(vk::Format::eR32G32Uint, buffer("tile entries", tile_entry_pairs(plan) * 2 * word,
+                                                       "(pairs at once) place in the order, sheet", "4", "5"))));
+    out.push_back(
+        growing(texels(vk::Format::eR32Uint,
+                       buffer("marks of tile entries", tile_mark_words(plan, chunk_pairs(plan.params.tiles)) * word,
+                              "(pairs at once) blocks of the tile's pixels", "4", "5"))));
     const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
     out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),
                                 "(entries at once) place, kernel, colour", "4", "5")));
-    out.push_back(growing(buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4")));
-    out.push_back(
-        on_host(growing(buffer("pixels to draw of tiles", tiles * word, "(tiles) uint", "host, 5", "4, 5, host"))));
+    out.push_back(growing(
+        texels(vk::Format::eR32Uint, buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4"))));
+    out.push_back(on_host(growing(texels(vk::Format::eR32Uint, buffer("pixels to draw of tiles", tiles * word,
+                                                                      "(tiles) uint", "host, 5", "4, 5, host")))));
     if (plan.refined) {
-        out.push_back(growing(buffer("lists of pixels", tiles * shader::TILE * shader::TILE * word,
-                                     "(tiles, pixels) x, y in the tile", "5", "5")));
+        out.push_back(
+            growing(texels(vk::Format::eR32Uint, buffer("lists of pixels", tiles * shader::TILE * shader::TILE * word,
+                                                        "(tiles, pixels) x, y in the tile", "5", "5"))));
         out.push_back(growing(buffer("finest splats of tiles", tiles * word, "(tiles) uint", "5", "5")));
         out.push_back(on_host(growing(buffer("closed pixels, seen", tiles * word, "(tiles) uint", "5", "host"))));
     }
     const glm::u64vec2 size(plan.params.size);
-    out.push_back(growing(buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5")));
+    out.push_back(
+        growing(texels(vk::Format::eR32G32B32A32Sfloat,
+                       buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5"))));
 }
 
 /// What pictures are drawn with: the one that is asked for, or a light's.
@@ -255,7 +258,9 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
     out.push_back(
         growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,
                        "(sheets, blocks) uint", "4", "4, 5")));
-    out.push_back(on_host(growing(buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host"))));
+    out.push_back(
+        on_host(growing(texels(vk::Format::eR32G32B32A32Sfloat,
+                               buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host")))));
     for (PlannedResource& resource : out) {
         resource.held = held;
         all.push_back(std::move(resource));
@@ -279,7 +284,7 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::uint64_t staging = 0;
     for (const PlannedResource& resource : out)
         if (resource.image && resource.written == "host")
-            staging = std::max(staging, staging_bytes(*resource.image, texel_bytes(resource.image->format)));
+            staging = std::max(staging, staging_bytes(*resource.image, vk::blockSize(resource.image->format)));
     PlannedResource upload = on_host(buffer("staging buffer", staging, "(rows) texels", "host", "copies"));
     upload.held = Held::Uploading;
     out.push_back(std::move(upload));

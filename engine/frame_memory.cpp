@@ -21,7 +21,10 @@ double mebibytes(std::uint64_t bytes) {
 
 /// What one resource takes on the device; notes where it is beyond a limit.
 std::uint64_t bytes_on(const gpu::Device& device, const PlannedResource& resource, MemoryNeed& need) {
-    const std::string beyond = resource.image ? gpu::beyond_limits(device, *resource.image) : "";
+    const std::string beyond = resource.image ? gpu::beyond_limits(device, *resource.image)
+                               : resource.texels != vk::Format{}
+                                   ? gpu::Buffer::beyond_texels(device, resource.bytes, resource.texels)
+                                   : "";
     if (!beyond.empty()) {
         need.too_large.push_back(resource.name + ": " + beyond);
         return resource.bytes;

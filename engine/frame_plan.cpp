@@ -138,6 +138,17 @@ void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shad
         params[i] = glm::vec4(to_float(planes[i].normal), static_cast<float>(planes[i].offset));
 }
 
+template <typename Enum>
+constexpr bool is(Enum value, std::uint32_t constant) {
+    return static_cast<std::uint32_t>(value) == constant;
+}
+static_assert(is(EdgeEstimator::Taylor, shader::TAYLOR) && is(EdgeEstimator::Quadratic, shader::QUADRATIC));
+static_assert(is(EdgeEstimator::March, shader::MARCH) && is(EdgeEstimator::Cubic, shader::CUBIC));
+static_assert(is(FootprintMode::Isotropic, shader::ISOTROPIC) && is(FootprintMode::Warp2d, shader::WARP2D));
+static_assert(is(FootprintMode::Table, shader::TABLE) && is(FootprintMode::TableLerp, shader::TABLE_LERP));
+static_assert(is(FootprintMode::Procedural, shader::PROCEDURAL));
+static_assert(is(WarpFamily::Edge, shader::EDGE) && is(WarpFamily::Paper, shader::PAPER));
+static_assert(is(WarpFamily::Face, shader::FACE));
 static_assert(kEdgeWeightSteps == shader::EDGE_WEIGHT_STEPS);
 static_assert(sizeof(shader::SceneParams::edge_weights) == (kEdgeWeightSteps + 1) * sizeof(float));
 static_assert(static_cast<std::uint32_t>(Normalisation::Edge) == shader::WEIGHTED_EDGE);

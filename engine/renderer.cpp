@@ -272,6 +272,7 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     }
     validate(scene);
     validate(wanted);
+    state_->need_layers(scene, wanted);
     if (state_->exchange && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
         fail("sheets that are drawn in parts need --sheet-format tiles");
     return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });

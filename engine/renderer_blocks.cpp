@@ -291,6 +291,20 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
     std::vector<std::size_t> missing;
     std::ranges::copy_if(needed, std::back_inserter(missing), [&](std::size_t i) { return !residence->held[i]; });
     if (missing.empty()) return Gathered::All;
+    // Whatever ends this early has added blocks, and the next picture may show no other.
+    try {
+        const Gathered gathered = collect_missing(request, wanted, needed, std::move(missing), most_splats, wait);
+        bound_held_blocks();
+        return gathered;
+    } catch (...) {
+        bound_held_blocks();
+        throw;
+    }
+}
+
+Gathered RendererState::collect_missing(const FrameRequest& request, const CollectionPlan& wanted,
+                                        const std::vector<std::size_t>& needed, std::vector<std::size_t> missing,
+                                        std::uint64_t most_splats, double wait) {
     const auto start = Clock::now();
     release_for_collection();
     occluded.reset();
@@ -311,7 +325,7 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         const CollectionBlock& block = residence->blocks[missing[number]];
         load_block(block, read_block(missing, number));
         const auto collect = [&] {
-            return collect_block(device, commands, wanted, block, false, most_splats, resources);
+            return collect_block(device, commands, wanted, block, false, most_splats, volume_resources);
         };
         auto& held = residence->held[missing[number]];
         held = collect();
@@ -320,7 +334,6 @@ Gathered RendererState::collect_blocks(const FrameRequest& request, const Collec
         add_times(collection_times, held->times);
         if (wanted.edge_field) voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
     }
-    bound_held_blocks();
     return Gathered::All;
 }
 
@@ -375,7 +388,13 @@ bool RendererState::too_many_somewhere(Gathered gathered) {
 Gathered RendererState::provide_level(FrameRequest request, int finest, double wait, RenderStats& stats) {
     const Settings settings = drawn_settings(request);
     const int count = level_count(*original);
-    for (int at = finest;; ++at) {
+    const int countable = countable_level(original->geometry, count, finest);
+    if (countable == count) {
+        const glm::ivec3 dims = level_geometry(original->geometry, count - 1).dims;
+        fail("{}: {} x {} x {} voxels at the coarsest of its {} resolutions, expected at most 2^32", original->name,
+             dims.x, dims.y, dims.z, count);
+    }
+    for (int at = countable;; ++at) {
         settle(request, at, std::isfinite(patience));
         while (!agree_on_level(at))
             settle(request, at, std::isfinite(patience));

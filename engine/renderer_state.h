@@ -71,6 +71,10 @@ struct RendererState : DeviceState, SplatSet {
     /// are over; blocks that it does not show are dropped where there is no room.
     Gathered collect_blocks(const FrameRequest& request, const CollectionPlan& wanted, std::uint64_t most_splats,
                             double patience);
+    /// The same for those of the blocks `needed` that are missing.
+    Gathered collect_missing(const FrameRequest& request, const CollectionPlan& wanted,
+                             const std::vector<std::size_t>& needed, std::vector<std::size_t> missing,
+                             std::uint64_t most_splats, double patience);
     /// Makes the list anew for a plan: empty, with what may come into it.
     void begin_blocks(const CollectionPlan& wanted);
     /// The blocks of a picture by number; of one that is drawn in parts, those of this part's slab.
@@ -124,6 +128,9 @@ struct RendererState : DeviceState, SplatSet {
     bool cast_shadows(const Scene& scene, const Settings& settings);
     /// Frees everything of a picture but what any picture needs.
     void drop_targets();
+    /// Throws Error where sheets must be layers of a target, in the picture or in one that a light takes, and the
+    /// device has no such targets.
+    void need_layers(const Scene& scene, const Settings& settings) const;
     /// What a request takes of the device's memory, if it does not fit with the volume as a whole.
     std::optional<MemoryNeed> beyond_memory(const FrameRequest& request);
     /// The furthest that a kernel of these settings reaches, voxels.

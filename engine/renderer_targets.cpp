@@ -29,6 +29,15 @@ bool has_shape(const gpu::GpuImage& image, vk::Format format, const glm::ivec2& 
 
 }  // namespace
 
+void RendererState::need_layers(const Scene& scene, const Settings& settings) const {
+    const std::string& obstacle = device.layers_obstacle();
+    if (obstacle.empty()) return;
+    if (drawn_as(settings, scene).sheet_format != SheetFormat::Tiles)
+        fail("sheet_format: {} has {}, expected `tiles` there", device.info().name, obstacle);
+    if (!shadow_lights(scene).empty())
+        fail("shadows: {} has {}, expected lights without shadows there", device.info().name, obstacle);
+}
+
 void RendererState::provide_targets(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
     grow(device, targets.batches, (p.splat_count / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2), Place::Host,

@@ -9,7 +9,6 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
-const uint OFF = 0u, TAYLOR = 1u, QUADRATIC = 2u, MARCH = 3u, CUBIC = 4u;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;

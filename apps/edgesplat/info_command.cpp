@@ -67,6 +67,7 @@ nlohmann::json description(const Volume& volume, int bins) {
     json["non_finite"] = volume.non_finite_count;
     json["checksum"] = fmt::format("{:016x}", volume.checksum);
     json["notes"] = volume.notes;
+    json["warnings"] = volume.warnings;
     const auto histogram = edgesplat::histogram(volume, bins);
     json["histogram"] = {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
     if (volume.packed) json["packed"] = packed_description(*volume.packed);

@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <functional>
 
 namespace {
 
@@ -43,6 +44,7 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
         ->check(CLI::NonNegativeNumber);
     command.add_option("--frame", options.frame, "frame of 4-D data, from 0")->check(CLI::NonNegativeNumber);
     command.add_option("--series", options.series, "DICOM series of a folder with several: number or UID");
+    command.add_flag("--resample", options.resample, "interpolate unevenly spaced DICOM slices at even places");
     command.add_option("--spacing", options.spacing, "voxel spacing in mm, instead of the file's")->expected(3);
 }
 
@@ -51,14 +53,21 @@ void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (options.frame >= 0) source.frame = options.frame;
     if (!options.series.empty()) source.series = options.series;
     if (!options.raw.empty()) source.raw = options.raw;
+    if (options.resample) source.resample = true;
     if (options.spacing.size() == 3)
         source.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
 }
 
 edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
                                      const std::vector<std::filesystem::path>& folders, bool quiet) {
-    ProgressLine line;
-    if (quiet) return edgesplat::load_source(source, folders);
-    return edgesplat::load_source(source, folders,
-                                  [&line](double fraction, std::string_view what) { line.update(fraction, what); });
+    std::function<void(double, std::string_view)> progress;
+    edgesplat::Volume volume;
+    {
+        ProgressLine line;
+        if (!quiet) progress = [&line](double fraction, std::string_view what) { line.update(fraction, what); };
+        volume = edgesplat::load_source(source, folders, progress);
+    }
+    for (const std::string& warning : volume.warnings)
+        std::fprintf(stderr, "edgesplat: warning: %s\n", warning.c_str());
+    return volume;
 }

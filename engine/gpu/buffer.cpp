@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vulkan/vulkan_format_traits.hpp>
 
 #include "engine/error.h"
 #include "engine/gpu/serial.h"
@@ -27,6 +28,12 @@ std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
         .memoryRequirements.size;
 }
 
+std::string Buffer::beyond_texels(const Device& device, std::size_t bytes, vk::Format texels) {
+    const std::uint64_t most = device.physical().getProperties().limits.maxTexelBufferElements;
+    const std::uint64_t count = bytes / vk::blockSize(texels);
+    return count > most ? fmt::format("{} texels; {} allows {}", count, device.info().name, most) : "";
+}
+
 Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name, vk::Format texels)
     : device_(&device),
       buffer_(device.handle(), create_info(bytes)),
@@ -42,9 +49,8 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});
     if (texels != vk::Format::eUndefined) {
-        const std::uint64_t most = device.physical().getProperties().limits.maxTexelBufferElements;
-        const std::uint64_t count = bytes_ / (texels == vk::Format::eR32Uint ? 4 : 16);
-        if (count > most) fail("{}: {} texels, expected at most {} on this device", name_, count, most);
+        const std::string beyond = beyond_texels(device, bytes_, texels);
+        if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
     }
     allocated_ = requirements.size;

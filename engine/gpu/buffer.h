@@ -28,6 +28,8 @@ class Buffer {
 
     /// What a buffer of that size takes of the device's memory.
     static std::uint64_t required_bytes(const Device& device, std::size_t bytes);
+    /// How a buffer of texels is beyond what views of the device hold; empty: it is not.
+    static std::string beyond_texels(const Device& device, std::size_t bytes, vk::Format texels);
 
     vk::Buffer handle() const { return *buffer_; }
     std::uint64_t serial() const { return serial_; }

@@ -13,7 +13,6 @@ constexpr std::uint32_t kMaxTimestamps = 8192;
 constexpr std::uint32_t kTimestampsAtOnce = 64;
 constexpr std::uint32_t kMaxCountedDraws = 8192;
 constexpr std::size_t kMaxCountedDispatches = 4096;  // dispatches whose groups are counted; 48 KiB
-constexpr std::uint64_t kTimeout = 600'000'000'000;  // ns; a software device may take minutes for a huge frame
 
 }  // namespace
 
@@ -38,7 +37,24 @@ Commands::Commands(const Device& device, Pipelines& pipelines, const DescriptorS
         queries_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, kMaxTimestamps});
 }
 
+Commands::~Commands() {
+    if (!busy_) return;
+    // It is still at what is freed next. By way of the C function, which does not throw.
+    const VkFence fence = *fence_;
+    (void)device_->handle().getDispatcher()->vkWaitForFences(*device_->handle(), 1, &fence, VK_TRUE, kTimeout);
+}
+
+void Commands::finish() {
+    if (!busy_) return;
+    const auto waited = device_->handle().waitForFences(*fence_, VK_TRUE, timeout_);
+    if (waited != vk::Result::eSuccess)
+        fail("the device {} did not finish within {} s", device_->info().name, static_cast<double>(timeout_) * 1e-9);
+    device_->handle().resetFences(*fence_);
+    busy_ = false;
+}
+
 void Commands::run(const std::function<void()>& body) {
+    finish();  // where the last run was given up, the device may still be at it
     list_.clear();
     span_names_.clear();
     counted_ = 0;
@@ -51,9 +67,8 @@ void Commands::run(const std::function<void()>& body) {
     barrier();
     const vk::CommandBufferSubmitInfo command(kept_.of(list_));
     device_->queue().submit2(vk::SubmitInfo2({}, {}, command), *fence_);
-    const auto waited = device_->handle().waitForFences(*fence_, VK_TRUE, kTimeout);
-    if (waited != vk::Result::eSuccess) fail("the device {} did not finish within 10 minutes", device_->info().name);
-    device_->handle().resetFences(*fence_);
+    busy_ = true;
+    finish();
 }
 
 void Commands::bind_compute_set(const DescriptorSet& set) {

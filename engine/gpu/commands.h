@@ -30,10 +30,18 @@ struct CommandCounts {
 /// dispatches are of other sizes now: a flight replays the command buffers of its first pictures.
 class Commands {
   public:
-    Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
+    /// How long the device may take for a run, ns: a software device may take minutes for a huge frame.
+    static constexpr std::uint64_t kTimeout = 600'000'000'000;
 
-    /// Lists what `body` asks for, submits it and waits until the device is done.
+    Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
+    ~Commands();
+    Commands(const Commands&) = delete;
+    Commands& operator=(const Commands&) = delete;
+
+    /// Lists what `body` asks for, submits it and waits until the device is done. Throws Error where that takes longer
+    /// than the time-out; the next run waits as long for it again.
     void run(const std::function<void()>& body);
+    void set_timeout(std::uint64_t nanoseconds) { timeout_ = nanoseconds; }
     /// What the numbers of groups take.
     static std::size_t group_count_bytes();
     CommandCounts counts() const { return {kept_.recorded() + kept_.replayed(), kept_.recorded()}; }
@@ -82,6 +90,8 @@ class Commands {
     std::optional<DrawCounts> draw_counts() const;
 
   private:
+    /// Waits for what was submitted.
+    void finish();
     void begin_span(const char* name);
     void end_span();
     void write_timestamp();
@@ -94,6 +104,8 @@ class Commands {
     std::size_t dispatches_ = 0;  ///< that have theirs there
     KeptCommands kept_;
     vk::raii::Fence fence_ = nullptr;
+    bool busy_ = false;  ///< the fence is that of a list that was submitted
+    std::uint64_t timeout_ = kTimeout;
     vk::raii::QueryPool queries_ = nullptr;
     std::vector<std::string> span_names_;
     vk::raii::QueryPool statistics_ = nullptr, samples_ = nullptr;  ///< a query per counted draw; absent: not counted

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "engine/error.h"
+#include "shaders/shared/bindings.h"
 
 namespace edgesplat::gpu {
 namespace {
@@ -55,8 +56,6 @@ const Need kNeeds[] = {
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress; }},
     {"scalarBlockLayout", "C++ and shaders share their structs",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout; }},
-    {"shaderOutputLayer", "each sheet is a layer of the target",
-     [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer; }},
     {"synchronization2", "barriers name both of their ends",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().synchronization2; }},
     {"maintenance4", "workgroup sizes are given by id",
@@ -64,6 +63,16 @@ const Need kNeeds[] = {
     {"dynamicRendering", "no render pass objects are made",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering; }},
 };
+
+/// Why sheets cannot be layers of a target; empty: they can.
+std::string layers_obstacle(const vk::raii::PhysicalDevice& physical) {
+    const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
+    if (features.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer != VK_TRUE)
+        return "no shaderOutputLayer (each sheet is a layer of the target)";
+    const auto blends = physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).optimalTilingFeatures;
+    if (!(blends & vk::FormatFeatureFlagBits::eColorAttachmentBlend)) return "no blending to RGBA32F targets (sheets)";
+    return "";
+}
 
 std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& physical) {
     const auto families = physical.getQueueFamilyProperties();
@@ -179,11 +188,37 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
         if (need.field(have) != VK_TRUE) info.rejections.push_back(fmt::format("no {} ({})", need.name, need.reason));
     }
     if (!find_queue_family(physical)) info.rejections.emplace_back("no queue that does graphics and compute");
-    using Flag = vk::FormatFeatureFlagBits;
-    const auto blends = physical.getFormatProperties(vk::Format::eR32G32B32A32Sfloat).optimalTilingFeatures;
-    if (!(blends & Flag::eColorAttachmentBlend))
-        info.rejections.emplace_back("no blending to RGBA32F targets (sheets)");
+    const auto subgroups =
+        physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
+            .get<vk::PhysicalDeviceSubgroupProperties>();
+    for (std::string& reason : beyond_limits(properties.limits, subgroups))
+        info.rejections.push_back(std::move(reason));
     return info;
+}
+
+std::vector<std::string> beyond_limits(const vk::PhysicalDeviceLimits& limits,
+                                       const vk::PhysicalDeviceSubgroupProperties& subgroups) {
+    std::vector<std::string> reasons;
+    // All stages see all of the one set; texel buffers count as storage images.
+    constexpr std::uint32_t kSampled = shader::BIND_SCENE - shader::BIND_SHEETS;
+    constexpr std::uint32_t kBlocks = shader::BIND_PICTURE - shader::BIND_SCENE;
+    constexpr std::uint32_t kStored = shader::BIND_COUNT - kSampled - kBlocks;
+    const auto need = [&](const char* name, std::uint32_t have, std::uint32_t wanted) {
+        if (have < wanted) reasons.push_back(fmt::format("{} is {}, {} are needed", name, have, wanted));
+    };
+    need("maxPerStageDescriptorStorageImages", limits.maxPerStageDescriptorStorageImages, kStored);
+    need("maxDescriptorSetStorageImages", limits.maxDescriptorSetStorageImages, kStored);
+    need("maxPerStageDescriptorSampledImages", limits.maxPerStageDescriptorSampledImages, kSampled);
+    need("maxPerStageDescriptorSamplers", limits.maxPerStageDescriptorSamplers, kSampled);
+    need("maxPerStageDescriptorUniformBuffers", limits.maxPerStageDescriptorUniformBuffers, kBlocks);
+    need("maxPerStageResources", limits.maxPerStageResources, shader::BIND_COUNT + 1);  // and a colour target
+    using Feature = vk::SubgroupFeatureFlagBits;
+    const vk::SubgroupFeatureFlags operations = Feature::eBasic | Feature::eArithmetic | Feature::eBallot;
+    if (!(subgroups.supportedStages & vk::ShaderStageFlagBits::eCompute))
+        reasons.emplace_back("no subgroups in compute shaders (sums and lists of a workgroup)");
+    const vk::SubgroupFeatureFlags missing = operations & ~subgroups.supportedOperations;
+    if (missing) reasons.push_back(fmt::format("no subgroup operations {} (sums, lists)", vk::to_string(missing)));
+    return reasons;
 }
 
 Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
@@ -217,6 +252,8 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
     Features enabled;
     for (const Need& need : kNeeds)
         need.field(enabled) = VK_TRUE;
+    layers_obstacle_ = gpu::layers_obstacle(physical_);
+    enabled.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer = layers_obstacle_.empty() ? VK_TRUE : VK_FALSE;
     const auto optional = physical_.getFeatures();
     counts_draws_ = optional.pipelineStatisticsQuery == VK_TRUE && optional.occlusionQueryPrecise == VK_TRUE;
     auto& features = enabled.get<vk::PhysicalDeviceFeatures2>().features;

@@ -38,6 +38,10 @@ struct DeviceExtensions {
 /// Description of a physical device and every reason it cannot be used (empty: it can).
 DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index);
 
+/// What of these limits is less than the one descriptor set and the shaders need, a reason each.
+std::vector<std::string> beyond_limits(const vk::PhysicalDeviceLimits& limits,
+                                       const vk::PhysicalDeviceSubgroupProperties& subgroups);
+
 /// An opened device with one queue that does graphics, compute and transfer.
 class Device {
   public:
@@ -54,6 +58,8 @@ class Device {
     bool is_software() const { return software_; }
     /// Whether draws can be counted: pipeline statistics and precise occlusion queries.
     bool counts_draws() const { return counts_draws_; }
+    /// Why it cannot draw into layers of a target; empty: it can.
+    const std::string& layers_obstacle() const { return layers_obstacle_; }
     std::uint64_t validation_messages() const { return log_->messages; }
     /// Bytes of device memory held now by buffers and images.
     std::uint64_t allocated_bytes() const { return allocations_->at(kTotal).bytes; }
@@ -94,6 +100,7 @@ class Device {
     vk::raii::Queue queue_ = nullptr;
     vk::PhysicalDeviceMemoryProperties memory_;
     DeviceInfo info_;
+    std::string layers_obstacle_;
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
     bool software_ = false, has_memory_budget_ = false, counts_draws_ = false;

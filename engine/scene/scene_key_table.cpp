@@ -135,6 +135,8 @@ void add_volume(Table& t) {
           {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "needed for such data"});
     t.add("volume.series", MEMBER(volume.series),
           {.help = "DICOM series of a folder with several: number or UID", .absent = "needed for such folders"});
+    t.add("volume.resample", MEMBER(volume.resample),
+          {.help = "Unevenly spaced DICOM slices are interpolated at even places, cubically"});
     t.add("volume.spacing", MEMBER(volume.spacing),
           {.unit = "mm", .help = "Voxel spacing along i, j, k", .range = kAboveZero, .absent = "the file's"});
     t.add("volume.threshold", MEMBER(volume.threshold),

@@ -13,11 +13,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif") only the folder can be told.
+/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif", "*.dcm") only the folder can be told.
 bool may_be_opened(const fs::path& path) {
     std::error_code ignored;
     if (fs::exists(path, ignored)) return true;
-    const bool pattern = path.filename().string().find('%') != std::string::npos;
+    const bool pattern = path.filename().string().find_first_of("%*?") != std::string::npos;
     return pattern && fs::is_directory(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
 }
 
@@ -58,14 +58,17 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.series = source.series;
     options.raw = source.raw;
     options.spacing = source.spacing;
+    options.resample = source.resample;
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
     Volume volume = load_volume(path, options);
+    const auto warnings = volume.warnings;
     if (source.threshold) volume = threshold(volume, *source.threshold);
     if (source.box_filter) volume = box_filter(volume);
     if (source.crop_low || source.crop_high)
         volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
                          source.crop_high.value_or(volume.geometry.dims - 1));
+    volume.warnings = warnings;
     const std::string checksum = fmt::format("{:016x}", volume.checksum);
     if (!source.checksum.empty() && source.checksum != checksum)
         fail("{}: its samples have the checksum {}, but the scene was made for {} (volume.checksum)", path, checksum,

@@ -1,5 +1,6 @@
 // Is all of the file there? Libraries that go on with what memory held (netCDF, NIfTI) or abort the program on an
 // assertion (GDCM as Debian builds it) are only given files whose structure ends where the file does.
+#include <algorithm>
 #include <cstdint>
 #include <fstream>
 
@@ -16,6 +17,7 @@ class Bytes {
     std::uint64_t size() const { return size_; }
     std::uint64_t at() const { return at_; }
     std::uint64_t left() const { return size_ - at_; }
+    void rewind() { at_ = 0; }
     void skip(std::uint64_t count) {
         if (count > left()) truncated();
         at_ += count;
@@ -104,6 +106,14 @@ struct Dataset {
     }
 };
 
+/// Whether the first element of a file without preamble says what it holds.
+bool has_representations(Bytes& bytes) {
+    bytes.skip(4);
+    const std::string vr = bytes.text(2);
+    bytes.rewind();
+    return std::ranges::all_of(vr, [](char c) { return c >= 'A' && c <= 'Z'; });
+}
+
 std::uint64_t padded(std::uint64_t count) {
     return (count + 3) / 4 * 4;
 }
@@ -126,9 +136,46 @@ void skip_attributes(Bytes& bytes) {
 
 }  // namespace
 
+bool begins_with_dicom_elements(const std::string& path) {
+    Bytes bytes(path);
+    if (bytes.size() < 8) return false;
+    try {
+        Dataset data{bytes, false, has_representations(bytes)};
+        std::uint32_t before = 0;
+        std::string vr;
+        for (int i = 0; i < 4; ++i) {
+            const std::uint32_t tag = data.tag(), group = tag >> 16U;
+            if (tag <= before || (i == 0 && group != 2 && group != 8) || group > 0x7fe0) return false;
+            const std::uint32_t count = data.length(vr);
+            if (count == kUndefined) return i > 0;
+            bytes.skip(count);
+            before = tag;
+        }
+        return true;
+    } catch (const NotUnderstood&) {
+        return false;
+    } catch (const Error&) {
+        return false;
+    }
+}
+
 void check_dicom_is_whole(const std::string& path) {
     Bytes bytes(path);
-    if (bytes.size() < 132 || (bytes.skip(128), bytes.text(4)) != "DICM") return;
+    const bool preamble = bytes.size() >= 132 && (bytes.skip(128), bytes.text(4)) == "DICM";
+    if (!preamble) {
+        bytes.rewind();
+        // Old files begin with their data.
+        if (bytes.size() >= 8 && bytes.number(2, false) != 2) {
+            bytes.rewind();
+            try {
+                Dataset data{bytes, false, has_representations(bytes)};
+                data.elements(bytes.size(), 0);
+            } catch (const NotUnderstood&) {
+            }
+            return;
+        }
+        bytes.rewind();
+    }
     try {
         Dataset meta{bytes, false, true};
         std::string vr, syntax;

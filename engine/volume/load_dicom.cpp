@@ -1,6 +1,7 @@
 // A DICOM series: files in any order, sorted by where their slices lie. GDCM (through ITK) decodes each file and
 // applies its slope and intercept. Slices whose stack leans (gantry tilt) need no resampling: the lean is the third
-// axis of index_to_world. Slices that are not evenly spaced are refused.
+// axis of index_to_world. Slices that are not evenly spaced are refused, or made even by a resampling that is asked
+// for.
 #include <itkGDCMImageIO.h>
 
 #include <algorithm>
@@ -88,11 +89,10 @@ Slice read_header(const std::string& file) {
     return slice;
 }
 
-void read_voxels(const Slice& slice, const LoadOptions& options, float* target, std::size_t voxels) {
+void read_voxels(const Slice& slice, std::size_t component, float* target, std::size_t voxels) {
     std::string chatter;
     const auto io = opened(slice.file, chatter);
     const auto type = sample_type_of(*io, slice.file);
-    const auto component = chosen_component(slice.file, options, slice.components);
     std::vector<std::byte> buffer(io->GetImageSizeInBytes());
     if (buffer.size() != voxels * slice.components * size_of(type))
         fail("{}: {} bytes of pixels where {} were expected", slice.file, buffer.size(),
@@ -185,23 +185,53 @@ glm::dvec3 step_by_instance(const std::string& name, std::vector<Slice>& slices,
     return spacing * glm::normalize(glm::cross(axes[0], axes[1]));
 }
 
-// Sorts along the normal and checks that the positions are evenly spaced points of one line; returns the step.
-glm::dvec3 step_by_position(const std::string& name, std::vector<Slice>& slices, std::vector<std::string>& notes) {
+// How the slices of a series follow each other.
+struct Stack {
+    glm::dvec3 step{0};           // from one to the next, mm
+    std::vector<double> heights;  // along the normal, mm from the first; empty: evenly spaced
+    std::size_t count = 0;        // of steps' ends that the heights give way to
+};
+
+// What two neighbours that are unevenly far apart are refused with.
+[[noreturn]] void refuse_spacing(const std::string& name, const std::vector<Slice>& slices,
+                                 const std::vector<double>& gaps, double usual) {
+    const auto odd = static_cast<std::size_t>(
+        std::ranges::max_element(gaps, {}, [&](double gap) { return std::abs(gap - usual); }) - gaps.begin());
+    auto others = gaps;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(odd));
+    const auto [least, most] = std::ranges::minmax(others.empty() ? gaps : others);
+    const std::string rest =
+        most - least > 1e-6 * usual ? fmt::format("{:.6g} to {:.6g} mm", least, most) : fmt::format("{:.6g} mm", least);
+    const auto &before = slices[odd], &after = slices[odd + 1];
+    fail(
+        "{}: uneven slice spacing: {} at {} and {} at {} are {:.6g} mm apart, the others {}{}; --resample "
+        "interpolates evenly spaced slices",
+        name, file_name(before), text_of(before.geometry.origin), file_name(after), text_of(after.geometry.origin),
+        gaps[odd], rest, gaps[odd] > 1.5 * usual ? " (a slice may be missing)" : "");
+}
+
+// Sorts along the normal and checks that the positions are points of one line, evenly spaced unless that is mended.
+Stack stack_by_position(const std::string& name, std::vector<Slice>& slices, bool resample,
+                        std::vector<std::string>& notes) {
     const auto& axes = slices[0].geometry.index_to_world_axes;
     const auto row = glm::normalize(axes[0]);
     const auto normal = glm::normalize(glm::cross(axes[0], axes[1]));
     const auto height = [&](const Slice& slice) { return glm::dot(normal, slice.geometry.origin); };
     std::stable_sort(slices.begin(), slices.end(),
                      [&](const Slice& a, const Slice& b) { return height(a) < height(b); });
-    const auto steps = static_cast<double>(slices.size() - 1);
-    const auto step = (slices.back().geometry.origin - slices.front().geometry.origin) / steps;
-    const double spacing = glm::dot(normal, step);
-    std::vector<double> gaps;
+    const auto way = slices.back().geometry.origin - slices.front().geometry.origin;
+    const double total = glm::dot(normal, way);
+    std::vector<double> heights, gaps;
+    for (const Slice& slice : slices)
+        heights.push_back(height(slice) - height(slices.front()));
     for (std::size_t i = 1; i < slices.size(); ++i)
-        gaps.push_back(height(slices[i]) - height(slices[i - 1]));
+        gaps.push_back(heights[i] - heights[i - 1]);
     auto sorted = gaps;
-    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2), sorted.end());
-    const double usual = sorted[sorted.size() / 2];
+    // The lower of two in the middle: what is missing makes gaps wider.
+    const std::size_t middle = (sorted.size() - 1) / 2;
+    std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle), sorted.end());
+    const double usual = sorted[middle];
+    bool even = true;
     for (std::size_t i = 1; i < slices.size(); ++i) {
         const auto &before = slices[i - 1], &here = slices[i];
         const auto where = fmt::format("{} at {} and {} at {}", file_name(before), text_of(before.geometry.origin),
@@ -209,23 +239,22 @@ glm::dvec3 step_by_position(const std::string& name, std::vector<Slice>& slices,
         if (!(gaps[i - 1] > 1e-3 * std::max(usual, 1e-3)))
             fail("{}: two slices at the same place: {}; a series with several frames, echoes or phases must be split",
                  name, where);
-        if (!(std::abs(gaps[i - 1] - usual) <= 0.01 * usual))
-            fail("{}: uneven slice spacing: {} are {:.4g} mm apart, the other slices {:.4g} mm; {}", name, where,
-                 gaps[i - 1], usual,
-                 gaps[i - 1] > 1.5 * usual ? "a slice may be missing" : "resample the series evenly first");
-    }
-    for (std::size_t i = 1; i < slices.size(); ++i) {
-        const auto &before = slices[i - 1], &here = slices[i];
-        const auto where = fmt::format("{} at {} and {} at {}", file_name(before), text_of(before.geometry.origin),
-                                       file_name(here), text_of(here.geometry.origin));
-        const auto ideal = slices.front().geometry.origin + step * static_cast<double>(i);
-        if (!(std::abs(glm::dot(normal, here.geometry.origin - ideal)) <= 0.05 * usual))
-            fail("{}: uneven slice spacing: {} lies {:.4g} mm off an even spacing of {:.4g} mm ({})", name,
-                 file_name(here), glm::dot(normal, here.geometry.origin - ideal), spacing, where);
-        const auto aside = here.geometry.origin - ideal - normal * glm::dot(normal, here.geometry.origin - ideal);
-        if (!(glm::length(aside) <= 0.05 * std::min(glm::length(axes[0]), glm::length(axes[1]))))
+        const double ideal = total * static_cast<double>(i) / static_cast<double>(gaps.size());
+        even = even && std::abs(gaps[i - 1] - usual) <= 0.01 * usual && std::abs(heights[i] - ideal) <= 0.05 * usual;
+        const auto aside = here.geometry.origin - slices.front().geometry.origin - way * (heights[i] / total);
+        if (!(glm::length(aside - normal * glm::dot(normal, aside)) <=
+              0.05 * std::min(glm::length(axes[0]), glm::length(axes[1]))))
             fail("{}: the slices do not lie on one line: {} is {:.4g} mm aside ({})", name, file_name(here),
                  glm::length(aside), where);
+    }
+    if (!even && !resample) refuse_spacing(name, slices, gaps, usual);
+    Stack stack;
+    const double steps = even ? static_cast<double>(gaps.size()) : std::max(std::round(total / usual), 1.0);
+    const auto step = way / steps;
+    const double spacing = total / steps;
+    if (!even) {
+        stack.heights = std::move(heights);
+        stack.count = static_cast<std::size_t>(steps) + 1;
     }
     const auto lean = step - normal * spacing;
     if (glm::length(lean) > 1e-3 * spacing) {
@@ -234,9 +263,11 @@ glm::dvec3 step_by_position(const std::string& name, std::vector<Slice>& slices,
             fmt::format("The stack of slices leans by {:.2f} degrees ({:.4g} mm along rows, {:.4g} mm along "
                         "columns per slice: gantry tilt). It is kept exactly, in the direction matrix.",
                         degrees, glm::dot(lean, row), glm::dot(lean, glm::normalize(axes[1]))));
-        return step;
+        stack.step = step;
+    } else {
+        stack.step = normal * spacing;
     }
-    return normal * spacing;
+    return stack;
 }
 
 }  // namespace
@@ -246,39 +277,32 @@ bool is_dicom(const std::string& path) {
     char head[132] = {};
     file.read(head, sizeof(head));
     if (file.gcount() >= 132 && std::string_view(head + 128, 4) == "DICM") return true;
-    // Old files have no preamble: they begin with an element of group 2 or 8.
-    const bool group = file.gcount() >= 8 && (head[0] == 2 || head[0] == 8) && head[1] == 0 && head[3] == 0;
-    if (!group) return false;
-    OutputCapture capture;
-    try {
-        return itk::GDCMImageIO::New()->CanReadFile(path.c_str());
-    } catch (const std::exception&) {
-        return false;
-    }
+    return begins_with_dicom_elements(path);
 }
 
-Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options) {
-    std::vector<Slice> slices;
-    for (std::size_t i = 0; i < files.size(); ++i) {
-        report(options, 0.4 * static_cast<double>(i) / static_cast<double>(files.size()), "reading DICOM headers");
-        slices.push_back(read_header(files[i]));
-    }
-    Volume volume;
-    volume.name = name;
-    slices = chosen_series(name, std::move(slices), options, volume.notes);
-    (void)chosen_frame(name, options, 1);
+namespace {
+
+// A file whose pixels cannot be decoded, though its header could be read.
+struct BrokenSlice {
+    std::string file, reason;
+};
+
+void read_stack(const std::string& name, std::vector<Slice>& slices, const LoadOptions& options, Volume& volume) {
     const auto& first = slices.front();
     volume.geometry = first.geometry;
     volume.in_patient = first.has_position;
     volume.stored_type = first.stored_type;
     std::size_t depth = first.dims[2];
+    Stack stack;
     if (slices.size() > 1) {
         check_alike(name, slices);
         const bool positions = std::all_of(slices.begin(), slices.end(), [](const Slice& s) { return s.has_position; });
-        const auto step =
-            positions ? step_by_position(name, slices, volume.notes) : step_by_instance(name, slices, volume.notes);
+        if (positions)
+            stack = stack_by_position(name, slices, options.resample, volume.notes);
+        else
+            stack.step = step_by_instance(name, slices, volume.notes);
         volume.geometry = slices.front().geometry;
-        volume.geometry.index_to_world_axes[2] = step;
+        volume.geometry.index_to_world_axes[2] = stack.step;
         depth = slices.size();
     } else if (depth == 1) {
         volume.notes.push_back("One DICOM file with one slice; give the folder to read a whole series.");
@@ -286,16 +310,66 @@ Volume load_dicom(const std::string& name, const std::vector<std::string>& files
         volume.notes.push_back(fmt::format("A multi-frame DICOM file: {} frames, {:.4g} mm apart as GDCM says.", depth,
                                            volume.geometry.spacing().z));
     }
-    checked_bytes(name, {first.dims[0], first.dims[1], depth}, sizeof(float));
-    volume.geometry.dims.z = static_cast<int>(depth);
-    volume.values.resize(volume.geometry.voxel_count());
+    const std::size_t even = stack.heights.empty() ? depth : stack.count;
+    checked_bytes(name, {first.dims[0], first.dims[1], depth == even ? depth : depth + even}, sizeof(float));
+    const auto component = chosen_component(name, options, first.components);
+    volume.values.resize(first.dims[0] * first.dims[1] * depth);
     const std::size_t part = volume.values.size() / slices.size();
     for (std::size_t i = 0; i < slices.size(); ++i) {
         report(options, 0.4 + 0.5 * static_cast<double>(i) / static_cast<double>(slices.size()),
                "reading DICOM slices");
-        read_voxels(slices[i], options, volume.values.data() + i * part, part);
+        try {
+            read_voxels(slices[i], component, volume.values.data() + i * part, part);
+        } catch (const Error& error) {
+            if (slices.size() == 1) throw;
+            throw BrokenSlice{slices[i].file, error.what()};
+        }
     }
-    return volume;
+    volume.geometry.dims.z = static_cast<int>(even);
+    if (stack.heights.empty()) return;
+    volume.values = resampled_slices(volume.values, stack.heights, even);
+    volume.warnings.push_back(
+        fmt::format("{}: {} unevenly spaced slices were resampled to {}, {:.6g} mm apart, by cubics along them.", name,
+                    depth, even, stack.heights.back() / static_cast<double>(even - 1)));
+}
+
+}  // namespace
+
+Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options) {
+    std::vector<Slice> slices;
+    std::vector<std::string> left_out;
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        report(options, 0.4 * static_cast<double>(i) / static_cast<double>(files.size()), "reading DICOM headers");
+        try {
+            slices.push_back(read_header(files[i]));
+        } catch (const Error& error) {
+            if (files.size() == 1) throw;
+            left_out.emplace_back(error.what());
+        }
+    }
+    if (slices.empty()) fail("{}: none of its {} DICOM files can be read: {}", name, files.size(), left_out.front());
+    try {
+        std::vector<std::string> notes;
+        slices = chosen_series(name, std::move(slices), options, notes);
+        (void)chosen_frame(name, options, 1);
+        while (true) {
+            Volume volume;
+            volume.name = name;
+            volume.notes = notes;
+            for (const std::string& reason : left_out)
+                volume.warnings.push_back(reason + ". The file was left out.");
+            try {
+                read_stack(name, slices, options, volume);
+                return volume;
+            } catch (const BrokenSlice& broken) {
+                left_out.push_back(broken.reason);
+                std::erase_if(slices, [&](const Slice& slice) { return slice.file == broken.file; });
+            }
+        }
+    } catch (const Error& error) {
+        if (left_out.empty()) throw;
+        fail("{}; left out: {}", error.what(), fmt::join(left_out, "; "));
+    }
 }
 
 }  // namespace edgesplat::detail

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <fstream>
 #include <memory>
 #include <optional>
+#include <span>
 
 #include "engine/picture_library_internal.h"
 #include "engine/volume/load_internal.h"
@@ -20,6 +22,14 @@ std::unique_ptr<PictureReader> opened(const std::string& path) {
     }
     if (!input) fail("{}: cannot be read as an image: {}", path, tidy(reason));
     return input;
+}
+
+/// Whether its samples are bits; OpenImageIO does not say so of portable bitmaps.
+bool holds_bits(const PicturePage& page, const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    char head[2] = {};
+    file.read(head, sizeof head);
+    return page.bits == 1 || (head[0] == 'P' && (head[1] == '1' || head[1] == '4'));
 }
 
 // The number nearest to the end of a name, and the name without it.
@@ -132,7 +142,7 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
                              page_bytes);
                 check_stored_size(name, page_bytes, std::filesystem::file_size(files[i]), kBestPictureRatio);
                 volume.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * slices);
-                if (spec.bits % 8 != 0)
+                if (spec.bits % 8 != 0 && spec.bits != 1)
                     volume.notes.push_back(fmt::format(
                         "Samples of {} bits are scaled up to the next whole byte by OpenImageIO.", spec.bits));
             }
@@ -150,6 +160,10 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
             if (!read) fail("{}: truncated or damaged: {}", here, tidy(reason));
             convert_samples(*type, buffer.data(), component, static_cast<std::size_t>(channels), pixels,
                             volume.values.data() + depth * pixels);
+            // OpenImageIO scales every number of bits up to whole bytes; a mask is 0 and 1.
+            if (holds_bits(spec, files[i]))
+                for (float& value : std::span(volume.values).subspan(depth * pixels, pixels))
+                    value = value > 0 ? 1.0F : 0.0F;
             ++depth;
         }
     }

@@ -34,6 +34,8 @@ void check_stored_size(const std::string& path, std::size_t needed, std::size_t 
 
 /// Fail with "truncated" when the structure of the file goes on after its end; files they do not understand pass.
 void check_dicom_is_whole(const std::string& path);
+/// Whether a file without DICOM's preamble begins as one with it goes on: with elements of group 2 or 8 in order.
+bool begins_with_dicom_elements(const std::string& path);
 void check_netcdf_is_whole(const std::string& path);
 
 /// Which component and frame to take of those the file has; fails with how to choose where it is not said.
@@ -104,8 +106,17 @@ Volume load_vti(const std::string& path, const LoadOptions& options);
 /// "64x64x64:uint8:little[:sx,sy,sz[:skip]]": dims, type, byte order, spacing in mm, bytes before the first voxel.
 Volume load_raw(const std::string& path, const LoadOptions& options);
 
+/// Slices at ascending `heights` of at least two, the first at 0, as `count` >= 2 evenly spaced from the first to the
+/// last.
+std::vector<float> resampled_slices(const std::vector<float>& slices, const std::vector<double>& heights,
+                                    std::size_t count);
+
 bool is_dicom(const std::string& path);
 Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);
+
+/// A zip archive of one file or of a folder's, with `load` for what comes out of it.
+Volume load_archive(const std::string& path, const LoadOptions& options,
+                    const std::function<Volume(const std::string&, const LoadOptions&)>& load);
 
 bool is_image_file(const std::string& path);
 /// Slices in this order; one file may hold a stack. `name` is what the user gave.

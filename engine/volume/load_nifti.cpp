@@ -12,6 +12,7 @@
 #include <cmath>
 #include <cstring>
 #include <fstream>
+#include <limits>
 
 #include "engine/volume/load_internal.h"
 
@@ -55,12 +56,6 @@ struct Header {
         std::memcpy(raw.data(), &value, sizeof(T));
         if (swapped) std::reverse(raw.begin(), raw.end());
         std::copy(raw.begin(), raw.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
-    }
-    void set_dim(std::size_t axis, long long value) {
-        if (layout->wide)
-            set<std::int64_t>(layout->dim + axis * 8, value);
-        else
-            set<std::int16_t>(layout->dim + axis * 2, static_cast<std::int16_t>(value));
     }
 };
 
@@ -173,6 +168,36 @@ Header parse(const std::string& path, const std::string& header_file) {
     return header;
 }
 
+// NIfTI-1 says the same in fewer bits, and is all that ITK's NIfTI library knows: places become floats, and an axis of
+// more than 32767 voxels has no room.
+Header as_nifti1(const std::string& path, const Header& wide) {
+    Header header = wide;
+    header.layout = &kNifti1;
+    header.bytes.assign(kNifti1.header_size, 0);
+    header.set<std::int32_t>(0, static_cast<std::int32_t>(kNifti1.header_size));
+    for (std::size_t axis = 1; axis <= 3; ++axis)
+        if (wide.dim[axis] > std::numeric_limits<std::int16_t>::max())
+            fail("{}: its header says dim[{}] = {}; NIfTI-2 is read up to 32767 voxels along an axis", path, axis,
+                 wide.dim[axis]);
+    const Layout &from = kNifti2, &to = kNifti1;
+    const auto floats = [&](std::size_t first, std::size_t target, std::size_t count) {
+        for (std::size_t i = 0; i < count; ++i)
+            header.set<float>(target + 4 * i, static_cast<float>(wide.get<double>(first + 8 * i)));
+    };
+    floats(from.pixdim, to.pixdim, 8);
+    floats(from.scl_slope, to.scl_slope, 2);
+    floats(from.quatern_b, to.quatern_b, 6);
+    floats(from.srow_x, to.srow_x, 12);
+    for (std::size_t which = 0; which < 2; ++which)
+        header.set<std::int16_t>(to.qform_code + 2 * which,
+                                 static_cast<std::int16_t>(wide.get<std::int32_t>(from.qform_code + 4 * which)));
+    header.set<std::int16_t>(to.datatype, static_cast<std::int16_t>(wide.datatype));
+    header.set<std::int16_t>(to.datatype + 2, wide.get<std::int16_t>(from.datatype + 2));            // bitpix
+    header.set<unsigned char>(123, static_cast<unsigned char>(wide.get<std::int32_t>(500) & 0xff));  // xyzt_units
+    std::memcpy(&header.bytes[344], wide.single_file ? "n+1" : "ni1", 4);
+    return header;
+}
+
 struct VoxelType {
     int code;
     const char* name;
@@ -217,6 +242,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
     if (has_extension(path, ".img")) header_file = partner(path, ".img", ".hdr");
     if (has_extension(path, ".hdr")) data_file = partner(path, ".hdr", ".img");
     Header header = parse(path, header_file);
+    if (header.layout->wide) header = as_nifti1(path, header);
     if (header.single_file) data_file = header_file;
     const auto& dim = header.dim;
     const auto unsigned_dim = [&](std::size_t axis) { return static_cast<std::size_t>(dim[axis]); };
@@ -255,28 +281,16 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
         fail("{}: truncated: the chosen frame lies beyond the end of the file", path);
     const Layout& at = *header.layout;
     const std::size_t data_offset = header.single_file ? at.header_size + 4 : 0;
-    header.set_dim(0, 3);
-    for (std::size_t axis = 1; axis < 8; ++axis)
-        header.set_dim(axis, axis <= 3 ? dim[axis] : 1);
-    if (at.wide)
-        header.set<std::int64_t>(at.vox_offset, static_cast<std::int64_t>(data_offset));
-    else
-        header.set<float>(at.vox_offset, static_cast<float>(data_offset));
-    if (!header.analyze) {
-        if (at.wide)
-            header.set<std::int32_t>(at.intent_code, 0);
-        else
-            header.set<std::int16_t>(at.intent_code, 0);
-    }
+    for (std::size_t axis = 0; axis < 8; ++axis)
+        header.set<std::int16_t>(at.dim + axis * 2, static_cast<std::int16_t>(axis == 0   ? 3
+                                                                              : axis <= 3 ? dim[axis]
+                                                                                          : 1));
+    header.set<float>(at.vox_offset, static_cast<float>(data_offset));
+    if (!header.analyze) header.set<std::int16_t>(at.intent_code, 0);
     // The standard has no scale for colours, and ITK reads beyond its buffers where it is told one.
-    if (floats || header.datatype == 128) {
-        if (!header.analyze && at.wide) {
-            header.set<double>(at.scl_slope, 0);
-            header.set<double>(at.scl_inter, 0);
-        } else if (!header.analyze) {
-            header.set<float>(at.scl_slope, 0);
-            header.set<float>(at.scl_inter, 0);
-        }
+    if (!header.analyze && (floats || header.datatype == 128)) {
+        header.set<float>(at.scl_slope, 0);
+        header.set<float>(at.scl_inter, 0);
     }
     if (floats) {
         header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);

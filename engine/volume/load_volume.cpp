@@ -1,6 +1,7 @@
 // Which family reads it: told by what the path is, then by the file's first bytes, then by its name.
 #include "engine/volume/load_volume.h"
 
+#include <glob.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -14,6 +15,7 @@
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/hdf5_internal.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/load_internal.h"
 #include "engine/volume/packed_volume.h"
 
@@ -24,8 +26,8 @@ namespace fs = std::filesystem;
 using namespace detail;
 
 constexpr const char* kFormats =
-    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, VTI, GIPL, TIFF and other images, packed "
-    "volumes, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
+    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, {}GIPL, TIFF and other images, packed "
+    "volumes, zip archives of one of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
 
 bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
     std::string lower;
@@ -121,10 +123,26 @@ Volume load_packed(const std::string& path, const LoadOptions& options) {
     return open_packed(path);
 }
 
+bool is_archive(std::string_view head) {
+    return head.starts_with("PK\x03\x04");
+}
+
+Volume load_folder(const std::string& path, const LoadOptions& options);
+Volume load_file(const std::string& path, const LoadOptions& options);
+
+Volume load_unpacked(const std::string& path, const LoadOptions& options) {
+    if (fs::is_directory(path)) return load_folder(path, options);
+    check_readable_file(path);
+    // They can be made to hold themselves.
+    if (is_archive(first_bytes(path))) fail("{}: an archive in an archive", path);
+    return load_file(path, options);
+}
+
 Volume load_file(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) return load_raw(path, options);
     const auto head = first_bytes(path);
     const auto starts = [&](std::string_view text) { return head.compare(0, text.size(), text) == 0; };
+    if (is_archive(head)) return load_archive(path, options, load_unpacked);
     if (starts("NRRD0")) return load_nrrd(path, options);
     if (starts("# vtk DataFile")) return load_vtk(path, head, options);
     if (head.find("<VTKFile") != std::string::npos) return load_vti(path, options);
@@ -141,7 +159,8 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
     if (is_image_file(path)) return load_images(path, {path}, options);
-    fail("{}: not a volume this program knows. It reads {}", path, kFormats);
+    fail("{}: not a volume this program knows. It reads {}", path,
+         fmt::format(kFormats, can_read_vti() ? "VTI, " : ""));
 }
 
 Volume load_folder(const std::string& path, const LoadOptions& options) {
@@ -187,6 +206,26 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     return volume;
 }
 
+// What a pattern found: a DICOM series, which says itself where its slices lie, or images in order of their numbers.
+Volume load_slices(const std::string& path, std::vector<std::string> files, const LoadOptions& options) {
+    if (!options.raw.empty()) fail("{}: --raw describes a file, this is a pattern", path);
+    if (files.empty()) fail("{}: no file matches this pattern", path);
+    std::vector<std::string> images;
+    for (const auto& file : files) {
+        check_readable_file(file);
+        if (!is_dicom(file)) images.push_back(file);
+    }
+    if (images.empty()) return load_dicom(path, files, options);
+    if (images.size() < files.size())
+        fail("{}: {} of the {} files that match are DICOM, and {} is not; expected one kind", path,
+             files.size() - images.size(), files.size(), images.front());
+    std::vector<std::string> notes;
+    files = ordered_slices(path, files, notes);
+    auto volume = load_images(path, files, options);
+    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
+    return volume;
+}
+
 // "slice_%03d.tif": the files of the folder that match, in order of their numbers.
 Volume load_pattern(const std::string& path, const LoadOptions& options) {
     const auto name = fs::path(path).filename().string();
@@ -209,14 +248,17 @@ Volume load_pattern(const std::string& path, const LoadOptions& options) {
         if (std::all_of(middle.begin(), middle.end(), [](unsigned char c) { return std::isdigit(c) != 0; }))
             files.push_back(entry.path().string());
     }
-    if (files.empty()) fail("{}: no file matches this pattern", path);
-    std::vector<std::string> notes;
-    files = ordered_slices(path, files, notes);
-    for (const auto& file : files)
-        check_readable_file(file);
-    auto volume = load_images(path, files, options);
-    volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
-    return volume;
+    return load_slices(path, files, options);
+}
+
+// "*.dcm", "slice_??.png": the files that match.
+Volume load_glob(const std::string& path, const LoadOptions& options) {
+    glob_t found{};
+    const int result = glob(path.c_str(), GLOB_NOSORT, nullptr, &found);
+    std::vector<std::string> files(found.gl_pathv, found.gl_pathv + (result == 0 ? found.gl_pathc : 0));
+    globfree(&found);
+    std::ranges::sort(files);
+    return load_slices(path, files, options);
 }
 
 }  // namespace
@@ -230,6 +272,8 @@ void detail::add_value_notes(Volume& volume) {
     if (volume.non_finite_count > 0)
         volume.notes.push_back(fmt::format("{} samples are not finite; {} stands in for them.", volume.non_finite_count,
                                            static_cast<double>(volume.min_value)));
+    if (const std::size_t count = labels_of(volume).size(); count > 0)
+        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
 }
 
 Volume load_volume(const std::string& path, const LoadOptions& options) {
@@ -244,6 +288,8 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
             volume = load_folder(path, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {
             volume = load_pattern(path, options);
+        } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {
+            volume = load_glob(path, options);
         } else {
             check_readable_file(path);
             volume = load_file(path, options);

@@ -27,6 +27,7 @@ struct LoadOptions {
     std::optional<int> frame;           ///< which frame of 4-D data, from 0 (5-D and above: all further axes in one)
     std::string series;                 ///< DICOM folder with several series: the number (from 0) or UID of one
     std::string raw;                    ///< header-less file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
+    bool resample = false;              ///< DICOM slices that are unevenly spaced are interpolated at even places
     std::optional<glm::dvec3> spacing;  ///< mm, replaces the file's spacing along i, j, k; directions are kept
     /// Called now and then with a fraction in [0, 1] and what is being done. Called on the loading thread only.
     std::function<void(double fraction, std::string_view what)> progress;
@@ -36,8 +37,9 @@ struct LoadOptions {
 ///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, legacy VTK image data, GIPL, VTI (if built with VTK),
 ///    a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
 ///  - a packed volume (packed_volume.h), whose samples stay in the file and whose limits are other ones;
+///  - a zip archive of one such file, or of the files of a folder;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;
-///  - a pattern of slices with one printf number, e.g. "slice_%03d.tif";
+///  - a pattern of slices with one printf number or with * and ?, e.g. "slice_%03d.tif": likewise;
 ///  - "builtin:NAME" (see `analytic_volumes.h`).
 /// The format is told by content where it has a signature, by extension otherwise.
 /// Throws Error naming the file and the reason: missing or unreadable file, truncated data, a header that contradicts

@@ -43,11 +43,12 @@ struct Volume {
     bool in_patient = false;    ///< the file says that the world's axes are the patient's: +x left, +y back, +z up
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
-    std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite
-    std::string name;                  ///< path, or "builtin:NAME"
-    std::string stored_type;           ///< component type in the file, e.g. "int16"
-    std::uint64_t checksum = 0;        ///< FNV-1a over dims, geometry and samples
-    std::vector<std::string> notes;    ///< what reading had to assume, choose or correct, one sentence each
+    std::size_t non_finite_count = 0;   ///< samples that were NaN or infinite
+    std::string name;                   ///< path, or "builtin:NAME"
+    std::string stored_type;            ///< component type in the file, e.g. "int16"
+    std::uint64_t checksum = 0;         ///< FNV-1a over dims, geometry and samples
+    std::vector<std::string> notes;     ///< what reading had to assume, choose or correct, one sentence each
+    std::vector<std::string> warnings;  ///< what reading left out or made up, likewise
     /// Set: `values` is empty and samples are read from here when asked for (packed_volume.h).
     std::shared_ptr<const PackedVolume> packed;
 

@@ -5,10 +5,10 @@
 #define EDGESPLAT_PREPARED_SPLAT_GLSL
 #include "shaders/lib/splat_conic.glsl"
 
-const bool BANDS = FOOTPRINTS >= 2u && WARP == 0u;  // footprints are integrated between the faces of a plane edge
+const bool BANDS = FOOTPRINTS >= TABLE && WARP == EDGE;  // footprints are integrated between the faces of a plane edge
 
 // Supports of plain and of cut kernels are spheres, and those of kernels that are widened.
-const bool SPHERES = FOOTPRINTS == 0u || SLICED == 1u || FACES;
+const bool SPHERES = FOOTPRINTS == ISOTROPIC || SLICED == 1u || FACES;
 
 struct PreparedSplat {
     SplatConic conic;
@@ -45,7 +45,7 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
 }
 
 const uint PREPARED_KERNEL = 2u;
-const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != 0u ? 4u : 2u;
+const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
 const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
@@ -69,7 +69,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
                    vec4(f.cut.bend, f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y)));
     }
-    if (FOOTPRINTS != 0u && !FACES) {
+    if (FOOTPRINTS != ISOTROPIC && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
         vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.xy, ends));
@@ -103,7 +103,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
         s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, d.x, c.w, d.y, 0.0, 0.0));
         s.inputs.number_material = uvec2(floatBitsToUint(d.z), floatBitsToUint(d.w));
     }
-    if (FOOTPRINTS != 0u && !FACES) {
+    if (FOOTPRINTS != ISOTROPIC && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
         vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         s.inputs.shape.xy = v.xy;

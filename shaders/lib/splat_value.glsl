@@ -3,8 +3,6 @@
 // draw, `table`, and what shaders/lib/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
-const uint ISOTROPIC = 0u, WARP2D = 1u, TABLE = 2u, TABLE_LERP = 3u, PROCEDURAL = 4u;
-const uint EDGE = 0u, PAPER = 1u, FACE = 2u;
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/face_form.glsl"
 #include "shaders/lib/face.glsl"

@@ -59,46 +59,72 @@ EDGESPLAT_CONSTANT uint EDGE_WEIGHT_STEPS = 12u;     // of a kernel's weight by 
 EDGESPLAT_CONSTANT float EDGE_WEIGHT_REACH = 2.4f;   // voxels, from where on it is 1
 EDGESPLAT_CONSTANT float WEIGHT_UNIT = 4.0f;  // a kernel's weight is stored as unorm16 of weight / 4
 
-// Specialization constants: ids are the same in every shader.
-EDGESPLAT_CONSTANT uint SPEC_ESTIMATOR = 0u;   // EdgeEstimator
-EDGESPLAT_CONSTANT uint SPEC_FOOTPRINTS = 1u;  // FootprintMode
-EDGESPLAT_CONSTANT uint SPEC_WARP = 2u;        // WarpFamily
-EDGESPLAT_CONSTANT uint SPEC_PAYLOAD = 3u;     // Payload
-EDGESPLAT_CONSTANT uint SPEC_LIGHT = 4u;       // number of lights
-EDGESPLAT_CONSTANT uint SPEC_AXIS = 5u;        // 0 x, 1 y, 2 z
-EDGESPLAT_CONSTANT uint SPEC_EDGES = 6u;       // 1: the edge field exists
-EDGESPLAT_CONSTANT uint SPEC_BURIED = 7u;      // 1: the buried mask exists
-EDGESPLAT_CONSTANT uint SPEC_SMOOTH = 8u;      // 1: distances are smoothed along the surface
-EDGESPLAT_CONSTANT uint SPEC_SLICED = 9u;      // 1: kernels are cut at the sheets' planes
-EDGESPLAT_CONSTANT uint SPEC_CURVED = 10u;     // 1: edges are spheres of their curvature
-EDGESPLAT_CONSTANT uint SPEC_WEIGHTED = 11u;   // kernels are weighted; collecting splats: how
+// Specialization constants: ids are the same in every shader, and ascend. C++ has their names from here, too.
+#define EDGESPLAT_SPECIALIZATIONS(X) \
+    X(SPEC_ESTIMATOR, 0u)     /* EdgeEstimator */ \
+    X(SPEC_FOOTPRINTS, 1u)    /* FootprintMode */ \
+    X(SPEC_WARP, 2u)          /* WarpFamily */ \
+    X(SPEC_PAYLOAD, 3u)       /* Payload */ \
+    X(SPEC_LIGHT, 4u)         /* number of lights */ \
+    X(SPEC_AXIS, 5u)          /* 0 x, 1 y, 2 z */ \
+    X(SPEC_EDGES, 6u)         /* 1: the edge field exists */ \
+    X(SPEC_BURIED, 7u)        /* 1: the buried mask exists */ \
+    X(SPEC_SMOOTH, 8u)        /* 1: distances are smoothed along the surface */ \
+    X(SPEC_SLICED, 9u)        /* 1: kernels are cut at the sheets' planes */ \
+    X(SPEC_CURVED, 10u)       /* 1: edges are spheres of their curvature */ \
+    X(SPEC_WEIGHTED, 11u)     /* kernels are weighted; collecting splats: how */ \
+    X(SPEC_NODES, 12u)        /* quadrature nodes of a piece of a footprint: 4, 8, 10 or 16 */ \
+    X(SPEC_GLOSS, 13u)        /* 1: some material has highlights */ \
+    X(SPEC_LIT_EDGES, 14u)    /* 1: splats without an edge count as without normal */ \
+    X(SPEC_FOG, 15u)          /* 1: fog */ \
+    X(SPEC_SILHOUETTE, 16u)   /* 1: silhouettes */ \
+    X(SPEC_TRANSFER, 17u)     /* 1: colour and extinction by a transfer function */ \
+    X(SPEC_CLIP_KEEP, 18u)    /* number of planes that what is kept lies before */ \
+    X(SPEC_CLIP_REMOVE, 19u)  /* number of planes that what is removed lies before */ \
+    X(SPEC_ANTIALIAS, 20u)    /* 1: no footprint is narrower than a pixel */ \
+    X(SPEC_RESPONSE, 21u)     /* 1: materials answer to light each in its own way */ \
+    X(SPEC_OCCLUSION, 22u)    /* 1: ambient light is what reaches a splat */ \
+    X(SPEC_SHADOWS, 23u)      /* number of lights with shadows */ \
+    X(SPEC_GRADIENT, 24u)     /* 1: the background goes from one colour to another */ \
+    X(SPEC_TILES, 25u)        /* 1: sheets are summed tile by tile, not in layers */ \
+    X(SPEC_ROUNDS, 26u)       /* 1: a tile's list is drawn TILE_ROUND entries at a time */ \
+    X(SPEC_COUNT, 27u)        /* 1: footprints are counted */ \
+    X(SPEC_PREPARED, 28u)     /* 1: entries are prepared, 0: by whoever draws them */ \
+    X(SPEC_REFINED, 29u)      /* 1: pixels are those of their tile's list */ \
+    X(SPEC_GROUP, 30u)        /* invocations of a workgroup */ \
+    X(SPEC_STEP, 31u)         /* pixels between those that are there already */ \
+    X(SPEC_ISO_COUNT, 32u)    /* number of iso-values */ \
+    X(SPEC_WIDE_MARKS, 33u)   /* 1: entries are marked for 4 x 2 pixels at once, 0: for each */ \
+    X(SPEC_LIST_PARTS, 34u)   /* parts of 32 entries of a list that are marked at once */ \
+    X(SPEC_CULLED, 35u)       /* 1: splats are those of batches, of bricks in view; 0: all of the list */ \
+    X(SPEC_FACES, 36u)        /* 1: faces are found */ \
+    X(SPEC_SKIP, 37u)         /* 1: transparent bricks are leapt over */ \
+    X(SPEC_RAY_LIGHT, 38u)    /* 0 without light, else 1 + Light::Kind */ \
+    X(SPEC_RAY_FILTER, 39u)   /* RaycastFilter */ \
+    X(SPEC_PIECES, 40u)       /* of a ray in a cut kernel that count: 2, or 1 where matter is opaque */
+#define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
+EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
+#undef EDGESPLAT_SPECIALIZATION
 EDGESPLAT_CONSTANT uint WEIGHTED_EDGE = 1u;    // by their distance to the edge
 EDGESPLAT_CONSTANT uint WEIGHTED_VOXEL = 2u;   // to a sum of one at each voxel
-EDGESPLAT_CONSTANT uint SPEC_NODES = 12u;      // quadrature nodes of a piece of a footprint: 4, 8, 10 or 16
-EDGESPLAT_CONSTANT uint SPEC_GLOSS = 13u;      // 1: some material has highlights
-EDGESPLAT_CONSTANT uint SPEC_LIT_EDGES = 14u;  // 1: splats without an edge count as without normal
-EDGESPLAT_CONSTANT uint SPEC_FOG = 15u;        // 1: fog
-EDGESPLAT_CONSTANT uint SPEC_SILHOUETTE = 16u; // 1: silhouettes
-EDGESPLAT_CONSTANT uint SPEC_TRANSFER = 17u;   // 1: colour and extinction by a transfer function
-EDGESPLAT_CONSTANT uint SPEC_CLIP_KEEP = 18u;    // number of planes that what is kept lies before
-EDGESPLAT_CONSTANT uint SPEC_CLIP_REMOVE = 19u;  // number of planes that what is removed lies before
-EDGESPLAT_CONSTANT uint SPEC_ANTIALIAS = 20u;  // 1: no footprint is narrower than a pixel
-EDGESPLAT_CONSTANT uint SPEC_RESPONSE = 21u;   // 1: materials answer to light each in its own way
-EDGESPLAT_CONSTANT uint SPEC_OCCLUSION = 22u;  // 1: ambient light is what reaches a splat
-EDGESPLAT_CONSTANT uint SPEC_SHADOWS = 23u;    // number of lights with shadows
-EDGESPLAT_CONSTANT uint SPEC_GRADIENT = 24u;   // 1: the background goes from one colour to another
-EDGESPLAT_CONSTANT uint SPEC_ROUNDS = 26u;     // 1: a tile's list is drawn TILE_ROUND entries at a time
-EDGESPLAT_CONSTANT uint SPEC_COUNT = 27u;      // 1: footprints are counted
-EDGESPLAT_CONSTANT uint SPEC_PREPARED = 28u;   // 1: entries are prepared, 0: by whoever draws them
-EDGESPLAT_CONSTANT uint SPEC_REFINED = 29u;    // 1: pixels are those of their tile's list
-EDGESPLAT_CONSTANT uint SPEC_GROUP = 30u;      // invocations of a workgroup
-EDGESPLAT_CONSTANT uint SPEC_STEP = 31u;       // pixels between those that are there already
-EDGESPLAT_CONSTANT uint SPEC_WIDE_MARKS = 33u;  // 1: entries are marked for 4 x 2 pixels at once, 0: for each
-EDGESPLAT_CONSTANT uint SPEC_LIST_PARTS = 34u;  // parts of 32 entries of a list that are marked at once
-EDGESPLAT_CONSTANT uint SPEC_CULLED = 35u;  // 1: splats are those of batches, of bricks in view; 0: all of the list
-EDGESPLAT_CONSTANT uint SPEC_ISO_COUNT = 32u;  // number of iso-values
-EDGESPLAT_CONSTANT uint SPEC_FACES = 36u;  // 1: faces are found
-EDGESPLAT_CONSTANT uint SPEC_TILES = 25u;      // 1: sheets are summed tile by tile, not in layers
+
+// EdgeEstimator
+EDGESPLAT_CONSTANT uint TAYLOR = 1u;
+EDGESPLAT_CONSTANT uint QUADRATIC = 2u;
+EDGESPLAT_CONSTANT uint MARCH = 3u;
+EDGESPLAT_CONSTANT uint CUBIC = 4u;
+
+// FootprintMode
+EDGESPLAT_CONSTANT uint ISOTROPIC = 0u;
+EDGESPLAT_CONSTANT uint WARP2D = 1u;
+EDGESPLAT_CONSTANT uint TABLE = 2u;
+EDGESPLAT_CONSTANT uint TABLE_LERP = 3u;
+EDGESPLAT_CONSTANT uint PROCEDURAL = 4u;
+
+// WarpFamily
+EDGESPLAT_CONSTANT uint EDGE = 0u;
+EDGESPLAT_CONSTANT uint PAPER = 1u;
+EDGESPLAT_CONSTANT uint FACE = 2u;
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

@@ -13,11 +13,6 @@ EDGESPLAT_CONSTANT uint BIND_RAYS = 8u;          // RaycastBlock
 EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured best on lavapipe, 8^3 takes 5-13 % longer
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this
 
-// Specialization constants beside those of limits.h.
-EDGESPLAT_CONSTANT uint SPEC_SKIP = 33u;       // 1: transparent bricks are leapt over
-EDGESPLAT_CONSTANT uint SPEC_RAY_LIGHT = 34u;  // 0 without light, else 1 + Light::Kind
-EDGESPLAT_CONSTANT uint SPEC_RAY_FILTER = 35u; // RaycastFilter
-
 EDGESPLAT_CONSTANT uint FILTER_TRILINEAR = 0u, FILTER_CUBIC = 1u;
 
 struct RayParams {

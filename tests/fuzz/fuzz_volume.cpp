@@ -1,6 +1,6 @@
 // The formats with small headers: legacy VTK, GIPL, VTI's refusal, raw data whose description is the first line, and
-// the walks through DICOM and netCDF files that come before their libraries. GDCM, libminc and OpenImageIO themselves
-// are not fuzzed: what they do with a file that the walks let through is theirs.
+// the unpacking of zip archives, the walks through DICOM and netCDF files that come before their libraries. GDCM,
+// libminc and OpenImageIO themselves are not fuzzed: what they do with a file that the walks let through is theirs.
 #include "engine/error.h"
 #include "engine/volume/load_internal.h"
 #include "tests/fuzz/fuzz_file.h"
@@ -20,7 +20,14 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
             (void)edgesplat::load_volume(path, {.raw = std::string(text.substr(4, end - 4))});
         } catch (const edgesplat::Error&) {
         }
-    } else if (text.starts_with("CDF") || (size > 132 && text.substr(128, 4) == "DICM")) {
+    } else if (text.starts_with("PK\x03\x04")) {
+        const std::string path = write("volume.zip", text);
+        try {
+            (void)edgesplat::detail::load_archive(
+                path, {}, [](const std::string&, const edgesplat::LoadOptions&) { return edgesplat::Volume(); });
+        } catch (const edgesplat::Error&) {
+        }
+    } else if (text.starts_with("CDF") || text.starts_with("\x08") || (size > 132 && text.substr(128, 4) == "DICM")) {
         const std::string path = write("volume.bin", text);
         try {
             (text[0] == 'C' ? edgesplat::detail::check_netcdf_is_whole : edgesplat::detail::check_dicom_is_whole)(path);

@@ -1,6 +1,8 @@
 // Recorded command buffers: which lists are replayed, and which are let go.
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
+#include "engine/error.h"
+#include "engine/frame_memory.h"
 #include "engine/gpu/kept_commands.h"
 #include "tests/passes/device_under_test.h"
 
@@ -89,6 +91,54 @@ TEST_F(KeptCommandsTest, WhatListsBringAlongCounts) {
     EXPECT_TRUE(records(bringing(3))) << "in the place of 1";
     EXPECT_FALSE(records(bringing(0)));
     EXPECT_TRUE(records(bringing(1)));
+}
+
+TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
+    RendererState& state = device_under_test();
+    const gpu::Buffer filled(state.device, std::size_t{1} << 28U, gpu::Buffer::Place::Host, "filled");
+    const std::uint64_t before = state.device.validation_messages();
+    state.commands.set_timeout(0);
+    const auto fill = [&](std::uint32_t value) { state.commands.run([&] { state.commands.fill(filled, value); }); };
+    EXPECT_THROW(fill(1), Error);
+    state.commands.set_timeout(gpu::Commands::kTimeout);
+    fill(2);
+    EXPECT_EQ(filled.mapped<std::uint32_t>(1)[0], 2U);
+    EXPECT_EQ(state.device.validation_messages(), before);
+}
+
+TEST(Devices, AreRefusedForWhatTheShadersNeed) {
+    vk::PhysicalDeviceLimits limits = device_under_test().device.physical().getProperties().limits;
+    vk::PhysicalDeviceSubgroupProperties subgroups;
+    subgroups.supportedStages = vk::ShaderStageFlagBits::eCompute;
+    subgroups.supportedOperations = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eArithmetic |
+                                    vk::SubgroupFeatureFlagBits::eBallot;
+    EXPECT_TRUE(gpu::beyond_limits(limits, subgroups).empty());
+    subgroups.supportedOperations &= ~vk::SubgroupFeatureFlags(vk::SubgroupFeatureFlagBits::eBallot);
+    EXPECT_THAT(gpu::beyond_limits(limits, subgroups), testing::ElementsAre(testing::HasSubstr("{ Ballot }")));
+    limits.maxPerStageDescriptorStorageImages = 4;
+    EXPECT_THAT(gpu::beyond_limits(limits, subgroups),
+                testing::ElementsAre("maxPerStageDescriptorStorageImages is 4, 15 are needed", testing::_));
+}
+
+TEST(Texels, AreCountedByTheirFormat) {
+    const gpu::Device& device = device_under_test().device;
+    const std::size_t most = device.physical().getProperties().limits.maxTexelBufferElements;
+    for (const auto& [format, bytes] : {std::pair{vk::Format::eR32Uint, std::size_t{4}},
+                                        {vk::Format::eR32G32Uint, std::size_t{8}},
+                                        {vk::Format::eR32G32B32A32Sfloat, std::size_t{16}}}) {
+        EXPECT_EQ(gpu::Buffer::beyond_texels(device, most * bytes, format), "");
+        EXPECT_NE(gpu::Buffer::beyond_texels(device, (most + 1) * bytes, format), "");
+    }
+}
+
+TEST(Texels, ThatAreTooManyDoNotFit) {
+    const gpu::Device& device = device_under_test().device;
+    FrameForecast forecast;
+    PlannedResource& pixels = forecast.resources.emplace_back();
+    pixels.name = "pixels";
+    pixels.texels = vk::Format::eR32Uint;
+    pixels.bytes = (std::size_t{device.physical().getProperties().limits.maxTexelBufferElements} + 1) * 4;
+    EXPECT_THAT(memory_need(device, forecast, 0).too_large, testing::Contains(testing::HasSubstr("texels")));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <functional>
 #include <limits>
 
 #include "engine/effect_table.h"
@@ -249,6 +250,46 @@ TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
     test_renderer().set_patience(std::numeric_limits<double>::infinity());
 }
 
+/// A rod of eight blocks along x, seen from `distance`: one block from nearby, all from afar.
+Shot long_shot(double x, double distance) {
+    static const VolumePointer volume = gyroid({900, 28, 16});
+    Shot shot = gyroid_shot({20, 20, 16});
+    shot.volume = volume;
+    shot.settings.saturation = 1;  // no block hides another
+    shot.camera = look(*volume, {x, 12, distance}, {x, 12, 0}, 30);
+    return shot;
+}
+
+/// After `ends_early` has drawn the whole rod and come as far as its second block, that block is seen.
+void expect_second_block_after(const std::function<void(const Shot&)>& ends_early) {
+    test_renderer().set_patience(1e9);
+    EXPECT_EQ(render(long_shot(30, 60)).stats.blocks_held, 1U);
+    ends_early(long_shot(450, 900));
+    const Shot second = long_shot(190, 60);
+    test_renderer().set_patience(1e9);
+    const RenderResult blocks = render(second);
+    test_renderer().set_patience(std::numeric_limits<double>::infinity());
+    EXPECT_TRUE(blocks.stats.in_blocks && blocks.stats.complete);
+    EXPECT_EQ(blocks.stats.blocks_held, 2U);
+    EXPECT_GE(compare_images(blocks.color, render(second).color).psnr, 90);
+}
+
+TEST(Blocks, OfAPictureThatWasNotFinishedAreSeenInTheNext) {
+    expect_second_block_after([](const Shot& all) {
+        test_renderer().set_patience(0);
+        EXPECT_FALSE(render(all).stats.complete);
+    });
+}
+
+TEST(Blocks, OfAnInterruptedPictureAreSeenInTheNext) {
+    expect_second_block_after([](const Shot& all) {
+        int asked = 0;
+        test_renderer().set_interruption([&] { return ++asked > 1; });
+        EXPECT_THROW(render(all), Interrupted);
+        test_renderer().set_interruption({});
+    });
+}
+
 TEST(Blocks, StandInCoarselyUntilTheyAreThere) {
     const Shot shot = gyroid_shot();
     const RenderResult whole = render(shot);
@@ -330,6 +371,18 @@ TEST(Levels, AreAsCoarseAsPixelsAreWide) {
     EXPECT_EQ(level_at(-500, 1), 0);
 }
 
+TEST(Levels, HaveNoMoreVoxelsThanASplatCanNumber) {
+    VolumeGeometry g;
+    g.dims = {1 << 16, 1 << 15, 2};  // 2^32
+    EXPECT_EQ(countable_level(g, 4, 0), 0);
+    EXPECT_EQ(countable_level(g, 4, 2), 2) << "what is asked for is fine enough";
+    g.dims.z = 3;
+    EXPECT_EQ(countable_level(g, 4, 0), 1);
+    g.dims = {1 << 20, 1 << 14, 1 << 6};  // 2^40, the most that a packed volume has
+    EXPECT_EQ(countable_level(g, 4, 0), 3);
+    EXPECT_EQ(countable_level(g, 3, 0), 3) << "no level of the three";
+}
+
 TEST(Levels, KeepPlacesAndMeans) {
     const auto volume = sampled(
         {37, 20, 9}, [](const glm::dvec3& p) { return 2 * p.x - 3 * p.y + 5 * p.z; },
@@ -362,7 +415,6 @@ TEST(Levels, ShowTheSameSurfaceCoarser) {
     EXPECT_LT(coarse.stats.splats_collected * 3, 40U * 40U * 13U * 12U);
     EXPECT_GE(compare_images(coarse.color, fine).psnr, 32);
     // Another scene, and the levels of the one before are not those of this one.
-    shot.settings.detail = 0;
     EXPECT_EQ(compare_images(render(shot).color, fine).rmse, 0);
 }
 

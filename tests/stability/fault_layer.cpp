@@ -3,7 +3,7 @@
 //   EDGESPLAT_FAULT       allocate | submit | wait | pipeline: calls of vkAllocateMemory (out of device memory);
 //                         vkQueueSubmit, vkQueueSubmit2 or vkWaitForFences, vkWaitSemaphores (device lost, after the
 //                         work is done: the host must hear of it, lavapipe must not run on); vkCreate*Pipelines (out of
-//                         device memory)
+//                         device memory); layers: no device has the feature shaderOutputLayer
 //   EDGESPLAT_FAULT_AT    the first call that fails, counted from 1 over all devices; 0: none
 //   EDGESPLAT_FAULT_LAST  the last one; by default the first; "ever": all from the first on
 //   EDGESPLAT_FAULT_COUNT a file that takes the number of calls when an instance goes
@@ -55,7 +55,9 @@ struct Next {
     PFN_vkGetInstanceProcAddr instance = nullptr;
     PFN_vkGetDeviceProcAddr device = nullptr;
     void* handle = nullptr;
-    PFN_vkDestroyInstance destroy = nullptr;  ///< asked for later, the loader says its own
+    // Asked for later, the loader says ours.
+    PFN_vkDestroyInstance destroy = nullptr;
+    PFN_vkGetPhysicalDeviceFeatures2 features = nullptr;
 };
 std::mutex next_mutex;
 std::map<void*, Next> next_of;
@@ -94,8 +96,9 @@ VKAPI_ATTR VkResult VKAPI_CALL create_instance(const VkInstanceCreateInfo* info,
     const VkResult result = create(info, allocator, instance);
     if (result != VK_SUCCESS) return result;
     const std::lock_guard lock(next_mutex);
-    next_of[key_of(*instance)] = {get, nullptr, *instance,
-                                  reinterpret_cast<PFN_vkDestroyInstance>(get(*instance, "vkDestroyInstance"))};
+    next_of[key_of(*instance)] = {
+        get, nullptr, *instance, reinterpret_cast<PFN_vkDestroyInstance>(get(*instance, "vkDestroyInstance")),
+        reinterpret_cast<PFN_vkGetPhysicalDeviceFeatures2>(get(*instance, "vkGetPhysicalDeviceFeatures2"))};
     return result;
 }
 
@@ -126,7 +129,7 @@ VKAPI_ATTR VkResult VKAPI_CALL create_device(VkPhysicalDevice physical, const Vk
     const VkResult result = create(physical, info, allocator, device);
     if (result != VK_SUCCESS) return result;
     const std::lock_guard lock(next_mutex);
-    next_of[key_of(*device)] = {get_instance, get_device, *device, nullptr};
+    next_of[key_of(*device)] = {get_instance, get_device, *device, nullptr, nullptr};
     return result;
 }
 
@@ -175,6 +178,14 @@ VKAPI_ATTR VkResult VKAPI_CALL wait_semaphores(VkDevice device, const VkSemaphor
                                                std::uint64_t timeout) {
     const VkResult result = of_device<PFN_vkWaitSemaphores>(device, "vkWaitSemaphores")(device, info, timeout);
     return fails("wait") ? VK_ERROR_DEVICE_LOST : result;
+}
+
+VKAPI_ATTR void VKAPI_CALL get_features_2(VkPhysicalDevice physical, VkPhysicalDeviceFeatures2* features) {
+    next(physical).features(physical, features);
+    if (fault().kind != "layers") return;
+    for (auto* part = static_cast<VkBaseOutStructure*>(features->pNext); part != nullptr; part = part->pNext)
+        if (part->sType == VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES)
+            reinterpret_cast<VkPhysicalDeviceVulkan12Features*>(part)->shaderOutputLayer = VK_FALSE;
 }
 
 VkResult no_pipelines(std::uint32_t count, VkPipeline* pipelines) {
@@ -237,6 +248,7 @@ PFN_vkVoidFunction own(const char* name) {
         {"vkDestroyInstance", reinterpret_cast<PFN_vkVoidFunction>(destroy_instance)},
         {"vkCreateDevice", reinterpret_cast<PFN_vkVoidFunction>(create_device)},
         {"vkDestroyDevice", reinterpret_cast<PFN_vkVoidFunction>(destroy_device)},
+        {"vkGetPhysicalDeviceFeatures2", reinterpret_cast<PFN_vkVoidFunction>(get_features_2)},
         {"vkAllocateMemory", reinterpret_cast<PFN_vkVoidFunction>(allocate_memory)},
         {"vkQueueSubmit", reinterpret_cast<PFN_vkVoidFunction>(queue_submit)},
         {"vkQueueSubmit2", reinterpret_cast<PFN_vkVoidFunction>(queue_submit_2)},

@@ -74,6 +74,22 @@ TEST_F(FaultsDevice, APipelineThatCannotBeMadeIsAnError) {
     }
 }
 
+TEST_F(FaultsDevice, WithoutLayersDrawsWhatNeedsNone) {
+    ASSERT_EQ(run("render builtin:torus:16 --size 24x24 -q -o a.png").status, 0);
+    const std::string whole = text_of(folder_ / "a.png");
+    set_old();
+    const ProgramRun tiles = run_failing("layers", 0, kRender);
+    EXPECT_EQ(tiles.status, 0) << tiles.err;
+    EXPECT_EQ(text_of(folder_ / "a.png"), whole);
+    set_old();
+    expect_refused(run_failing("layers", 0, std::string(kRender) + " --sheet-format float"),
+                   "no shaderOutputLayer (each sheet is a layer of the target), expected `tiles` there");
+    expect_refused(
+        run_failing("layers", 0,
+                    std::string(kRender) + " --set 'lights[0].kind=directional' --set 'lights[0].shadows=true'"),
+        "expected lights without shadows there");
+}
+
 class FaultsDeviceLost : public FaultsDevice, public testing::WithParamInterface<const char*> {};
 
 TEST_P(FaultsDeviceLost, OnceItIsOpenedAnewAndThePictureIsTheSame) {

@@ -22,6 +22,9 @@ TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
                              "splat record, 12 bytes", "left out", "curved edges", "--edge-shape curved"})
         EXPECT_THAT(plan.out, HasSubstr(text));
     EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));
+    for (const char* text : {" REFINED=1", " GROUP=16", " ISO_COUNT=1"})
+        EXPECT_THAT(plan.out, HasSubstr(text)) << "every constant has its name";
+    EXPECT_THAT(plan.out, Not(HasSubstr("?=")));
     EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 

@@ -5,6 +5,7 @@
 #include <itkNrrdImageIO.h>
 #include <itkVTKImageIO.h>
 #include <sys/stat.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -22,6 +23,7 @@ using edgesplat::load_volume;
 using edgesplat::LoadOptions;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing::Not;
 
 class Formats : public FolderTest {};
 
@@ -73,6 +75,61 @@ TEST_F(Formats, NiftiKeepsVoxelsAndGeometry) {
         expect_place(volume, {});
         EXPECT_LT(glm::determinant(volume.geometry.index_to_world_axes), 0);
     }
+}
+
+/// A NIfTI-1 file's header and voxels as NIfTI-2 says them, little or big endian.
+std::string as_nifti2(const std::string& one, bool big) {
+    std::string two(544, '\0');
+    const auto put = [&]<typename T>(std::size_t at, T value) {
+        std::memcpy(&two[at], &value, sizeof value);
+        if (big) std::reverse(two.begin() + static_cast<long>(at), two.begin() + static_cast<long>(at + sizeof value));
+    };
+    const auto get = [&]<typename T>(std::size_t at, T value) {
+        std::memcpy(&value, &one[at], sizeof value);
+        return value;
+    };
+    put(0, std::int32_t{540});
+    two.replace(4, 8, "n+2\0\r\n\032\n", 8);
+    put(12, get(70, std::int16_t{}));
+    put(14, get(72, std::int16_t{}));
+    for (std::size_t i = 0; i < 8; ++i) {
+        put(16 + 8 * i, std::int64_t{get(40 + 2 * i, std::int16_t{})});
+        put(104 + 8 * i, double{get(76 + 4 * i, float{})});
+    }
+    put(168, std::int64_t{544});
+    for (std::size_t i = 0; i < 2; ++i) {
+        put(176 + 8 * i, double{get(112 + 4 * i, float{})});
+        put(344 + 4 * i, std::int32_t{get(252 + 2 * i, std::int16_t{})});
+    }
+    for (std::size_t i = 0; i < 18; ++i)
+        put(352 + 8 * i, double{get(256 + 4 * i, float{})});
+    put(500, std::int32_t{one[123]});
+    std::string voxels = one.substr(352);
+    for (std::size_t i = 0; big && i + 1 < voxels.size(); i += 2)
+        std::swap(voxels[i], voxels[i + 1]);
+    return two + voxels;
+}
+
+TEST_F(Formats, Nifti2KeepsVoxelsAndGeometry) {
+    write_itk(itk::NiftiImageIO::New(), file("one.nii"));
+    for (const bool big : {false, true}) {
+        const std::string bytes = as_nifti2(content_of(file("one.nii")), big);
+        const gzFile packed = gzopen(file("b.nii.gz").c_str(), "wb");
+        EXPECT_GT(gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size())), 0);
+        gzclose(packed);
+        for (const std::string& path : {write("a.nii", bytes), file("b.nii.gz")}) {
+            const auto volume = load_volume(path);
+            expect_voxels(volume);
+            expect_place(volume, {});
+            EXPECT_EQ(volume.stored_type, "int16");
+        }
+        EXPECT_THAT(refusal(write("c.nii", bytes.substr(0, bytes.size() - 20))), HasSubstr("truncated"));
+    }
+    std::string wide = as_nifti2(content_of(file("one.nii")), false);
+    const std::int64_t voxels = 40000;
+    std::memcpy(&wide[24], &voxels, sizeof voxels);
+    EXPECT_THAT(refusal(write("d.nii", wide + std::string(1 << 20, ' '))),
+                HasSubstr("dim[1] = 40000; NIfTI-2 is read up to 32767 voxels along an axis"));
 }
 
 TEST_F(Formats, VtkAndGiplKeepVoxels) {
@@ -248,6 +305,7 @@ TEST_F(Formats, WhatIsNoReadableFileIsRefused) {
     if (!edgesplat::can_read_vti()) {
         EXPECT_THAT(refusal(write("a.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">\n")),
                     HasSubstr("EDGESPLAT_VTK"));
+        EXPECT_THAT(refusal(write("a.unknown", "nothing")), AllOf(HasSubstr("It reads"), Not(HasSubstr("VTI"))));
     }
     if (geteuid() != 0) {
         write("secret.nrrd", "NRRD0004\n");

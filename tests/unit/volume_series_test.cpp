@@ -1,9 +1,13 @@
 // DICOM series and sequences of images, written here.
 #include <OpenImageIO/imageio.h>
+#include <archive.h>
+#include <archive_entry.h>
 #include <itkGDCMImageIO.h>
 #include <itkMetaDataObject.h>
 
+#include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -102,7 +106,157 @@ TEST_F(Series, DicomGantryTiltStaysInTheMatrix) {
 TEST_F(Series, DicomUnevenSpacingIsRefused) {
     for (const double z : {0.0, 2.0, 4.0, 6.1, 8.1})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
-    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)")));
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)"),
+                                                 HasSubstr("are 2.1 mm apart, the others 2 mm; --resample")));
+    write_slice("9.dcm", {0, 0, 10}, 0);
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("are 2.1 mm apart, the others 1.9 to 2 mm"));
+}
+
+TEST_F(Series, DicomUnevenSpacingIsResampledWhereThatIsAskedFor) {
+    // Pixels rise as a parabola does along the slices, 1 mm aside for each 10 mm along.
+    const auto value = [](double z) { return std::lround(4 * z * z); };
+    for (const double z : {0.0, 1.0, 2.0, 3.5, 4.5, 6.0})
+        write_slice(std::to_string(z) + ".dcm", {0.1 * z, 0, 5 + z}, static_cast<int>(value(z)));
+    const auto volume = load_volume(folder_.string(), {.resample = true});
+    ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 7));
+    EXPECT_LT(glm::length(volume.geometry.index_to_world_axes[2] - glm::dvec3(0.1, 0, 1)), 1e-9);
+    for (int z = 0; z < 7; ++z)
+        EXPECT_NEAR(volume.at(2, 1, z), static_cast<double>(value(z)) + 12, 1e-3) << z;
+    EXPECT_THAT(volume.warnings,
+                testing::ElementsAre(HasSubstr("6 unevenly spaced slices were resampled to 7, 1 mm apart")));
+    write_slice("aside.dcm", {3, 0, 12}, 0);
+    EXPECT_THAT(refusal(folder_.string(), {.resample = true}), HasSubstr("one line"));
+}
+
+TEST_F(Series, DicomThatIsBrokenIsLeftOutAndNamed) {
+    for (int z = 0; z < 4; ++z)
+        write_slice(std::to_string(z) + ".dcm", {0, 0, 2.0 * z}, 100 * z);
+    const auto whole = content_of(file("3.dcm"));
+    write("3.dcm", whole.substr(0, whole.size() - 10));
+    const auto volume = load_volume(folder_.string());
+    EXPECT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+    EXPECT_THAT(volume.warnings,
+                testing::ElementsAre(AllOf(HasSubstr("3.dcm"), HasSubstr("truncated"), HasSubstr("left out"))));
+    // One in the middle leaves a hole, which is told with its reason or interpolated.
+    write("3.dcm", whole);
+    write("2.dcm", content_of(file("2.dcm")).substr(0, whole.size() - 10));
+    EXPECT_THAT(refusal(folder_.string()),
+                AllOf(HasSubstr("a slice may be missing"), HasSubstr("left out:"), HasSubstr("2.dcm: truncated")));
+    EXPECT_EQ(load_volume(folder_.string(), {.resample = true}).warnings.size(), 2U);
+    for (int z = 0; z < 4; ++z)
+        write(std::to_string(z) + ".dcm", whole.substr(0, whole.size() - 10));
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("none of its 4 DICOM files"));
+}
+
+TEST_F(Series, DicomWithoutPreambleIsRead) {
+    for (const bool meta : {true, false}) {
+        SCOPED_TRACE(meta);
+        for (int z = 0; z < 3; ++z) {
+            write_slice("whole", {0, 0, 2.0 * z}, 100 * z);
+            const std::string whole = content_of(file("whole"));
+            std::uint32_t bytes_of_meta = 0;
+            std::memcpy(&bytes_of_meta, &whole[140], 4);
+            write(std::to_string(z), whole.substr(meta ? 132 : 144 + bytes_of_meta));
+        }
+        fs::remove(file("whole"));
+        const auto volume = load_volume(folder_.string());
+        ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+        EXPECT_EQ(volume.at(3, 2, 1), 123.0F);
+        const auto part = content_of(file("0"));
+        for (std::size_t lost = 1; lost < part.size() - 20; lost += 1 + lost / 6)
+            EXPECT_THAT(refusal(write("cut.dcm", part.substr(0, part.size() - lost))), HasSubstr("cut.dcm")) << lost;
+        fs::remove(file("cut.dcm"));
+    }
+}
+
+TEST_F(Series, DicomByAPatternIsDicom) {
+    for (int z = 0; z < 3; ++z)
+        write_slice("s" + std::to_string(z) + ".dcm", {0, 0, 6.0 - 2.0 * z}, 100 * z);
+    for (const char* pattern : {"s%d.dcm", "s*.dcm", "s?.dcm"}) {
+        const auto volume = load_volume(file(pattern));
+        ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3)) << pattern;
+        EXPECT_EQ(volume.at(3, 2, 2), 23.0F) << "sorted by place, not by number";
+        EXPECT_EQ(volume.geometry.spacing().z, 2);
+    }
+    write_image("s3.png", {{1, 1, 1, 1}});
+    EXPECT_THAT(refusal(file("s*")), AllOf(HasSubstr("3 of the 4 files that match are DICOM"), HasSubstr("s3.png")));
+    EXPECT_THAT(refusal(file("t*")), HasSubstr("no file matches"));
+    EXPECT_EQ(load_volume(file("*.png")).geometry.dims, glm::ivec3(2, 2, 1));
+}
+
+/// A zip archive of files of the folder, under names of its own.
+void write_zip(const std::string& path, const std::vector<std::pair<std::string, std::string>>& entries) {
+    archive* out = archive_write_new();
+    archive_write_set_format_zip(out);
+    ASSERT_EQ(archive_write_open_filename(out, path.c_str()), ARCHIVE_OK);
+    for (const auto& [name, content] : entries) {
+        archive_entry* entry = archive_entry_new();
+        archive_entry_set_pathname(entry, name.c_str());
+        archive_entry_set_filetype(entry, AE_IFREG);
+        archive_entry_set_perm(entry, 0644);
+        archive_entry_set_size(entry, static_cast<la_int64_t>(content.size()));
+        EXPECT_EQ(archive_write_header(out, entry), ARCHIVE_OK);
+        EXPECT_EQ(archive_write_data(out, content.data(), content.size()), static_cast<la_ssize_t>(content.size()));
+        archive_entry_free(entry);
+    }
+    EXPECT_EQ(archive_write_free(out), ARCHIVE_OK);
+}
+
+TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
+    std::vector<std::pair<std::string, std::string>> entries;
+    for (int z = 0; z < 3; ++z) {
+        write_slice("slice", {0, 0, 2.0 * z}, 100 * z);
+        entries.emplace_back("study/" + std::to_string(z) + "/IM", content_of(file("slice")));
+    }
+    entries.emplace_back("../../../README.txt", "nothing of it leaves the folder");
+    write_zip(file("a.zip"), entries);
+    const auto volume = load_volume(file("a.zip"));
+    ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
+    EXPECT_EQ(volume.at(3, 2, 1), 123.0F);
+    EXPECT_EQ(volume.name, file("a.zip"));
+    write_image("b.tif", {{1, 2, 3, 4}, {5, 6, 7, 8}});
+    write_zip(file("b.zip"), {{"b.tif", content_of(file("b.tif"))}});
+    EXPECT_EQ(load_volume(file("b.zip")).geometry.dims, glm::ivec3(2, 2, 2));
+
+    write_image("s.png", {{1, 2, 3, 4}});
+    const std::string slice = content_of(file("s.png"));
+    write_zip(file("s.zip"), {{"x/s10.png", slice}, {"x/s9.png", slice}});
+    EXPECT_EQ(load_volume(file("s.zip")).geometry.dims, glm::ivec3(2, 2, 2));
+
+    const auto whole = content_of(file("a.zip"));
+    for (std::size_t lost = 1; lost < whole.size() - 4; lost += 1 + lost / 3) {
+        // Without its list of entries at the end an archive may be read from its beginning; what is cut is refused.
+        try {
+            EXPECT_EQ(load_volume(write("c.zip", whole.substr(0, whole.size() - lost))).values, volume.values) << lost;
+        } catch (const edgesplat::Error& error) {
+            EXPECT_THAT(error.what(),
+                        AllOf(HasSubstr("c.zip"), testing::Not(testing::ContainsRegex("edgesplat-[A-Za-z0-9]{6}/"))))
+                << lost;
+        }
+    }
+    write_zip(file("d.zip"), {{"b.zip", content_of(file("b.zip"))}});
+    EXPECT_THAT(refusal(file("d.zip")), HasSubstr("an archive in an archive"));
+    write_zip(file("e.zip"), {});
+    EXPECT_THAT(refusal(file("e.zip")), HasSubstr("e.zip"));
+    entries[1].second.resize(500);
+    write_zip(file("f.zip"), entries);
+    EXPECT_THAT(load_volume(file("f.zip")).warnings,
+                testing::ElementsAre(AllOf(HasSubstr("f.zip/"), HasSubstr("left out"))));
+}
+
+TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
+    // The portable bitmap of 8 x 2 pixels.
+    const auto volume = load_volume(write("a.pbm", std::string("P4\n8 2\n") + '\x81' + '\x0f'));
+    EXPECT_EQ(volume.geometry.dims, glm::ivec3(8, 2, 1));
+    EXPECT_EQ(volume.min_value, 0.0F);
+    EXPECT_EQ(volume.max_value, 1.0F);
+    const auto output = OIIO::ImageOutput::create(file("b.tif"));
+    OIIO::ImageSpec spec(8, 1, 1, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:BitsPerSample", 1);
+    ASSERT_TRUE(output->open(file("b.tif"), spec));
+    const std::vector<std::uint8_t> pixels{255, 0, 0, 255, 255, 0, 0, 255};
+    ASSERT_TRUE(output->write_image(OIIO::TypeDesc::UINT8, pixels.data()) && output->close());
+    EXPECT_THAT(load_volume(file("b.tif")).values, testing::ElementsAre(1, 0, 0, 1, 1, 0, 0, 1));
 }
 
 TEST_F(Series, DicomMissingSliceIsRefused) {

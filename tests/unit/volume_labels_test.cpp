@@ -1,0 +1,51 @@
+// Which volumes are segmentations.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "engine/volume/labels.h"
+
+namespace {
+
+using edgesplat::labels_of;
+
+edgesplat::Volume sampled(const std::function<double(const glm::dvec3&)>& value) {
+    edgesplat::Volume volume;
+    volume.geometry.dims = {40, 30, 20};
+    for (int z = 0; z < 20; ++z)
+        for (int y = 0; y < 30; ++y)
+            for (int x = 0; x < 40; ++x)
+                volume.values.push_back(static_cast<float>(value({x, y, z})));
+    finish_volume(volume);
+    return volume;
+}
+
+/// Two organs, one in the other's side, and a thin one.
+double organ(const glm::dvec3& p) {
+    if (glm::distance(p, {15, 15, 10}) < 5) return 7;
+    if (glm::distance(p, {20, 15, 10}) < 9) return 3;
+    return std::abs(p.x - 35) < 1 ? 250 : 0;
+}
+
+TEST(Labels, AreFewWholeNumbersWithoutPartialVolume) {
+    EXPECT_EQ(labels_of(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
+    EXPECT_EQ(labels_of(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })), (std::vector<float>{0, 1}))
+        << "a mask";
+}
+
+TEST(Labels, AreNotWhatWasMeasured) {
+    const auto blurred = [](const glm::dvec3& p) {
+        double sum = 0;
+        for (int i = 0; i < 27; ++i)
+            sum += organ(p + glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
+        return sum / 27;
+    };
+    EXPECT_TRUE(labels_of(sampled(blurred)).empty()) << "fractions";
+    EXPECT_TRUE(labels_of(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
+        << "partial volume, in whole numbers";
+    EXPECT_TRUE(labels_of(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
+    EXPECT_TRUE(labels_of(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
+}
+
+}  // namespace
