@@ -11,42 +11,42 @@ import numpy as np
 
 from ._core import Error
 
-Matrix = np.ndarray
-
-
 @dataclass
 class Samples:
     """`array` is indexed [z, y, x]; `axes` has the steps of a voxel along x, y and z as its rows, in mm."""
 
     array: np.ndarray
-    axes: Matrix
-    origin: Matrix
+    axes: np.ndarray
+    origin: np.ndarray
     patient: bool
     name: str
 
 
 def samples_of(source: Any, name: str | None, frame: int | None) -> Samples:
     """What `source` says of itself. Raises Error where it is no scalar volume."""
-    for test, read in (
-        (("GetSpacing", "GetDirection", "GetNumberOfComponentsPerPixel"), _simple_itk),
-        (("GetDimensions", "GetSpacing", "GetOrigin", "GetPointData"), _vtk),
-        (("affine", "dataobj"), _nibabel),
-        (("dims", "coords", "values"), _xarray),
-    ):
-        if all(hasattr(source, part) for part in test):
-            found = read(source, frame) if read is _nibabel else read(source)
-            break
+    if _has(source, "affine", "dataobj"):
+        found = _nibabel(source, frame)
     else:
-        read = np.asanyarray
-        found = Samples(read(source), np.eye(3), np.zeros(3), False, "array")
+        if frame is not None:
+            raise Error(f"frame: {frame}: is for files and nibabel images; of an array expected array[{frame}]")
+        if _has(source, "GetSpacing", "GetDirection", "GetNumberOfComponentsPerPixel"):
+            found = _simple_itk(source)
+        elif _has(source, "GetDimensions", "GetSpacing", "GetOrigin", "GetPointData"):
+            found = _vtk(source)
+        elif _has(source, "dims", "coords", "values"):
+            found = _xarray(source)
+        else:
+            found = Samples(np.asanyarray(source), np.eye(3), np.zeros(3), False, "array")
     found.name = name if name is not None else found.name
-    if frame is not None and read is not _nibabel:
-        raise Error(f"{found.name}: frame={frame}: only files and nibabel images have frames; expected array[{frame}]")
-    found.array = _checked(found.array, found.name)
+    _check(found.array, found.name)
     return found
 
 
-def _checked(array: np.ndarray, name: str) -> np.ndarray:
+def _has(source: Any, *parts: str) -> bool:
+    return all(hasattr(source, part) for part in parts)
+
+
+def _check(array: np.ndarray, name: str) -> None:
     if name.startswith("builtin:"):
         raise Error(f"name: {name!r}: expected another name, this one is for builtin volumes")
     if array.dtype.kind not in "biuf":
@@ -55,7 +55,6 @@ def _checked(array: np.ndarray, name: str) -> np.ndarray:
         raise Error(f"{name}: a masked array: expected one without masked values, such as array.filled(0)")
     if array.ndim != 3:
         raise Error(f"{name}: shape {array.shape}: expected three axes, z, y, x")
-    return array
 
 
 def _frame(array: np.ndarray, frame: int | None, name: str) -> np.ndarray:

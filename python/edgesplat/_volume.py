@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
-from typing import Any, Sequence
+from typing import Any, Sequence, Tuple
 
 import numpy as np
 
@@ -13,16 +13,35 @@ from ._arrays import samples_of
 from ._core import Error
 
 PathLike = (str, os.PathLike)
+Triple = Tuple[float, float, float]
 
 
-def _vector(value: Any, name: str, size: int = 3) -> np.ndarray:
+def _vector(value: Any, name: str) -> np.ndarray:
     try:
         vector = np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         vector = np.zeros(0)
-    if vector.shape != (size,):
-        raise Error(f"{name}: {value!r}: expected {size} numbers")
+    if vector.shape != (3,):
+        raise Error(f"{name}: {value!r}: expected 3 numbers")
     return vector
+
+
+def _triple(vector: Any) -> Triple:
+    x, y, z = (float(v) for v in vector)
+    return x, y, z
+
+
+def _axes(axes: np.ndarray, direction: Any, lengths: np.ndarray | None) -> list[Triple]:
+    """The steps of a voxel along x, y, z, with another direction or other lengths where these are given."""
+    if direction is not None:
+        matrix = np.asarray(direction, dtype=float)
+        if matrix.shape != (3, 3):
+            raise Error(f"direction: shape {matrix.shape}: expected 3 x 3, columns for x, y, z")
+        axes = matrix.T * np.linalg.norm(axes, axis=1)[:, None]
+    if lengths is not None:
+        with np.errstate(all="ignore"):  # an axis of no length is refused with the volume
+            axes = axes / np.linalg.norm(axes, axis=1)[:, None] * lengths[:, None]
+    return [_triple(axis) for axis in axes]
 
 
 class Volume:
@@ -58,41 +77,27 @@ class Volume:
         series: str | int = "",
         raw: str = "",
     ) -> None:
-        if spacing is not None:
-            spacing = _vector(spacing, "spacing")
-            if not np.all(spacing > 0):
-                raise Error(f"spacing: {tuple(spacing)}: expected lengths above 0, mm, along x, y, z")
+        lengths = None if spacing is None else _vector(spacing, "spacing")
+        if lengths is not None and not np.all(lengths > 0):
+            raise Error(f"spacing: {_triple(lengths)}: expected lengths above 0, mm, along x, y, z")
+        of_arrays = {"origin": origin, "direction": direction, "patient": patient, "name": name}
+        of_files = {"component": component, "series": None if series == "" else series, "raw": raw or None}
         if isinstance(source, PathLike):
-            for key, value in (("origin", origin), ("direction", direction), ("patient", patient), ("name", name)):
+            for key, value in of_arrays.items():
                 if value is not None:
                     raise Error(f"{key}: is for arrays; a file says it itself")
-            self._core = _core.Volume.load(
-                os.fspath(source), component, frame, str(series), raw, None if spacing is None else tuple(spacing)
-            )
+            given = None if lengths is None else _triple(lengths)
+            self._core = _core.Volume.load(os.fspath(source), component, frame, str(series), raw, given)
         else:
-            for key, value in (("component", component), ("series", series or None), ("raw", raw or None)):
+            for key, value in of_files.items():
                 if value is not None:
                     raise Error(f"{key}: is for files, not for {type(source).__name__}")
             found = samples_of(source, name, frame)
-            axes = found.axes
-            if direction is not None:
-                lengths = np.linalg.norm(axes, axis=1)
-                matrix = np.asarray(direction, dtype=float)
-                if matrix.shape != (3, 3):
-                    raise Error(f"direction: shape {matrix.shape}: expected 3 x 3, columns for x, y, z")
-                axes = matrix.T * lengths[:, None]
-            if spacing is not None:
-                with np.errstate(all="ignore"):  # of a length of 0 the core tells
-                    axes = axes / np.linalg.norm(axes, axis=1)[:, None] * spacing[:, None]
-            at = found.origin if origin is None else _vector(origin, "origin")
+            axes = _axes(found.axes, direction, lengths)
+            at = _triple(found.origin if origin is None else _vector(origin, "origin"))
+            in_patient = found.patient if patient is None else bool(patient)
             with np.errstate(over="ignore"):  # beyond float32 is infinite, of which the warning below tells
-                self._core = _core.Volume.from_array(
-                    found.array,
-                    [tuple(map(float, axis)) for axis in axes],
-                    tuple(map(float, at)),
-                    found.patient if patient is None else bool(patient),
-                    found.name,
-                )
+                self._core = _core.Volume.from_array(found.array, axes, at, in_patient, found.name)
         self._warn()
 
     def _warn(self) -> None:
@@ -116,17 +121,18 @@ class Volume:
     @property
     def shape(self) -> tuple[int, int, int]:
         """Voxels along z, y, x."""
-        return tuple(self._core.shape)
+        z, y, x = self._core.shape
+        return z, y, x
 
     @property
-    def spacing(self) -> tuple[float, float, float]:
+    def spacing(self) -> Triple:
         """mm along x, y, z."""
-        return tuple(self._core.spacing)
+        return _triple(self._core.spacing)
 
     @property
-    def origin(self) -> tuple[float, float, float]:
+    def origin(self) -> Triple:
         """World position of voxel 0, 0, 0, mm."""
-        return tuple(self._core.origin)
+        return _triple(self._core.origin)
 
     @property
     def direction(self) -> np.ndarray:

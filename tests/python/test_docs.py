@@ -13,6 +13,6 @@ def test_the_page(tmp_path, monkeypatch):
     names = {}
     for place, block in enumerate(blocks):
         exec(compile(block, f"{PAGE.name}, block {place}", "exec"), names)
-    assert {"sphere.png", "cloud.png", "two.png", "two.toml", "two.exr", "frame_007.png"} <= {
+    assert {"sphere.png", "cloud.png", "two.png", "two.toml", "two.exr", "frame_003.png"} <= {
         path.name for path in tmp_path.iterdir()
     }

@@ -142,7 +142,7 @@ def test_geometry():
         ({"name": "builtin:sphere"}, "expected another name"),
         ({"raw": "2x2x2:uint8:little"}, "raw: is for files"),
         ({"component": 0}, "component: is for files"),
-        ({"frame": 1}, "frame=1: only files"),
+        ({"frame": 1}, "frame: 1: is for files"),
     ],
 )
 def test_wrong_options(options, words):
