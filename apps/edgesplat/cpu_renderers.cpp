@@ -75,7 +75,7 @@ CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume
     const DirectOptions options{request.output.tolerance, [&](double done) {
                                     const double all = (before + done) / pictures;
                                     if (all > 0) bar.update(all, seconds_since(start) * (1 - all) / all, "");
-                                    return true;
+                                    return !request.interruption || !request.interruption();
                                 }};
     for (RenderedFrame& frame : result.frames) {
         const Clock::time_point begin = Clock::now();

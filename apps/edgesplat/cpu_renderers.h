@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -21,6 +22,8 @@ struct CpuRequest {
     edgesplat::OutputChoice output;  ///< which renderer, its tolerance, the size, what beside colour
     edgesplat::Settings settings;
     bool quiet = false;  ///< no progress on stderr, which is shown on a terminal only
+    /// Asked now and then; where it says true there is no picture, and reference::Cancelled is thrown. Empty: never.
+    std::function<bool()> interruption{};
 };
 
 struct CpuFrames {

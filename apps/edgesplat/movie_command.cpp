@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
 #include <thread>
 
 #include "apps/device_options.h"
+#include "apps/edgesplat/film.h"
 #include "apps/edgesplat/frame_writer.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/movie_encoder.h"
@@ -20,12 +20,10 @@
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/render_output.h"
-#include "apps/edgesplat/renderer_option.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/scene/camera_path.h"
 #include "engine/scene/scene_file.h"
-#include "engine/volume/packed_volume.h"
 
 namespace {
 
@@ -33,7 +31,6 @@ namespace fs = std::filesystem;
 using edgesplat::fail;
 using edgesplat::SceneDocument;
 
-constexpr int kMostFrames = 1'000'000;
 // Drawn frames that are encoded at a time while the next is drawn, one a processor at most.
 constexpr unsigned kMostFramesInFlight = 8;
 
@@ -58,17 +55,6 @@ struct Places {
     fs::path folder;
     std::string pattern;
     bool film = false;
-};
-
-/// What every frame is made from.
-struct Film {
-    SceneDocument document;
-    std::shared_ptr<const edgesplat::Volume> volume;
-    edgesplat::CameraPath path;
-    std::vector<edgesplat::AnimatedParameter> animation;
-    edgesplat::Settings settings;
-    double fps = 25;
-    FrameRange range;
 };
 
 Places places_of(const MovieCommand& command) {
@@ -100,8 +86,7 @@ SceneDocument document_of(const MovieCommand& command, std::vector<fs::path>& fo
         document.movie.orbit->degrees = *command.orbit;
         if (command.seconds) document.movie.orbit->seconds = *command.seconds;
     }
-    if (!document.output.aovs.empty() || document.output.compare_plain || on_processor(document.output.renderer))
-        fail("a movie has neither extra outputs nor comparisons, and is made by --renderer splat or a ray caster");
+    check_film(document);
     std::string text;
     for (const edgesplat::DocumentProblem& problem : problems_of(document, folders))
         text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
@@ -109,41 +94,11 @@ SceneDocument document_of(const MovieCommand& command, std::vector<fs::path>& fo
     return document;
 }
 
-/// The scene at a time: the document with its animated numbers set.
-edgesplat::Scene scene_at(const Film& film, double time) {
-    SceneDocument document = film.document;
-    for (const edgesplat::AnimatedParameter& parameter : film.animation)
-        edgesplat::set_key(document, fmt::format("{}={}", parameter.key, value_at(parameter, time)));
-    return resolve_scene(document, *film.volume);
-}
-
-Film film_of(const MovieCommand& command, const std::vector<fs::path>& folders, SceneDocument document) {
-    Film film;
-    film.document = std::move(document);
-    film.volume =
-        std::make_shared<const edgesplat::Volume>(load_with_progress(film.document.volume, folders, command.quiet));
-    const edgesplat::RendererKind renderer = film.document.output.renderer;
-    if (renderer != edgesplat::RendererKind::Splat)
-        need_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));
-    if (film.document.quality.max_error) need_samples(*film.volume, "--max-error");
-    const edgesplat::Scene scene = resolve_scene(film.document, *film.volume);
-    const edgesplat::Camera start = resolve_camera(film.document, *film.volume, scene);
-    film.path = resolve_camera_path(film.document, *film.volume, start);
-    film.animation = resolve_animation(film.document);
-    film.settings = film.document.quality.settings;
-    film.fps = film.document.movie.fps;
-    double seconds = duration(film.path);
-    for (const edgesplat::AnimatedParameter& parameter : film.animation)
-        seconds = std::max(seconds, parameter.values.back().time - film.path.keys.front().time);
-    if (command.seconds) seconds = *command.seconds;
-    if (!(seconds > 0))
-        fail("nothing says how long the movie is: give --orbit DEGREES, --seconds, or a scene file with [movie]");
-    const double count = std::max(1.0, std::round(seconds * film.fps));
-    if (!(count <= kMostFrames)) fail("the movie has {} frames; {} are possible", count, kMostFrames);
-    const int last = static_cast<int>(count) - 1;
-    film.range = command.range.value_or(FrameRange{0, last});
-    if (film.range.last > last) fail("--frames: the movie's last frame is {}, not {}", last, film.range.last);
-    return film;
+FrameRange range_of(const MovieCommand& command, const Film& film) {
+    const int last = film.count - 1;
+    const FrameRange range = command.range.value_or(FrameRange{0, last});
+    if (range.last > last) fail("--frames: the movie's last frame is {}, not {}", last, range.last);
+    return range;
 }
 
 /// What decides the frames, for the note in their folder.
@@ -159,16 +114,9 @@ nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& 
 
 /// Draws a frame, and leaves the rest to the writer.
 void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file, FrameWriter& writer) {
-    const double time = film.path.keys.front().time + frame / film.fps;
-    const edgesplat::Scene scene = scene_at(film, time);
-    const edgesplat::Camera camera = camera_at(film.path, time);
-    const edgesplat::OutputChoice& output = film.document.output;
     std::vector<RenderedFrame> frames(1);
     frames[0].settings = film.settings;
-    frames[0].result =
-        output.renderer == edgesplat::RendererKind::Raycast
-            ? renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y)
-            : renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
+    frames[0].result = draw_frame(film, renderer, frame);
     const edgesplat::ImageMetadata metadata{{"Software", "edgesplat " EDGESPLAT_VERSION},
                                             {"edgesplat:volume", film.document.volume.path},
                                             {"edgesplat:checksum", fmt::format("{:016x}", film.volume->checksum)}};
@@ -183,13 +131,13 @@ struct Missing {
     std::vector<int> frames;
 };
 
-Missing missing_frames(const Film& film, const fs::path& folder, const FramePattern& pattern, bool quiet) {
-    const int all = film.range.last - film.range.first + 1;
+Missing missing_frames(const FrameRange& range, const fs::path& folder, const FramePattern& pattern, bool quiet) {
+    const int all = range.last - range.first + 1;
     // Whether a frame is missing is asked once: others begin to make them.
     std::vector<unsigned char> there(static_cast<std::size_t>(all));
     if (ranks::first())
         for (int i = 0; i < all; ++i)
-            there[static_cast<std::size_t>(i)] = fs::exists(folder / pattern.name(film.range.first + i)) ? 1 : 0;
+            there[static_cast<std::size_t>(i)] = fs::exists(folder / pattern.name(range.first + i)) ? 1 : 0;
     ranks::share(std::span(there));
     Missing mine{static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)), {}};
     if (mine.there > 0 && !quiet)
@@ -197,7 +145,7 @@ Missing missing_frames(const Film& film, const fs::path& folder, const FramePatt
     int missing = 0;
     for (int i = 0; i < all; ++i)
         if (there[static_cast<std::size_t>(i)] == 0 && missing++ % ranks::count() == ranks::index())
-            mine.frames.push_back(film.range.first + i);
+            mine.frames.push_back(range.first + i);
     return mine;
 }
 
@@ -233,21 +181,20 @@ bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path
 }
 
 /// Once all frames are there; false where it was stopped.
-bool finish(const MovieCommand& command, const Film& film, const Places& places, MovieFolder& folder,
+bool finish(const MovieCommand& command, const FrameRange& range, double fps, const Places& places, MovieFolder& folder,
             const StopRequest& stop) {
-    const int count = film.range.last - film.range.first + 1;
-    for (int frame = film.range.first; frame <= film.range.last; ++frame)
+    const int count = range.last - range.first + 1;
+    for (int frame = range.first; frame <= range.last; ++frame)
         if (!folder.has(frame))
             fail("{}: is not there; all ranks must see one folder", folder.frame_path(frame).string());
     if (places.film) {
-        if (!encode({places.folder, places.pattern, film.range.first, count, film.fps, command.output},
+        if (!encode({places.folder, places.pattern, range.first, count, fps, command.output},
                     [&] { return stop.asked(); }))
             return false;
         if (!command.keep_frames) folder.remove();
     }
     if (!command.quiet)
-        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / film.fps,
-                   film.fps);
+        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / fps, fps);
     return true;
 }
 
@@ -261,7 +208,12 @@ void stopped(const fs::path& folder, int& exit_status) {
 void run(const MovieCommand& command, int& exit_status) {
     const Places places = places_of(command);
     std::vector<fs::path> folders;
-    Film film = film_of(command, folders, document_of(command, folders));
+    const SceneDocument document = document_of(command, folders);
+    Film film =
+        film_of(document,
+                std::make_shared<const edgesplat::Volume>(load_with_progress(document.volume, folders, command.quiet)),
+                command.seconds);
+    const FrameRange range = range_of(command, film);
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(film.volume);
     const FramePattern pattern(places.pattern);
@@ -274,7 +226,7 @@ void run(const MovieCommand& command, int& exit_status) {
                         camera_at(film.path, film.path.keys.front().time), film.document.output.size, film.settings,
                         command.quiet);
     ranks::share(std::span(&film.settings, 1));
-    const Missing missing = missing_frames(film, path, pattern, command.quiet);
+    const Missing missing = missing_frames(range, path, pattern, command.quiet);
     const StopRequest stop("stopped; the same command goes on from the frames that are there");
     if (ranks::any(!make_frames(film, renderer, path, pattern, missing, stop, command.quiet))) {
         stopped(path, exit_status);
@@ -284,7 +236,7 @@ void run(const MovieCommand& command, int& exit_status) {
         fail("the frames are written, but Vulkan validation had {} messages", renderer.validation_messages());
     ranks::wait();
     if (!ranks::first()) return;
-    if (!finish(command, film, places, *folder, stop)) stopped(path, exit_status);
+    if (!finish(command, range, film.fps, places, *folder, stop)) stopped(path, exit_status);
 }
 
 FrameRange parse_range(const std::string& text) {

@@ -156,6 +156,10 @@ std::string find_volume(const std::string& path, const std::vector<std::filesyst
 Volume load_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
                    const std::function<void(double fraction, std::string_view what)>& progress = {});
 
+/// What `load_source` does to a volume that is read: threshold, box filter, crop, in this order, and the checksum
+/// compared. Throws Error.
+Volume preprocessed(Volume volume, const VolumeSource& source);
+
 /// The scene for a volume from `load_source`. Iso-values left open: those of the materials' presets, of a builtin
 /// scene, 0.5 after a threshold, else the strongest suggestion for the volume. Extinctions left open: 8 per voxel of
 /// mean spacing for the highest material, 0.15 for those below; none below the lowest iso-value. Throws Error.

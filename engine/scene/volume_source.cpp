@@ -61,7 +61,10 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.resample = source.resample;
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
-    Volume volume = load_volume(path, options);
+    return preprocessed(load_volume(path, options), source);
+}
+
+Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
     if (source.threshold) volume = threshold(volume, *source.threshold);
     if (source.box_filter) volume = box_filter(volume);
@@ -71,8 +74,8 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     volume.warnings = warnings;
     const std::string checksum = fmt::format("{:016x}", volume.checksum);
     if (!source.checksum.empty() && source.checksum != checksum)
-        fail("{}: its samples have the checksum {}, but the scene was made for {} (volume.checksum)", path, checksum,
-             source.checksum);
+        fail("{}: its samples have the checksum {}, but the scene was made for {} (volume.checksum)", volume.name,
+             checksum, source.checksum);
     return volume;
 }
 

@@ -1,0 +1,68 @@
+#include "apps/edgesplat/film.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "apps/edgesplat/renderer_option.h"
+#include "engine/error.h"
+#include "engine/scene/scene_file.h"
+#include "engine/volume/packed_volume.h"
+
+using edgesplat::fail;
+using edgesplat::SceneDocument;
+
+namespace {
+
+constexpr int kMostFrames = 1'000'000;
+
+}  // namespace
+
+void check_film(const SceneDocument& document) {
+    if (!document.output.aovs.empty() || document.output.compare_plain || on_processor(document.output.renderer))
+        fail("a movie has neither extra outputs nor comparisons, and is made by --renderer splat or a ray caster");
+}
+
+Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> volume, std::optional<double> seconds) {
+    Film film;
+    film.document = std::move(document);
+    film.volume = std::move(volume);
+    const edgesplat::RendererKind renderer = film.document.output.renderer;
+    if (renderer != edgesplat::RendererKind::Splat)
+        need_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));
+    if (film.document.quality.max_error) need_samples(*film.volume, "--max-error");
+    const edgesplat::Scene scene = resolve_scene(film.document, *film.volume);
+    const edgesplat::Camera start = resolve_camera(film.document, *film.volume, scene);
+    film.path = resolve_camera_path(film.document, *film.volume, start);
+    film.animation = resolve_animation(film.document);
+    film.settings = film.document.quality.settings;
+    film.fps = film.document.movie.fps;
+    double until = duration(film.path);
+    for (const edgesplat::AnimatedParameter& parameter : film.animation)
+        until = std::max(until, parameter.values.back().time - film.path.keys.front().time);
+    until = seconds.value_or(until);
+    if (!(until > 0))
+        fail("nothing says how long the movie is: give --orbit DEGREES, --seconds, or a scene file with [movie]");
+    const double count = std::max(1.0, std::round(until * film.fps));
+    if (!(count <= kMostFrames)) fail("the movie has {} frames; {} are possible", count, kMostFrames);
+    film.count = static_cast<int>(count);
+    return film;
+}
+
+edgesplat::Scene scene_at(const Film& film, double time) {
+    SceneDocument document = film.document;
+    for (const edgesplat::AnimatedParameter& parameter : film.animation)
+        edgesplat::set_key(document, fmt::format("{}={}", parameter.key, value_at(parameter, time)));
+    return resolve_scene(document, *film.volume);
+}
+
+edgesplat::RenderResult draw_frame(const Film& film, edgesplat::Renderer& renderer, int frame) {
+    const double time = film.time_of(frame);
+    const edgesplat::Scene scene = scene_at(film, time);
+    const edgesplat::Camera camera = camera_at(film.path, time);
+    const edgesplat::OutputChoice& output = film.document.output;
+    if (output.renderer == edgesplat::RendererKind::Raycast)
+        return renderer.raycast(scene, camera, film.settings, raycast_settings(output), output.size.x, output.size.y);
+    return renderer.render(scene, camera, film.settings, output.size.x, output.size.y);
+}

@@ -1,0 +1,35 @@
+"""Edgesplat from Python: volumes in, pictures out, edges sharp.
+
+>>> import edgesplat
+>>> edgesplat.render("builtin:sphere", camera={"view": "oblique"}).save("sphere.png")
+
+Lengths are mm, angles degrees, colours linear light from 0 to 1. Arrays of volumes are indexed [z, y, x], pictures
+[row, column, channel]; positions, spacings and sizes are x, y, z and width, height, as on the command line.
+"""
+
+from ._core import DeviceLost, Error, Interrupted, SceneError, __version__, builtin_names
+from ._renderer import Device, Movie, Picture, Renderer, Statistics, list_devices, movie, render
+from ._scene import Camera, Key, Scene, scene_keys
+from ._volume import Volume
+
+__all__ = [
+    "Camera",
+    "Device",
+    "DeviceLost",
+    "Error",
+    "Interrupted",
+    "Key",
+    "Movie",
+    "Picture",
+    "Renderer",
+    "Scene",
+    "SceneError",
+    "Statistics",
+    "Volume",
+    "__version__",
+    "builtin_names",
+    "list_devices",
+    "movie",
+    "render",
+    "scene_keys",
+]

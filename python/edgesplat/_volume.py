@@ -1,0 +1,184 @@
+"""Volumes: samples, and where they lie in the world."""
+
+from __future__ import annotations
+
+import os
+import warnings
+from typing import Any, Sequence, Tuple
+
+import numpy as np
+
+from . import _core
+from ._arrays import samples_of
+from ._core import Error
+
+PathLike = (str, os.PathLike)
+Triple = Tuple[float, float, float]
+
+
+def _vector(value: Any, name: str) -> np.ndarray:
+    try:
+        vector = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        vector = np.zeros(0)
+    if vector.shape != (3,):
+        raise Error(f"{name}: {value!r}: expected 3 numbers")
+    return vector
+
+
+def _triple(vector: Any) -> Triple:
+    x, y, z = (float(v) for v in vector)
+    return x, y, z
+
+
+def _axes(axes: np.ndarray, direction: Any, lengths: np.ndarray | None) -> list[Triple]:
+    """The steps of a voxel along x, y, z, with another direction or other lengths where these are given."""
+    if direction is not None:
+        matrix = np.asarray(direction, dtype=float)
+        if matrix.shape != (3, 3):
+            raise Error(f"direction: shape {matrix.shape}: expected 3 x 3, columns for x, y, z")
+        axes = matrix.T * np.linalg.norm(axes, axis=1)[:, None]
+    if lengths is not None:
+        with np.errstate(all="ignore"):  # an axis of no length is refused with the volume
+            axes = axes / np.linalg.norm(axes, axis=1)[:, None] * lengths[:, None]
+    return [_triple(axis) for axis in axes]
+
+
+class Volume:
+    """A scalar volume, which never changes.
+
+    source: a file, folder, pattern of slices or ``"builtin:NAME"``, as the program reads them; or samples: anything
+        that NumPy takes as an array of three axes **z, y, x** (any strides and byte order; integers, floats or bool;
+        kept as float32), or an image of SimpleITK, nibabel (its right-anterior world is turned to left-posterior), VTK
+        or PyVista, or an xarray.DataArray, whose own geometry is taken.
+    spacing: three lengths above 0, mm, along **x, y, z**; given, it replaces the source's.
+    origin: world position of voxel x = y = z = 0, mm.
+    direction: 3 x 3; its **columns** are the world directions of x, y and z, as in ITK.
+    patient: whether the world's axes are the patient's (+x left, +y back, +z up).
+    name: what messages and pictures call an array.
+    component, frame, series, raw: what a file leaves open, as ``--component`` and so on; frame also of a 4-D nibabel
+        image.
+
+    Samples that are not finite are taken as the smallest one that is, with a warning.
+    Raises Error in the program's words.
+    """
+
+    def __init__(
+        self,
+        source: Any,
+        *,
+        spacing: Sequence[float] | None = None,
+        origin: Sequence[float] | None = None,
+        direction: Any = None,
+        patient: bool | None = None,
+        name: str | None = None,
+        component: int | None = None,
+        frame: int | None = None,
+        series: str | int = "",
+        raw: str = "",
+    ) -> None:
+        lengths = None if spacing is None else _vector(spacing, "spacing")
+        if lengths is not None and not np.all(lengths > 0):
+            raise Error(f"spacing: {_triple(lengths)}: expected lengths above 0, mm, along x, y, z")
+        of_arrays = {"origin": origin, "direction": direction, "patient": patient, "name": name}
+        of_files = {"component": component, "series": None if series == "" else series, "raw": raw or None}
+        if isinstance(source, PathLike):
+            for key, value in of_arrays.items():
+                if value is not None:
+                    raise Error(f"{key}: is for arrays; a file says it itself")
+            given = None if lengths is None else _triple(lengths)
+            self._core = _core.Volume.load(os.fspath(source), component, frame, str(series), raw, given)
+        else:
+            for key, value in of_files.items():
+                if value is not None:
+                    raise Error(f"{key}: is for files, not for {type(source).__name__}")
+            found = samples_of(source, name, frame)
+            axes = _axes(found.axes, direction, lengths)
+            at = _triple(found.origin if origin is None else _vector(origin, "origin"))
+            in_patient = found.patient if patient is None else bool(patient)
+            with np.errstate(over="ignore"):  # beyond float32 is infinite, of which the warning below tells
+                self._core = _core.Volume.from_array(found.array, axes, at, in_patient, found.name)
+        self._warn()
+
+    def _warn(self) -> None:
+        if self._core.non_finite_count:
+            warnings.warn(
+                f"{self.name}: {self._core.non_finite_count} samples are not finite and taken as {self.min}",
+                stacklevel=3,
+            )
+
+    @classmethod
+    def _of(cls, held: _core.Volume) -> Volume:
+        volume = cls.__new__(cls)
+        volume._core = held
+        return volume
+
+    @property
+    def array(self) -> np.ndarray:
+        """The samples, float32, shape (z, y, x): the volume's own memory, read-only."""
+        return self._core.array
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Voxels along z, y, x."""
+        z, y, x = self._core.shape
+        return z, y, x
+
+    @property
+    def spacing(self) -> Triple:
+        """mm along x, y, z."""
+        return _triple(self._core.spacing)
+
+    @property
+    def origin(self) -> Triple:
+        """World position of voxel 0, 0, 0, mm."""
+        return _triple(self._core.origin)
+
+    @property
+    def direction(self) -> np.ndarray:
+        """3 x 3; columns are the world directions of x, y and z."""
+        axes = np.array(self._core.axes)
+        return (axes / np.linalg.norm(axes, axis=1)[:, None]).T
+
+    @property
+    def patient(self) -> bool:
+        """Whether the world's axes are the patient's."""
+        return self._core.patient
+
+    @property
+    def min(self) -> float:
+        """The smallest finite sample."""
+        return self._core.min
+
+    @property
+    def max(self) -> float:
+        """The largest finite sample."""
+        return self._core.max
+
+    @property
+    def name(self) -> str:
+        """Path, ``builtin:NAME``, or what an array was called."""
+        return self._core.name
+
+    @property
+    def stored_type(self) -> str:
+        """Of the samples in the file or the array."""
+        return self._core.stored_type
+
+    @property
+    def checksum(self) -> str:
+        """Of dims, geometry and samples: 16 hexadecimal digits, as ``edgesplat info`` prints them."""
+        return self._core.checksum
+
+    @property
+    def notes(self) -> list[str]:
+        """What reading had to assume, choose or correct."""
+        return self._core.notes
+
+    def suggest_iso_values(self, count: int = 4) -> list[tuple[float, float]]:
+        """Values at which surfaces are likely, with their strength relative to the strongest, which comes first."""
+        return self._core.suggest_iso_values(count)
+
+    def __repr__(self) -> str:
+        z, y, x = self.shape
+        return f"<Volume {self.name}: {x} x {y} x {z} voxels, {self.min:g} to {self.max:g}>"

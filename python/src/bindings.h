@@ -1,0 +1,65 @@
+// What the parts of the Python module share. Functions take and give plain things; what people see is written in
+// Python (edgesplat/*.py).
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <array>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "engine/image.h"
+#include "engine/scene/scene_document.h"
+#include "engine/volume/volume.h"
+
+namespace edgesplat::python {
+
+namespace py = pybind11;
+using Triple = std::array<double, 3>;
+
+/// A volume that pictures, renderers and arrays may hold at once.
+struct SharedVolume {
+    std::shared_ptr<const Volume> volume;
+    VolumeSource source;  ///< how it was read; of an array its name alone
+};
+
+/// What of a scene's volume says how it is read, not what is done to it then.
+VolumeSource reading_part(const VolumeSource& source);
+
+/// Finds and reads a volume. The interpreter's lock is kept: while image libraries read, what anyone prints would be
+/// taken for theirs.
+SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders);
+
+/// A scene, and where its volume is looked for.
+struct Document {
+    SceneDocument scene;
+    std::vector<std::filesystem::path> folders;
+};
+
+inline Triple triple(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+inline glm::dvec3 vector(const Triple& v) {
+    return {v[0], v[1], v[2]};
+}
+
+/// A read-only array over memory that `owner` keeps.
+template <typename T>
+py::array view_of(std::vector<py::ssize_t> shape, const T* data, const py::object& owner) {
+    py::array_t<T> array(std::move(shape), data, owner);
+    array.attr("setflags")(py::arg("write") = false);
+    return array;
+}
+
+void add_errors(py::module_& module);
+void add_volumes(py::module_& module);
+void add_scenes(py::module_& module);
+void add_pictures(py::module_& module);
+void add_renderers(py::module_& module);
+
+}  // namespace edgesplat::python

@@ -1,0 +1,271 @@
+// Renderers: the interpreter's lock is let go while they draw, and Ctrl-C stops them.
+#include <atomic>
+#include <chrono>
+#include <mutex>
+
+#include "apps/edgesplat/explain_option.h"
+#include "apps/edgesplat/film.h"
+#include "apps/edgesplat/max_error_option.h"
+#include "apps/edgesplat/renderer_option.h"
+#include "engine/error.h"
+#include "engine/overlays.h"
+#include "engine/reference/pixel_rows.h"
+#include "engine/volume/packed_volume.h"
+#include "python/src/pictures.h"
+
+namespace edgesplat::python {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// Does `work` without the interpreter's lock. Where it was stopped by a signal, the signal's exception goes on.
+template <typename Work>
+auto without_lock(Work work) {
+    try {
+        const py::gil_scoped_release release;
+        return work();
+    } catch (const Interrupted&) {
+        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+        throw;
+    } catch (const reference::Cancelled&) {
+        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
+        throw;
+    }
+}
+
+/// Whether signals that came in ask to stop; asked by a thread without the interpreter's lock, which is taken 50 times
+/// a second at most. Then the signal's exception is set.
+class Signals {
+  public:
+    bool ask_to_stop() {
+        const Clock::time_point now = Clock::now();
+        if (now - last_ < std::chrono::milliseconds(20)) return false;
+        last_ = now;
+        const py::gil_scoped_acquire acquire;
+        return PyErr_CheckSignals() != 0;
+    }
+
+  private:
+    Clock::time_point last_ = Clock::now();
+};
+
+/// The scene with the volume that is given, checked as far as can be before anything is drawn.
+SceneDocument checked(const Document& document, const SharedVolume& volume) {
+    SceneDocument scene = document.scene;
+    const VolumeSource asked = scene.volume;
+    VolumeSource reading = reading_part(asked), none;
+    reading.path = none.path = volume.source.path;
+    if (reading != none && reading != volume.source)
+        fail(
+            "volume: component, frame, series, raw and spacing say how a file is read, and this one is: {}; expected "
+            "them with Volume",
+            volume.source.path);
+    scene.volume = volume.source;
+    scene.volume.threshold = asked.threshold;
+    scene.volume.box_filter = asked.box_filter;
+    scene.volume.crop_low = asked.crop_low;
+    scene.volume.crop_high = asked.crop_high;
+    check_cpu_request(scene);
+    validate(scene.quality.settings);
+    std::string text;
+    for (const DocumentProblem& problem : problems_of(scene, document.folders))
+        if (problem.path != "volume.path")  // of an array there is no file
+            text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
+    if (!text.empty()) fail("{}", text);
+    return scene;
+}
+
+/// A renderer for all threads: they draw one after another.
+class SharedRenderer {
+  public:
+    SharedRenderer(const DeviceChoice& choice, double budget_mib)
+        : renderer_(without_lock([&] { return std::make_unique<Renderer>(choice); })) {
+        renderer_->set_memory_budget(ExplainOption{false, budget_mib}.budget_bytes());
+    }
+
+    /// Calls `work` with the renderer, alone and without the interpreter's lock. Throws Error where it was closed.
+    template <typename Work>
+    auto use(Work work) {
+        return without_lock([&] {
+            Signals signals;
+            std::unique_lock lock(mutex_, std::defer_lock);
+            while (!lock.try_lock_for(std::chrono::milliseconds(50)))
+                if (signals.ask_to_stop()) throw Interrupted();
+            if (!renderer_) fail("the renderer is closed");
+            const Drawing drawing(*this, signals);
+            return work(*renderer_);
+        });
+    }
+
+    void interrupt() {
+        if (drawing_) stop_ = true;
+    }
+    void close() {
+        without_lock([&] {
+            const std::lock_guard lock(mutex_);
+            renderer_.reset();
+        });
+    }
+    /// For work that asks itself.
+    std::function<bool()> interruption() const { return interruption_; }
+
+  private:
+    /// While it lives, the renderer may be interrupted.
+    struct Drawing {
+        Drawing(SharedRenderer& shared, Signals& signals) : owner(shared) {
+            owner.stop_ = false;
+            owner.drawing_ = true;
+            owner.interruption_ = [&shared, &signals] { return shared.stop_ || signals.ask_to_stop(); };
+            owner.renderer_->set_interruption(owner.interruption_);
+        }
+        ~Drawing() {
+            owner.drawing_ = false;
+            owner.interruption_ = {};
+            owner.renderer_->set_interruption({});
+        }
+        Drawing(const Drawing&) = delete;
+        Drawing& operator=(const Drawing&) = delete;
+        SharedRenderer& owner;
+    };
+
+    std::timed_mutex mutex_;
+    std::unique_ptr<Renderer> renderer_;
+    std::function<bool()> interruption_;
+    std::atomic<bool> drawing_ = false, stop_ = false;
+};
+
+std::string device_text(const DeviceInfo& device) {
+    return fmt::format("{}, {} {}", device.name, device.driver, device.driver_version);
+}
+
+void draw_on_processor(Picture& picture, std::function<bool()> interruption) {
+    const OutputChoice& output = picture.document.output;
+    CpuFrames done = render_on_processor({output, picture.document.quality.settings, true, std::move(interruption)},
+                                         *picture.volume.volume, picture.scene, picture.camera);
+    picture.frames = std::move(done.frames);
+    picture.measurements = std::move(done.measurements);
+    picture.device = "the processor";
+    if (picture.scene.effects.overlays.any())
+        for (RenderedFrame& frame : picture.frames)
+            draw_overlays(frame.result.color, *picture.volume.volume, picture.scene, picture.camera);
+}
+
+void draw_on_device(Picture& picture, Renderer& renderer) {
+    const OutputChoice& output = picture.document.output;
+    Settings settings = picture.document.quality.settings;
+    renderer.set_volume(picture.volume.volume);
+    picture.choice = apply_max_error(picture.document.quality.max_error, renderer, *picture.volume.volume,
+                                     picture.scene, picture.camera, output.size, settings, true);
+    if (output.compare_plain) {
+        picture.frames.push_back({"plain", settings, {}});
+        picture.frames.back().settings.edges = EdgeEstimator::Off;
+    }
+    picture.frames.push_back({settings.edges != EdgeEstimator::Off ? "edges" : "plain", settings, {}});
+    for (RenderedFrame& frame : picture.frames)
+        frame.result = output.renderer == edgesplat::RendererKind::Raycast
+                           ? renderer.raycast(picture.scene, picture.camera, frame.settings, raycast_settings(output),
+                                              output.size.x, output.size.y)
+                           : renderer.render(picture.scene, picture.camera, frame.settings, output.size.x,
+                                             output.size.y, aov_request(output.aovs));
+    picture.device = device_text(renderer.device());
+}
+
+Picture draw(SharedRenderer& self, const Document& document, const SharedVolume& volume) {
+    Picture picture;
+    picture.document = checked(document, volume);
+    picture.volume = volume;
+    self.use([&](Renderer& renderer) {
+        const OutputChoice& output = picture.document.output;
+        if (output.renderer != RendererKind::Splat)
+            need_samples(*volume.volume, fmt::format("output.renderer {}", name_of(output.renderer)));
+        if (picture.document.quality.max_error) need_samples(*volume.volume, "quality.max_error");
+        picture.scene = resolve_scene(picture.document, *volume.volume);
+        picture.camera = resolve_camera(picture.document, *volume.volume, picture.scene);
+        if (on_processor(output.renderer))
+            draw_on_processor(picture, self.interruption());
+        else
+            draw_on_device(picture, renderer);
+    });
+    return picture;
+}
+
+/// A movie's frames, drawn when they are asked for.
+struct Movie {
+    Film film;
+    SharedVolume volume;
+    std::optional<accuracy::ChosenSettings> choice;
+};
+
+Movie movie(SharedRenderer& self, const Document& document, const SharedVolume& volume, std::optional<double> seconds) {
+    const SceneDocument scene = checked(document, volume);
+    Movie made{{}, volume, {}};
+    self.use([&](Renderer& renderer) {
+        check_film(scene);
+        made.film = film_of(scene, volume.volume, seconds);
+        const double start = made.film.time_of(0);
+        renderer.set_volume(volume.volume);
+        made.choice = apply_max_error(scene.quality.max_error, renderer, *volume.volume, scene_at(made.film, start),
+                                      camera_at(made.film.path, start), scene.output.size, made.film.settings, true);
+    });
+    return made;
+}
+
+Picture frame_of(SharedRenderer& self, const Movie& movie, int frame) {
+    const Film& film = movie.film;
+    const double time = film.time_of(frame);
+    Picture picture;
+    picture.document = film.document;
+    picture.volume = movie.volume;
+    picture.choice = movie.choice;
+    self.use([&](Renderer& renderer) {
+        picture.scene = scene_at(film, time);
+        picture.camera = camera_at(film.path, time);
+        renderer.set_volume(film.volume);
+        picture.frames.push_back({film.settings.edges != EdgeEstimator::Off ? "edges" : "plain", film.settings,
+                                  draw_frame(film, renderer, frame)});
+        picture.device = device_text(renderer.device());
+    });
+    return picture;
+}
+
+py::dict as_dict(const DeviceInfo& device) {
+    using namespace py::literals;
+    return py::dict("index"_a = device.index, "name"_a = device.name, "type"_a = device.type,
+                    "driver"_a = device.driver, "driver_version"_a = device.driver_version,
+                    "api_version"_a = device.api_version, "rejections"_a = py::tuple(py::cast(device.rejections)));
+}
+
+}  // namespace
+
+void add_renderers(py::module_& module) {
+    py::class_<Movie>(module, "Movie")
+        .def_property_readonly("count", [](const Movie& self) { return self.film.count; })
+        .def_property_readonly("fps", [](const Movie& self) { return self.film.fps; });
+    py::class_<SharedRenderer>(module, "Renderer")
+        .def(py::init([](const std::string& device, double budget_mib, bool validation, bool check_numbers) {
+            return std::make_unique<SharedRenderer>(DeviceChoice{device, validation, check_numbers}, budget_mib);
+        }))
+        .def("device",
+             [](SharedRenderer& self) {
+                 return as_dict(self.use([](Renderer& renderer) { return renderer.device(); }));
+             })
+        .def("held_bytes",
+             [](SharedRenderer& self) { return self.use([](Renderer& renderer) { return renderer.held_bytes(); }); })
+        .def("validation_messages",
+             [](SharedRenderer& self) {
+                 return self.use([](Renderer& renderer) { return renderer.validation_messages(); });
+             })
+        .def("draw", draw)
+        .def("movie", movie)
+        .def("frame_of", frame_of)
+        .def("interrupt", &SharedRenderer::interrupt)
+        .def("close", &SharedRenderer::close);
+    module.def("list_devices", [] {
+        std::vector<py::dict> devices;
+        for (const DeviceInfo& device : list_devices())
+            devices.push_back(as_dict(device));
+        return devices;
+    });
+}
+
+}  // namespace edgesplat::python

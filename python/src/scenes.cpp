@@ -1,0 +1,108 @@
+// Scenes by their keys: every key of a scene file, with the words that files and the command line have for what is
+// wrong.
+#include "engine/error.h"
+#include "engine/scene/scene_file.h"
+#include "engine/scene/scene_keys.h"
+#include "python/src/bindings.h"
+
+namespace edgesplat::python {
+namespace {
+
+/// What stands at a key; None where the scene leaves it open. Of a table that may be there or not, whether it is; of a
+/// list of tables, how many there are.
+py::object value_at(const Document& self, const std::string& path) {
+    const KeyAddress address = key_address(path);
+    if (address.component) return py::cast(number_at(self.scene, path));
+    if (const SceneTable* table = find_table(address.path)) {
+        const std::size_t count = table->count(self.scene);
+        return table->list ? py::cast(count) : py::cast(count > 0);
+    }
+    const SceneKey* key = find_key(address.path);
+    if (!key) {
+        const std::string nearest = nearest_key(path);
+        fail("{}: unknown key{}", path, nearest.empty() ? "" : "; did you mean " + nearest + "?");
+    }
+    const std::string around = table_of(*key);
+    const SceneTable* group = find_table(around.ends_with("[]") ? around.substr(0, around.size() - 2) : around);
+    if (group && group->count(self.scene) <= address.index) return py::none();
+    const std::optional<KeyValue> value = key->get(self.scene, address.index);
+    if (!value) return py::none();
+    if (key->type == KeyType::Integer) return py::cast(static_cast<long long>(std::get<double>(*value)));
+    if (key->type == KeyType::Integers) {
+        const auto& numbers = std::get<std::vector<double>>(*value);
+        return py::cast(std::vector<long long>(numbers.begin(), numbers.end()));
+    }
+    return std::visit([](const auto& held) -> py::object { return py::cast(held); }, *value);
+}
+
+/// "table", "tables" (a list of them), "key", "group" (of keys and tables), or nothing.
+std::string kind_of(const std::string& path) {
+    const KeyAddress address = key_address(path);
+    if (const SceneTable* table = find_table(address.path)) return table->list ? "tables" : "table";
+    if (find_key(address.path)) return "key";
+    const std::string inside = address.path + ".";
+    for (const SceneKey& key : scene_keys())
+        if (key.path.starts_with(inside)) return "group";
+    return "";
+}
+
+std::vector<py::dict> keys() {
+    std::vector<py::dict> all;
+    for (const SceneKey& key : scene_keys()) {
+        py::dict entry;
+        entry["path"] = key.path;
+        entry["help"] = key.help;
+        entry["expected"] = key.expectation();
+        entry["default"] = key.default_value ? toml_text(*key.default_value, key.type) : key.absent;
+        all.push_back(std::move(entry));
+    }
+    return all;
+}
+
+Document parsed(const std::string& text, const std::string& name) {
+    return {parse_scene(text, name, {.folders = {}, .whole = false}), volume_folders({})};
+}
+
+Document read(const std::string& path) {
+    return {read_scene_file(path), volume_folders(std::filesystem::path(path).parent_path())};
+}
+
+/// What the scene does to a volume first: threshold, box filter, crop.
+SharedVolume prepared(const Document& self, const SharedVolume& given) {
+    VolumeSource source = self.scene.volume, plain = reading_part(source);
+    plain.checksum = source.checksum;
+    if (source == plain && source.checksum.empty()) return given;
+    const py::gil_scoped_release release;
+    return {std::make_shared<const Volume>(preprocessed(*given.volume, source)), given.source};
+}
+
+}  // namespace
+
+void add_scenes(py::module_& module) {
+    py::class_<Document>(module, "Document")
+        .def(py::init([] {
+            return Document{{}, volume_folders({})};
+        }))
+        .def_static("read", read)
+        .def_static("parse", parsed)
+        .def("copy", [](const Document& self) { return self; })
+        .def("set", [](Document& self, const std::string& assignment) { set_key(self.scene, assignment); })
+        .def("get", value_at)
+        .def("clear_camera", [](Document& self) { self.scene.camera = {}; })
+        .def("text", [](const Document& self,
+                        bool comments) { return comments ? commented_scene_text(self.scene) : scene_text(self.scene); })
+        .def("problems",
+             [](const Document& self) {
+                 std::vector<std::pair<std::string, std::string>> found;
+                 for (const DocumentProblem& problem : problems_of(self.scene, self.folders))
+                     found.emplace_back(problem.path, problem.text);
+                 return found;
+             })
+        .def("load", [](const Document& self) { return read_from(reading_part(self.scene.volume), self.folders); })
+        .def("prepared", prepared)
+        .def("__eq__", [](const Document& a, const Document& b) { return a.scene == b.scene; });
+    module.def("kind_of", kind_of);
+    module.def("scene_keys", keys);
+}
+
+}  // namespace edgesplat::python

@@ -1,0 +1,137 @@
+// Volumes from files and arrays.
+#include "engine/error.h"
+#include "engine/scene/scene_document.h"
+#include "engine/volume/analytic_volumes.h"
+#include "engine/volume/filters.h"
+#include "engine/volume/load_volume.h"
+#include "engine/volume/packed_volume.h"
+#include "python/src/bindings.h"
+
+namespace edgesplat::python {
+namespace {
+
+SharedVolume load(const std::string& path, std::optional<int> component, std::optional<int> frame,
+                  const std::string& series, const std::string& raw, const std::optional<Triple>& spacing) {
+    VolumeSource source;
+    source.component = component;
+    source.frame = frame;
+    source.series = series;
+    source.raw = raw;
+    if (spacing) source.spacing = vector(*spacing);
+    source.path = path;
+    return read_from(std::move(source), volume_folders({}));
+}
+
+/// What the array has along z, y and x, within the limits of files.
+glm::ivec3 dims_of(const py::array& array, const std::string& name) {
+    const auto side = [&](int axis) { return static_cast<std::size_t>(array.shape(axis)); };
+    for (const int axis : {0, 1, 2}) {
+        if (side(axis) < 1)
+            fail("{}: shape {}: axis {} is empty", name, std::string(py::str(array.attr("shape"))), axis);
+        if (side(axis) > kMaxVoxelsPerAxis)
+            fail("{}: shape {}: an axis may have at most {} voxels", name, std::string(py::str(array.attr("shape"))),
+                 kMaxVoxelsPerAxis);
+    }
+    if (side(0) * side(1) * side(2) > kMaxVoxels)
+        fail("{}: shape {}: a volume may have at most {} voxels", name, std::string(py::str(array.attr("shape"))),
+             kMaxVoxels);
+    return {side(2), side(1), side(0)};
+}
+
+/// `array`: three axes, z, y, x, of numbers in any order of bytes and with any strides; `axes`: the steps of a voxel
+/// along x, y and z, mm.
+SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axes, const Triple& origin, bool patient,
+                        const std::string& name) {
+    Volume volume;
+    volume.name = name;
+    volume.stored_type = py::str(array.dtype());
+    volume.in_patient = patient;
+    volume.geometry.dims = dims_of(array, name);
+    for (int axis = 0; axis < 3; ++axis)
+        volume.geometry.index_to_world_axes[axis] = vector(axes[static_cast<std::size_t>(axis)]);
+    volume.geometry.origin = vector(origin);
+    volume.values.resize(volume.geometry.voxel_count());
+    // NumPy converts in one pass whatever the array is, into the memory that the volume keeps.
+    const py::array_t<float> target({array.shape(0), array.shape(1), array.shape(2)}, volume.values.data(), py::none());
+    py::module_::import("numpy").attr("copyto")(target, array, py::arg("casting") = "unsafe");
+    const py::gil_scoped_release release;
+    finish_volume(volume);
+    VolumeSource source;
+    source.path = name;
+    return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
+}
+
+py::array values(const py::object& self) {
+    const Volume& volume = *self.cast<const SharedVolume&>().volume;
+    need_samples(volume, "Volume.array");
+    const glm::ivec3& dims = volume.geometry.dims;
+    return view_of<float>({dims.z, dims.y, dims.x}, volume.values.data(), self);
+}
+
+std::vector<std::pair<double, double>> suggestions(const SharedVolume& self, int count) {
+    const py::gil_scoped_release release;
+    std::vector<std::pair<double, double>> found;
+    for (const IsoSuggestion& suggestion : suggest_iso_values(*self.volume, count))
+        found.emplace_back(suggestion.value, suggestion.strength);
+    return found;
+}
+
+}  // namespace
+
+VolumeSource reading_part(const VolumeSource& source) {
+    VolumeSource part;
+    part.path = source.path;
+    part.raw = source.raw;
+    part.series = source.series;
+    part.component = source.component;
+    part.frame = source.frame;
+    part.spacing = source.spacing;
+    return part;
+}
+
+SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders) {
+    source.path = find_volume(source.path, folders);
+    Volume volume = load_source(source, {{}});
+    // What a picture says of its volume holds wherever the picture goes.
+    if (!is_builtin(source.path)) source.path = std::filesystem::absolute(source.path).string();
+    return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
+}
+
+void add_volumes(py::module_& module) {
+    py::class_<SharedVolume>(module, "Volume")
+        .def_static("load", load)
+        .def_static("from_array", from_array)
+        .def_property_readonly("array", values)
+        .def("suggest_iso_values", suggestions)
+        .def_property_readonly("shape",
+                               [](const SharedVolume& self) {
+                                   const glm::ivec3& dims = self.volume->geometry.dims;
+                                   return std::array<int, 3>{dims.z, dims.y, dims.x};
+                               })
+        .def_property_readonly("axes",
+                               [](const SharedVolume& self) {
+                                   const glm::dmat3& axes = self.volume->geometry.index_to_world_axes;
+                                   return std::array<Triple, 3>{triple(axes[0]), triple(axes[1]), triple(axes[2])};
+                               })
+        .def_property_readonly("spacing",
+                               [](const SharedVolume& self) { return triple(self.volume->geometry.spacing()); })
+        .def_property_readonly("origin", [](const SharedVolume& self) { return triple(self.volume->geometry.origin); })
+        .def_property_readonly("patient", [](const SharedVolume& self) { return self.volume->in_patient; })
+        .def_property_readonly("min", [](const SharedVolume& self) { return self.volume->min_value; })
+        .def_property_readonly("max", [](const SharedVolume& self) { return self.volume->max_value; })
+        .def_property_readonly("non_finite_count",
+                               [](const SharedVolume& self) { return self.volume->non_finite_count; })
+        .def_property_readonly("name", [](const SharedVolume& self) { return self.volume->name; })
+        .def_property_readonly("stored_type", [](const SharedVolume& self) { return self.volume->stored_type; })
+        .def_property_readonly("checksum",
+                               [](const SharedVolume& self) { return fmt::format("{:016x}", self.volume->checksum); })
+        .def_property_readonly("notes", [](const SharedVolume& self) { return self.volume->notes; });
+    module.def("builtin_names", [] {
+        std::vector<std::string> names;
+        for (const auto& name : analytic_scene_names())
+            names.emplace_back(name);
+        return names;
+    });
+}
+
+}  // namespace edgesplat::python

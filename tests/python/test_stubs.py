@@ -1,0 +1,36 @@
+"""The stub of the module says what is there, no less and no more."""
+
+import ast
+import pathlib
+
+import edgesplat
+from edgesplat import _core
+
+
+def public(names):
+    return {name for name in names if not name.startswith("_")}
+
+
+def test_names_agree():
+    stub = ast.parse((pathlib.Path(edgesplat.__file__).parent / "_core.pyi").read_text())
+    classes = {node.name: node for node in stub.body if isinstance(node, ast.ClassDef)}
+    functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+    assert public(classes) | public(functions) == public(dir(_core))
+    for name, node in classes.items():
+        if name in ("Error", "SceneError", "Interrupted", "DeviceLost"):
+            continue
+        members = {item.name for item in node.body if isinstance(item, ast.FunctionDef)}
+        assert public(members) == public(vars(getattr(_core, name))), name
+
+
+def test_everything_public_is_explained():
+    for name in edgesplat.__all__:
+        thing = getattr(edgesplat, name)
+        if isinstance(thing, str):
+            continue
+        assert thing.__doc__, name
+        if isinstance(thing, type) and not issubclass(thing, Exception):
+            for member in public(vars(thing)):
+                found = vars(thing)[member]
+                if callable(found) or isinstance(found, property):
+                    assert found.__doc__, f"{name}.{member}"
