@@ -386,6 +386,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 
     p.band = static_cast<float>(edge_reach(settings));
     plan.variant.antialias = scene.effects.antialias;
+    plan.variant.opaque =
+        draws_faces(settings) && payload != shader::PAYLOAD_TAU && hides_what_is_behind(scene, geometry);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;

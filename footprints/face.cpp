@@ -14,6 +14,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where phi is this nearly linear along a ray, its second zero lies out of every kernel's reach.
 constexpr double kStraight = 1e-6;
 constexpr double kLeastSlope2 = 1e-8;
+constexpr double kFar = 1e3;  // voxels: a face that a ray meets further off is not met
 
 struct Roots {
     bool real = false;
@@ -32,9 +33,13 @@ Roots roots(const Quadratic& phi, double level) {
     return {true, std::min(near, far), std::max(near, far)};
 }
 
-/// Voxels along a unit vector with first derivative `slope` >= 0 and second derivative `bend` until -`below` becomes 0.
-double way(double below, double slope, double bend) {
-    return 2 * below / (slope + std::sqrt(std::max(slope * slope + 2 * below * bend, 0.0)) + 1e-12);
+/// Where a ray meets a face at z. `out_along`: 1 where it leaves there, -1 where it enters.
+FacePlane plane_at(const FaceRay& ray, double depth, double z, double out_along) {
+    if (!(std::abs(z) < kFar)) return {};
+    const double slope = std::sqrt(std::max(ray.slope2.at(z), kLeastSlope2));
+    const double p = (ray.across + z * ray.turn) / slope, u = (ray.phi.b + 2 * z * ray.phi.a) / slope;
+    const double side = u * out_along < 0 ? -1 : 1;
+    return {side * p, side * u, side * (p + z * u) - depth};
 }
 
 const QuadratureRule& rule_of(int nodes) {
@@ -56,13 +61,6 @@ double reach2_of(double distance, double depth, double norm) {
     return lateral * lateral + along * along;
 }
 
-/// Whether a point is deeper than what is moved: beyond the plain kernel's reach there is nothing then.
-bool is_deep(const FaceRay& ray, const FaceCut& cut, double z) {
-    const double phi = ray.phi.at(z), shallow2 = cut.depth * cut.depth * ray.slope2.at(z);
-    const double above = phi + cut.thickness;
-    return phi < 0 && phi * phi > shallow2 && above > 0 && above * above > shallow2;
-}
-
 }  // namespace
 
 FaceCut face_cut(double distance, double bend, double norm, double thickness) {
@@ -79,58 +77,65 @@ FaceCut face_cut(double distance, double bend, double norm, double thickness) {
     return cut;
 }
 
-FacePieces face_pieces(const FaceRay& ray, double thickness) {
-    const bool wall = thickness < kInfinity;
+double FacePlane::beyond(double z) const {
+    const double t = at(z), held = std::min(t, level);
+    return z * z - t * t + held * held;
+}
+
+FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
+    : rho2_(ray.rho2), half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))) {
+    const bool wall = cut.thickness < kInfinity;
     const Roots face = roots(ray.phi, 0);
-    const Roots behind = wall ? roots(ray.phi, thickness) : Roots{};
+    const Roots behind = wall ? roots(ray.phi, cut.thickness) : Roots{};
     // Along the ray phi has a least value between its zeros, or a largest.
     const bool opens = ray.phi.a >= 0;
     const Roots everywhere{true, -kInfinity, kInfinity};
     const Roots outer = opens ? face : (wall ? behind : everywhere);
     const Roots inner = opens ? behind : face;
-    FacePieces pieces;
-    if (!outer.real) return pieces;
-    const bool first_behind = !opens && wall;
-    pieces.piece[0] = {outer.low, inner.real ? inner.low : outer.high, first_behind};
-    pieces.count = 1;
-    if (inner.real) {
-        pieces.piece[1] = {inner.high, outer.high, opens};
-        pieces.count = 2;
-    }
-    return pieces;
+    if (!outer.real) return;
+    const auto add = [&](double low, double high, bool from_behind) {
+        pieces_.at(count_++) = {low, high, from_behind, plane_at(ray, cut.depth, low, -1),
+                                plane_at(ray, cut.depth, high, 1)};
+    };
+    add(outer.low, inner.real ? inner.low : outer.high, !opens && wall);
+    if (!inner.real) return;
+    add(inner.high, outer.high, opens);
+    if (choice == FacePieces::Both) return;
+    if (!(overlap(pieces_[0]) > overlap(pieces_[1]))) pieces_[0] = pieces_[1];
+    count_ = 1;
 }
 
-double face_kernel(const FaceRay& ray, const FaceCut& cut, double z) {
-    const double phi = ray.phi.at(z);
-    const double slope = std::sqrt(std::max(ray.slope2.at(z), kLeastSlope2));
-    // Where the wall's other face is nearer x is moved the other way.
-    double moved = std::min(way(-phi, slope, cut.bend) - cut.depth, 0.0);
-    if (cut.thickness < kInfinity) moved += std::max(cut.depth - way(phi + cut.thickness, slope, -cut.bend), 0.0);
-    return kernel(std::max(ray.rho2 + z * z + moved * (2 * ray.along.at(z) / slope + moved), 0.0));
+double FacePath::overlap(const FacePiece& piece) const {
+    return std::min(piece.high, half_chord_) - std::max(piece.low, -half_chord_);
 }
 
-FaceFootprint face_footprint(const FaceRay& ray, const FaceCut& cut, int nodes, const Slice& slice) {
+double FacePath::kernel_at(double z) const {
+    if (!(std::abs(z) < half_chord_)) return 0;
+    for (const FacePiece& piece : pieces())
+        if (z >= piece.low && z <= piece.high) return kernel(std::max(rho2_ + piece.plane(z).beyond(z), 0.0));
+    return 0;
+}
+
+FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     FaceFootprint out;
-    const double half = std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0));
-    const double plain = std::sqrt(std::max(kKernelRadius * kKernelRadius - ray.rho2, 0.0));
-    const double low = std::max(is_deep(ray, cut, -plain) ? -plain : -half, slice.low);
-    const double high = std::min(is_deep(ray, cut, plain) ? plain : half, slice.high);
-    const FacePieces pieces = face_pieces(ray, cut.thickness);
+    const double plain = std::sqrt(std::max(kKernelRadius * kKernelRadius - rho2_, 0.0));
     const QuadratureRule& rule = rule_of(nodes);
-    bool entered = false;
-    for (int i = 0; i < pieces.count; ++i) {
-        const FacePiece& piece = pieces.piece[static_cast<std::size_t>(i)];
-        const double begin = std::max(piece.low, low), end = std::min(piece.high, high);
-        if (!(begin < end)) continue;
+    for (const FacePiece& piece : pieces()) {
+        // Deeper than what is moved there is nothing beyond the plain kernel's reach.
+        const double low = piece.entry.is_deep(-plain) ? -plain : -half_chord_;
+        const double high = piece.leave.is_deep(plain) ? plain : half_chord_;
+        const double begin = std::max({piece.low, low, slice.low}), end = std::min({piece.high, high, slice.high});
         double sum = 0;
-        for (std::size_t k = 0; k < rule.size(); ++k)
-            sum += rule.weights[k] * face_kernel(ray, cut, begin + (end - begin) * rule.nodes[k]);
-        out.integral += (end - begin) * sum;
-        if (entered) continue;
-        entered = true;
-        // Slices of a kernel show what its whole shows.
-        out.entry = std::clamp(piece.low, -half, half);
-        out.from_behind = piece.from_behind && piece.low > -half;
+        for (std::size_t k = 0; begin < end && k < rule.size(); ++k) {
+            const double z = begin + (end - begin) * rule.nodes[k];
+            sum += rule.weights[k] * kernel(std::max(rho2_ + piece.plane(z).beyond(z), 0.0));
+        }
+        out.integral += std::max(end - begin, 0.0) * sum;
+        // Slices of a kernel show what its whole shows: the first piece within its reach, else the last.
+        if (&piece != &pieces().back() && !(overlap(piece) > 0)) continue;
+        if (&piece != &pieces().front() && overlap(pieces().front()) > 0) continue;
+        out.entry = std::clamp(piece.low, -half_chord_, half_chord_);
+        out.from_behind = piece.from_behind && piece.low > -half_chord_;
     }
     return out;
 }

@@ -2,9 +2,11 @@
 //
 // A face is the zero level of a quadric, phi(x) = c + g.x + x'Hx / 2, negative on the voxel's own side, |grad phi| = 1
 // at its foot point. The kernel is nothing beyond it, and no nearer to it than `depth` it is sampled (design (12)):
-// there x is moved along -grad phi until it lies that deep, so that where neighbours know one surface, all share one
-// map and their sum is what it is inside. A wall has a second face, the level phi = -thickness. Along a ray everything
-// that counts is quadratic in z, and vectors are left to the caller. Lengths are voxels, index space, relative to the
+// there x is moved against the face's normal until it lies that deep, so that where neighbours know one surface, all
+// share one map and their sum is what it is inside. A wall has a second face, the level phi = -thickness. Along a ray
+// everything that counts is quadratic in z, and vectors are left to the caller. There x is moved along the normal of
+// the face where the ray meets it, on the way in or on the way out, whichever is nearer: kernels of one surface then
+// share one map on one ray, and nothing of it is more than a plane. Lengths are voxels, index space, relative to the
 // voxel's centre.
 #pragma once
 
@@ -25,10 +27,11 @@ struct Quadratic {
 
 /// What a ray x = p + z u, p its point nearest to the voxel's centre, u a unit vector, sees of a face.
 struct FaceRay {
-    double rho2 = 0;   ///< |p|^2
-    Quadratic phi;     ///< at x
-    Quadratic slope2;  ///< |grad phi|^2
-    Quadratic along;   ///< x . grad phi
+    double rho2 = 0;    ///< |p|^2
+    Quadratic phi;      ///< at x
+    Quadratic slope2;   ///< |grad phi|^2
+    double across = 0;  ///< p . grad phi at p
+    double turn = 0;    ///< p . Hu
 };
 
 /// How a face cuts a kernel, whatever the ray.
@@ -48,22 +51,24 @@ inline constexpr double kFaceDepth = 0.8;
 /// the Frobenius norm of H, 1/voxel.
 FaceCut face_cut(double distance, double bend, double norm, double thickness);
 
+/// The plane that touches a face where a ray meets it: n . x along the ray, and from which value on x is moved along n.
+struct FacePlane {
+    double p = 0, u = 0, level = std::numeric_limits<double>::infinity();
+    double at(double z) const { return p + z * u; }
+    bool is_deep(double z) const { return at(z) <= level; }
+    /// |x|^2 of where a point of the ray is sampled, less rho2.
+    double beyond(double z) const;
+};
+
 /// A piece of the ray on the own side of a face. It begins where the ray enters the matter, by the face or, of a wall,
 /// by the face behind; or nowhere (-infinity).
 struct FacePiece {
     double low = 0, high = 0;
     bool from_behind = false;
+    FacePlane entry, leave;
+    /// The plane that the point z of the ray is sampled by: that of the nearer end.
+    const FacePlane& plane(double z) const { return z > 0.5 * (low + high) ? leave : entry; }
 };
-
-/// The pieces of a ray within the matter, in its order: none, one or two.
-struct FacePieces {
-    std::array<FacePiece, 2> piece;
-    int count = 0;
-};
-FacePieces face_pieces(const FaceRay& ray, double thickness);
-
-/// The cut kernel at the point z of a ray; whether it lies in the matter is the caller's to know.
-double face_kernel(const FaceRay& ray, const FaceCut& cut, double z);
 
 /// The integral of a cut kernel along a ray, per voxel, and where the matter was entered.
 struct FaceFootprint {
@@ -71,7 +76,30 @@ struct FaceFootprint {
     double entry = 0;          ///< z of the light: where the ray enters, or where it comes within the kernel's reach
     bool from_behind = false;  ///< it enters by the wall's other face
 };
-/// By Gauss-Legendre with `nodes` nodes a piece.
-FaceFootprint face_footprint(const FaceRay& ray, const FaceCut& cut, int nodes, const Slice& slice = {});
+
+/// Which of a ray's two pieces count. Of opaque matter what lies behind the first is not seen, and a kernel has most of
+/// its matter in one.
+enum class FacePieces { Both, Longer };
+
+/// What a ray passes of a cut kernel: at most two pieces, in their order.
+class FacePath {
+  public:
+    FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice = FacePieces::Both);
+
+    std::span<const FacePiece> pieces() const { return {pieces_.data(), count_}; }
+
+    /// The cut kernel at the point z of the ray; 0 outside the matter.
+    double kernel_at(double z) const;
+
+    /// By Gauss-Legendre with `nodes` nodes a piece.
+    FaceFootprint footprint(int nodes, const Slice& slice = {}) const;
+
+  private:
+    double overlap(const FacePiece& piece) const;
+
+    double rho2_, half_chord_;  ///< half_chord_: of the ray within the cut kernel's reach
+    std::array<FacePiece, 2> pieces_;
+    std::size_t count_ = 0;
+};
 
 }  // namespace edgesplat

@@ -21,6 +21,7 @@ layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
@@ -184,7 +185,9 @@ void main() {
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
-        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
+        // What a pixel that is full would still get is taken to be like what it has.
+        vec4 last = open || PAYLOAD == PAYLOAD_TAU ? sum : sum / sum.a;
+        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, last);
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {

@@ -30,7 +30,8 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
             {shader::SPEC_SHADOWS, variant.shadows},
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
-            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U}};
+            {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
+            {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
 }
 
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group) {

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "engine/reference/7_resolve.h"
+#include "engine/reference/faces.h"
 #include "engine/reference/splat_cloud.h"
 
 namespace edgesplat::reference {
@@ -44,7 +46,8 @@ class RayWalker {
                 const ModelSplat* splat = active_[i];
                 const glm::dvec3 d = p - splat->support_center;
                 if (glm::dot(d, d) >= splat->support_radius * splat->support_radius) continue;
-                const double h = mm_per_voxel * footprints_.at_point(*splat->edge, p - splat->center);
+                const double h = mm_per_voxel * (paths_[i] ? paths_[i]->kernel_at(glm::dot(p - splat->center, u))
+                                                           : footprints_.at_point(*splat->edge, p - splat->center));
                 at.extinction += h * splat->extinction;
                 at.emission += h * emission_[i];
             }
@@ -77,14 +80,19 @@ class RayWalker {
     }
 
   private:
-    /// What the gathered splats emit along a piece that begins in a cut, if any, at `entry`.
+    /// What the gathered splats are and emit along a piece that begins in a cut, if any, at `entry`.
     void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry, const glm::dvec3& u) {
         emission_.clear();
+        paths_.clear();
         for (const ModelSplat* splat : active_) {
             const bool shows_cut = face && footprints_.in_matter(*splat->edge, entry - splat->center);
             emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->material, glm::dvec3(0), *face,
                                                                             entry, scene_, view_, Payload::Color)
                                           : splat->extinction * own_light(*splat, entry, u));
+            paths_.emplace_back();
+            if (!footprints_.cuts(*splat->edge)) continue;
+            const glm::dvec3 off = entry - splat->center;
+            paths_.back().emplace(face_path(*splat->edge, off - glm::dot(off, u) * u, u));
         }
     }
 
@@ -105,7 +113,8 @@ class RayWalker {
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
-    std::vector<glm::dvec3> emission_;  ///< of each active splat
+    std::vector<glm::dvec3> emission_;            ///< of each active splat
+    std::vector<std::optional<FacePath>> paths_;  ///< of each whose kernel a face cuts
 };
 
 }  // namespace

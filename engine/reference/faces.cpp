@@ -282,8 +282,13 @@ FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
     sight.ray.rho2 = glm::dot(p, p);
     sight.ray.phi = {value + 0.5 * glm::dot(own + slope, p), glm::dot(slope, u), 0.5 * glm::dot(u, hu)};
     sight.ray.slope2 = {glm::dot(slope, slope), 2 * glm::dot(slope, hu), glm::dot(hu, hu)};
-    sight.ray.along = {glm::dot(p, slope), glm::dot(u, slope) + glm::dot(p, hu), glm::dot(u, hu)};
+    sight.ray.across = glm::dot(p, slope);
+    sight.ray.turn = glm::dot(p, hu);
     return sight;
+}
+
+FacePath face_path(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
+    return {face_sight(edge, p, u).ray, cut_of(edge)};
 }
 
 }  // namespace edgesplat::reference

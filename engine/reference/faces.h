@@ -32,4 +32,7 @@ struct FaceSight {
 };
 FaceSight face_sight(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u);
 
+/// What the ray passes of the kernel that the edge's face cuts.
+FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u);
+
 }  // namespace edgesplat::reference

@@ -54,11 +54,9 @@ double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
     if (!warped(edge)) return edge.weight * kernel(r2);
     if (settings_.warp == WarpFamily::Face) {
-        // A ray that begins there; its direction does not matter.
-        const FaceRay ray = face_sight(edge, r, edge.n).ray;
-        const FaceCut cut = cut_of(edge);
-        const bool inside = ray.phi.c <= 0 && ray.phi.c >= -cut.thickness && r2 < cut.reach * cut.reach;
-        return inside ? face_kernel(ray, cut, 0) : 0;
+        // What a ray across the face meets there.
+        const double along = glm::dot(r, edge.n);
+        return face_path(edge, r - along * edge.n, edge.n).kernel_at(along);
     }
     const double t = glm::dot(r, edge.n);
     if (settings_.warp == WarpFamily::Edge) return edge.weight * kernel(warped_distance2(r2, t, faces(edge)));
@@ -98,7 +96,7 @@ bool Footprints::cuts(const VoxelEdge& edge) const {
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                   const Slice& slice) const {
     constexpr int kNodes = 5;
-    return face_footprint(face_sight(edge, p, u).ray, cut_of(edge), kNodes, slice);
+    return face_path(edge, p, u).footprint(kNodes, slice);
 }
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& r) const {

@@ -40,6 +40,16 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
     return range;
 }
 
+bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
+    constexpr double kPerVoxel = 4;
+    const glm::dvec3 spacing = geometry.spacing();
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const ExtinctionRange range = extinctions_of(scene, m);
+        if (range.most > 0 && !(range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel)) return false;
+    }
+    return true;
+}
+
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume) {
     if (scene.transfer.empty()) return {};
     if (!(volume.max_value > volume.min_value)) {

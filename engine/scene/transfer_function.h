@@ -19,6 +19,9 @@ struct ExtinctionRange {
 /// Extinctions that occur in a material's interval of values: its own, or what the transfer function has there.
 ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
 
+/// Whether all matter that is seen lets at most 2 % of light through a voxel.
+bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry);
+
 /// The scene's points with values scaled as samples are (scaled_field), rounded to float32 as the device holds them;
 /// empty without a transfer function. In a constant volume one point: the function at its value.
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume);

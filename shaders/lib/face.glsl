@@ -6,6 +6,7 @@
 #include "shaders/lib/face_cut.glsl"
 
 const float FACE_STRAIGHT = 1e-6;
+const float FACE_FAR = 1e3;  // voxels: a face that a ray meets further off is not met
 
 // c + z (b + z a).
 struct Quadratic {
@@ -19,7 +20,8 @@ struct FaceRay {
     float rho2;
     Quadratic phi;
     Quadratic slope2;
-    Quadratic along;
+    float across;  // p . grad phi at p
+    float turn;    // p . Hu
 };
 
 struct FaceFootprint {
@@ -49,34 +51,67 @@ FaceRoots face_roots(Quadratic phi, float level) {
     return r;
 }
 
-float face_kernel(FaceRay ray, FaceCut cut, float z) {
-    float phi = quadratic_at(ray.phi, z);
-    float slope2 = max(quadratic_at(ray.slope2, z), 1e-8);
-    float slope = sqrt(slope2);
-    float out_of = -2.0 * phi / (slope + sqrt(max(slope2 - 2.0 * phi * cut.bend, 0.0)) + 1e-12);
-    float above = phi + cut.thickness;
-    float behind = 2.0 * above / (slope + sqrt(max(slope2 - 2.0 * above * cut.bend, 0.0)) + 1e-12);
-    float moved = min(out_of - cut.depth, 0.0) + max(cut.depth - behind, 0.0);
-    return kernel(max(ray.rho2 + z * z + moved * (2.0 * quadratic_at(ray.along, z) / slope + moved), 0.0));
+// The plane that touches a face where a ray meets it, at z: n.p, n.u, and the n.x from which on x is moved along n.
+struct FacePlane {
+    float p;
+    float u;
+    float level;
+};
+
+// `out_along`: 1 where the ray leaves by it, -1 where it enters.
+FacePlane face_plane(FaceRay ray, float depth, float z, float out_along) {
+    float inverse = inversesqrt(max(quadratic_at(ray.slope2, z), 1e-8));
+    float p = (ray.across + z * ray.turn) * inverse;
+    float u = (ray.phi.b + 2.0 * z * ray.phi.a) * inverse;
+    bool turned = u * out_along < 0.0;
+    p = turned ? -p : p;
+    u = turned ? -u : u;
+    bool met = abs(z) < FACE_FAR;
+    FacePlane plane;
+    plane.p = met ? p : 0.0;
+    plane.u = met ? u : 0.0;
+    plane.level = met ? p + z * u - depth : FACE_FAR;
+    return plane;
 }
 
-// Deeper than what is moved, so that beyond the plain kernel's reach there is nothing.
-bool is_deep(FaceRay ray, FaceCut cut, float z) {
-    float phi = quadratic_at(ray.phi, z), shallow2 = cut.depth * cut.depth * quadratic_at(ray.slope2, z);
-    float above = phi + cut.thickness;
-    return phi < 0.0 && phi * phi > shallow2 && above > 0.0 && above * above > shallow2;
+// |x|^2 of where a point of the ray is sampled, less rho2.
+float face_beyond(FacePlane plane, float z) {
+    float t = plane.p + z * plane.u;
+    float held = min(t, plane.level);
+    return z * z - t * t + held * held;
 }
 
-FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
-    FaceFootprint result;
-    result.integral = 0.0;
-    result.side = 1.0;
-    float half_chord = sqrt(max(cut.reach2 - ray.rho2, 0.0));
-    result.entry = 0.0;
+bool is_deep(FacePlane plane, float z) { return plane.p + z * plane.u <= plane.level; }
+
+// The kernel between two ends of a ray's way through the matter: cut, and mapped near each by the plane that touches it there.
+float face_piece(FaceRay ray, FaceCut cut, float from, float to, float half_chord, Slice slice) {
+    FacePlane entry = face_plane(ray, cut.depth, from, -1.0);
+    FacePlane leave = face_plane(ray, cut.depth, to, 1.0);
     float plain = sqrt(max(KERNEL_R2 - ray.rho2, 0.0));
-    float low = max(is_deep(ray, cut, -plain) ? -plain : -half_chord, slice.low);
-    float high = min(is_deep(ray, cut, plain) ? plain : half_chord, slice.high);
+    float core = 1.0 - ray.rho2 * KERNEL_INVERSE_R2;
+    float middle = 0.5 * (from + to);
+    // Deeper than what is moved there is nothing beyond the plain kernel's reach.
+    float begin = max(max(from, is_deep(entry, -plain) ? -plain : -half_chord), slice.low);
+    float len = max(min(min(to, is_deep(leave, plain) ? plain : half_chord), slice.high) - begin, 0.0);
+    float sum = 0.0;
+    for (int k = 0; k < FOOTPRINT_NODES; ++k) {
+        float z = begin + len * FOOTPRINT_NODE[FOOTPRINT_RULE + k];
+        bool late = z > middle;
+        FacePlane plane;
+        plane.p = late ? leave.p : entry.p;
+        plane.u = late ? leave.u : entry.u;
+        plane.level = late ? leave.level : entry.level;
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * kernel_at(core - face_beyond(plane, z) * KERNEL_INVERSE_R2);
+    }
+    return len * sum;
+}
+
+// Without a loop that depends on the splat: lavapipe would keep nothing in registers across it. The including shader declares
+// FACE_PIECES: 2, or 1 where matter is opaque; of two pieces the longer counts then.
+FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
+    float half_chord = sqrt(max(cut.reach2 - ray.rho2, 0.0));
     bool wall = cut.thickness < FACE_NO_WALL;
+    // Along the ray phi has a least value between its zeros, or a largest.
     bool opens = ray.phi.a >= 0.0;
     FaceRoots face = face_roots(ray.phi, 0.0);
     FaceRoots behind = face_roots(ray.phi, cut.thickness);
@@ -86,25 +121,23 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
     float outer_low = everywhere ? -1e9 : (opens ? face.low : behind.low);
     float outer_high = everywhere ? 1e9 : (opens ? face.high : behind.high);
     bool has_inner = opens ? behind.real : face.real;
-    float inner_low = opens ? behind.low : face.low;
-    float inner_high = opens ? behind.high : face.high;
-    int pieces = half_chord > 0.0 && has_outer ? (has_inner ? 2 : 1) : 0;
-    bool entered = false;
-    for (int i = 0; i < pieces; ++i) {
-        float from = i == 0 ? outer_low : inner_high;
-        float to = i == 0 && has_inner ? inner_low : outer_high;
-        bool from_behind = i == 0 ? !opens && wall : opens;
-        float begin = max(from, low);
-        float len = max(min(to, high) - begin, 0.0);
-        float sum = 0.0;
-        for (int k = 0; k < FOOTPRINT_NODES; ++k)
-            sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * face_kernel(ray, cut, begin + len * FOOTPRINT_NODE[FOOTPRINT_RULE + k]);
-        result.integral += len * sum;
-        bool first = len > 0.0 && !entered;
-        result.entry = first ? clamp(from, -half_chord, half_chord) : result.entry;
-        result.side = first && from_behind && from > -half_chord ? -1.0 : result.side;
-        entered = entered || len > 0.0;
+    float inner_low = has_inner ? (opens ? behind.low : face.low) : outer_high;
+    float inner_high = has_inner ? (opens ? behind.high : face.high) : outer_high;
+    float before = min(inner_low, half_chord) - max(outer_low, -half_chord);
+    float after = min(outer_high, half_chord) - max(inner_high, -half_chord);
+    bool first = !has_inner || (FACE_PIECES == 1u ? before > after : before > 0.0);
+    float from = first ? outer_low : inner_high;
+    float to = first ? inner_low : outer_high;
+    FaceFootprint result;
+    result.integral = face_piece(ray, cut, from, to, half_chord, slice);
+    if (FACE_PIECES == 2u) {
+        float other = face_piece(ray, cut, inner_high, outer_high, half_chord, slice);
+        result.integral += first && has_inner ? other : 0.0;
     }
+    result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
+    bool from_behind = first ? !opens && wall : opens;
+    result.entry = clamp(from, -half_chord, half_chord);
+    result.side = from_behind && from > -half_chord ? -1.0 : 1.0;
     return result;
 }
 #endif

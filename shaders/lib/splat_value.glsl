@@ -86,7 +86,8 @@ FaceSight face_sight(vec3 p, vec3 u) {
     ray.rho2 = dot(p, p);
     ray.phi = Quadratic(face_form.value + 0.5 * dot(face_form.slope + slope, p), dot(slope, u), 0.5 * dot(u, hu));
     ray.slope2 = Quadratic(dot(slope, slope), 2.0 * dot(slope, hu), dot(hu, hu));
-    ray.along = Quadratic(dot(p, slope), dot(u, slope) + dot(p, hu), dot(u, hu));
+    ray.across = dot(p, slope);
+    ray.turn = dot(p, hu);
     return FaceSight(ray, slope, hu);
 }
 
@@ -107,18 +108,15 @@ vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead) {
 // (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
 vec4 face_value(FaceSight sight, vec3 u, float ahead, float z, Slice slice) {
     bool plain = face_form.cut.depth < 0.0;
-    FaceFootprint f;
-    f.integral = footprint_isotropic(sight.ray.rho2, slice);
-    f.entry = 0.0;
-    f.side = 1.0;
-    for (int run = plain ? 0 : 1; run > 0; --run) f = footprint_face(sight.ray, face_form.cut, slice);
+    FaceFootprint f = footprint_face(sight.ray, face_form.cut, slice);
+    f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
+    f.entry = plain ? 0.0 : f.entry;
+    f.side = plain ? 1.0 : f.side;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;
     }
-    vec3 payload = vec3(0.0);
-    for (int run = f.integral > 0.0 && PAYLOAD != PAYLOAD_TAU ? 1 : 0; run > 0; --run)
-        payload = face_payload(sight, f.entry, f.side, u, ahead);
+    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, u, ahead);
     return f.integral * vec4(payload, 1.0);
 }
 
@@ -147,9 +145,8 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
                    is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
                                 CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
         if (FACES) {
-            float level = quadratic_at(sight.ray.phi, piece.low);
             bool plain = face_form.cut.depth < 0.0;
-            bool inside = level <= 0.0 && level >= -face_form.cut.thickness && face_kernel(sight.ray, face_form.cut, piece.low) > 0.0;
+            bool inside = footprint_face(sight.ray, face_form.cut, Slice(piece.low, piece.low + 1e-3)).integral > 0.0;
             cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 && (plain ? matter2 < KERNEL_R2 : inside);
         }
         vec3 payload = color_sigma.rgb;

@@ -19,7 +19,7 @@ FaceRay plane_ray(double distance, double cosine, double along, double across) {
     ray.rho2 = sine2 > 0 ? along * along / sine2 + across * across : across * across;
     ray.phi = {pn - distance, cosine, 0};
     ray.slope2 = {1, 0, 0};
-    ray.along = {pn, cosine, 0};
+    ray.across = pn;
     return ray;
 }
 
@@ -27,10 +27,10 @@ FaceRay plane_ray(double distance, double cosine, double along, double across) {
 double summed(const FaceRay& ray, const FaceCut& cut) {
     constexpr int kSteps = 20000;
     const double half = std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0));
+    const FacePath path(ray, cut);
     double sum = 0;
     for (int i = 0; i < kSteps; ++i) {
-        const double z = -half + 2 * half * (i + 0.5) / kSteps, phi = ray.phi.at(z);
-        if (phi <= 0 && phi >= -cut.thickness) sum += face_kernel(ray, cut, z);
+        sum += path.kernel_at(-half + 2 * half * (i + 0.5) / kSteps);
     }
     return sum * 2 * half / kSteps;
 }
@@ -40,16 +40,16 @@ TEST(Face, ADeepKernelIsThePlainOne) {
     const FaceCut cut = face_cut(5, 0, 0, std::numeric_limits<double>::infinity());
     FaceRay deep = ray;
     deep.phi.c -= 3;
-    EXPECT_NEAR(face_footprint(deep, cut, 16).integral, kernel_footprint(ray.rho2), 1e-6);
+    EXPECT_NEAR(FacePath(deep, cut).footprint(16).integral, kernel_footprint(ray.rho2), 1e-6);
 }
 
 TEST(Face, NothingLiesBeyondAFace) {
     const FaceCut cut = face_cut(-3, 0, 0, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(face_footprint(plane_ray(-3, 0, 0.2, 0.1), cut, 8).integral, 0);
+    EXPECT_EQ(FacePath(plane_ray(-3, 0, 0.2, 0.1), cut).footprint(8).integral, 0);
     // Half a kernel, along the face: what is left is moved to where it is sampled.
     const FaceCut at = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
-    EXPECT_EQ(face_footprint(plane_ray(0.5, 0, 0.51, 0), at, 8).integral, 0);
-    EXPECT_GT(face_footprint(plane_ray(0.5, 0, 0.49, 0), at, 8).integral, 0.1);
+    EXPECT_EQ(FacePath(plane_ray(0.5, 0, 0.51, 0), at).footprint(8).integral, 0);
+    EXPECT_GT(FacePath(plane_ray(0.5, 0, 0.49, 0), at).footprint(8).integral, 0.1);
 }
 
 TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {
@@ -63,8 +63,9 @@ TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {
         const double thickness = i % 2 == 0 ? distance + uniform(0.5, 2) : std::numeric_limits<double>::infinity();
         const FaceCut cut = face_cut(distance, 0, 0, thickness);
         const double want = summed(ray, cut), peak = kernel_footprint(0);
-        squares += std::pow((face_footprint(ray, cut, 5).integral - want) / peak, 2);
-        worst_of_sixteen = std::max(worst_of_sixteen, std::abs(face_footprint(ray, cut, 16).integral - want) / peak);
+        squares += std::pow((FacePath(ray, cut).footprint(5).integral - want) / peak, 2);
+        worst_of_sixteen =
+            std::max(worst_of_sixteen, std::abs(FacePath(ray, cut).footprint(16).integral - want) / peak);
     }
     EXPECT_LE(std::sqrt(squares / kRays), 0.02);
     EXPECT_LE(worst_of_sixteen, 0.01);
@@ -86,9 +87,9 @@ double sum_of_kernels(const std::array<double, 3>& n, double shift, double below
                 ray.rho2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
                 ray.phi = {rn - distance, 1, 0};
                 ray.slope2 = {1, 0, 0};
-                ray.along = {rn, 1, 0};
+                ray.across = rn;
                 const FaceCut cut = face_cut(distance, 0, 0, std::numeric_limits<double>::infinity());
-                if (ray.phi.c <= 0) sum += face_kernel(ray, cut, 0);
+                sum += FacePath(ray, cut).kernel_at(0);
             }
     return sum;
 }
@@ -113,13 +114,14 @@ TEST(Face, KernelsSumToAPlateauUpToTheFace) {
 
 TEST(Face, AWallIsEnteredFromEitherSide) {
     const FaceRay through = plane_ray(0.6, 1, 0, 0), back = plane_ray(0.6, -1, 0, 0);
-    const FacePieces pieces = face_pieces(through, 1.5);
-    ASSERT_EQ(pieces.count, 2);
+    const FacePath path(through, face_cut(0.6, 0, 0, 1.5));
+    const auto pieces = path.pieces();
+    ASSERT_EQ(pieces.size(), 2);
     // The piece between both faces; the one beyond phi's second zero lies out of reach.
-    EXPECT_TRUE(pieces.piece[1].from_behind);
-    EXPECT_NEAR(pieces.piece[1].low, -0.9, 1e-5);
+    EXPECT_TRUE(pieces[1].from_behind);
+    EXPECT_NEAR(pieces[1].low, -0.9, 1e-5);
     const FaceCut cut = face_cut(0.6, 0, 0, 1.5);
-    const FaceFootprint out = face_footprint(through, cut, 8), in = face_footprint(back, cut, 8);
+    const FaceFootprint out = FacePath(through, cut).footprint(8), in = FacePath(back, cut).footprint(8);
     EXPECT_TRUE(out.from_behind != in.from_behind);
     EXPECT_NEAR(std::min(out.entry, in.entry), -0.9, 1e-4);
     EXPECT_NEAR(std::max(out.entry, in.entry), -0.6, 1e-4);
@@ -131,9 +133,9 @@ TEST(Face, DegenerateFacesAreFinite) {
     for (const double a : odd)
         for (const double b : odd)
             for (const double c : odd) {
-                const FaceRay ray{0.3, {c, b, a}, {b * b, a * b, a * a}, {c, b, a}};
+                const FaceRay ray{0.3, {c, b, a}, {b * b, a * b, a * a}, c, a};
                 for (const double thickness : {0.05, 1.0, std::numeric_limits<double>::infinity()}) {
-                    const FaceFootprint f = face_footprint(ray, face_cut(0.4, a, std::abs(b), thickness), 4);
+                    const FaceFootprint f = FacePath(ray, face_cut(0.4, a, std::abs(b), thickness)).footprint(4);
                     EXPECT_TRUE(std::isfinite(f.integral) && f.integral >= 0 && f.integral < 2) << a << b << c;
                     EXPECT_TRUE(std::isfinite(f.entry));
                 }

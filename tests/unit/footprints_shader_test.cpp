@@ -42,6 +42,9 @@ inline float floor(float v) {
 inline float mix(float a, float b, bool second) {
     return second ? b : a;
 }
+inline float inversesqrt(float v) {
+    return 1 / std::sqrt(v);
+}
 inline float acos(float v) {
     return std::acos(v);
 }
@@ -82,6 +85,7 @@ const uint NODES = 4;
 #include "shaders/lib/footprint.glsl"
 
 // After what it needs.
+const uint FACE_PIECES = 2;
 #include "shaders/lib/face.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
@@ -216,7 +220,8 @@ TEST(FootprintShader, MirrorsFaces) {
         const FaceRay ray{glm::dot(p, p),
                           {value + 0.5 * glm::dot(own + slope, p), glm::dot(slope, u), 0.5 * glm::dot(u, turn)},
                           {glm::dot(slope, slope), 2 * glm::dot(slope, turn), glm::dot(turn, turn)},
-                          {glm::dot(p, slope), glm::dot(u, slope) + glm::dot(p, turn), glm::dot(u, turn)}};
+                          glm::dot(p, slope),
+                          glm::dot(p, turn)};
         const double thickness = i % 3 == 0 ? distance + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
         const FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness);
         const four::FaceCut got =
@@ -224,9 +229,9 @@ TEST(FootprintShader, MirrorsFaces) {
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
         EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
         EXPECT_GE(static_cast<double>(got.shift + got.radius), 1.59);
-        const FaceFootprint a = face_footprint(ray, want, 4);
+        const FaceFootprint a = FacePath(ray, want).footprint(4);
         const four::FaceFootprint b = four::footprint_face(
-            {f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), quadratic(ray.along)}, got, {-1e9F, 1e9F});
+            {f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), f(ray.across), f(ray.turn)}, got, {-1e9F, 1e9F});
         error.add(static_cast<double>(b.integral), a.integral);
         if (!(a.integral > 1e-3)) continue;
         ++cut;
