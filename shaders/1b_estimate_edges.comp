@@ -192,7 +192,14 @@ void main() {
             float slope = length(g);
             if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
         }
-        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e));
+        uint border = 0u;
+        if (FACES == 1u) {
+            vec3 out_of = border_beside(p);
+            bool ends = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
+            if (ends) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);
+            border = ends ? EDGE_BORDER : 0u;
+        }
+        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e) | border);
         imageStore(edges, p, uvec4(code, 0u, 0u));
     }
 }

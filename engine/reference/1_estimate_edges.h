@@ -24,6 +24,7 @@ struct VoxelEdge {
     double weight = 1;      ///< of the kernel, where kernels are normalised
     bool has_normal = false;
     bool has_edge = false;
+    bool border = false;   ///< of a point of the surface: the volume ends there
     bool upper = false;    ///< the edge is the upper end of the voxel's interval
     bool adopted = false;  ///< the plane is a neighbour's
 };

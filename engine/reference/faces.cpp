@@ -19,6 +19,8 @@ constexpr auto kFitRidge = static_cast<double>(shader::FIT_RIDGE);
 constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
 constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
 constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
+constexpr auto kOwnShare = static_cast<double>(shader::FIT_OWN);
+constexpr auto kWell = static_cast<double>(shader::FIT_WELL);
 constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
 constexpr auto kBendingUnit = static_cast<double>(shader::BENDING_UNIT);
 
@@ -67,7 +69,8 @@ std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, co
     if (!edge.has_edge) return std::nullopt;
     const int own = scene.material(field.at(j));
     // An upper end is the lower end of the material above.
-    const bool below = own + 1 == m && edge.upper, above = own == m + 1 && !edge.upper;
+    // The volume's border bounds what is inside of it alone.
+    const bool below = own + 1 == m && edge.upper && !edge.border, above = own == m + 1 && !edge.upper && !edge.border;
     if (own != m && !below && !above) return std::nullopt;
     return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above};
 }
@@ -144,7 +147,10 @@ Quadric quadric_of(const Moments& sums) {
 
 }  // namespace
 
-VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+namespace {
+
+/// The point of the field's surface.
+VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
     const VoxelEdge none = normal_alone(field, i);
     const double f = field.at(i);
     const int m = scene.material(f);
@@ -181,6 +187,77 @@ VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::i
     return edge;
 }
 
+/// Where the volume ends, half a voxel beyond its outermost samples: the side beside voxel i, towards it, or 0.
+dvec3 border_beside(const Field& field, const glm::ivec3& i) {
+    for (int axis = 0; axis < 3; ++axis) {
+        if (i[axis] != 0 && i[axis] != field.dims[axis] - 1) continue;
+        dvec3 n(0);
+        n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
+        return n;
+    }
+    return dvec3(0);
+}
+
+/// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13).
+Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
+    const auto at = [&](int x, int y, int z) { return field.at(i + glm::ivec3(x, y, z)); };
+    const double f = at(0, 0, 0), off = iso - f;
+    const dvec3 low(at(-1, 0, 0), at(0, -1, 0), at(0, 0, -1)), high(at(1, 0, 0), at(0, 1, 0), at(0, 0, 1));
+    const dvec3 g = 0.5 * (high - low), diagonal = high - 2 * f + low;
+    const double yz = 0.25 * (at(0, 1, 1) - at(0, 1, -1) - at(0, -1, 1) + at(0, -1, -1));
+    const double xz = 0.25 * (at(1, 0, 1) - at(1, 0, -1) - at(-1, 0, 1) + at(-1, 0, -1));
+    const double xy = 0.25 * (at(1, 1, 0) - at(1, -1, 0) - at(-1, 1, 0) + at(-1, -1, 0));
+    const double norm = std::sqrt(glm::dot(diagonal, diagonal) + 2 * (yz * yz + xz * xz + xy * xy));
+    const double scale = side / std::sqrt(std::max(glm::dot(g, g) + 2 * std::abs(off) * norm, 1e-12));
+    return {scale * off, -scale * g, -scale * dmat3(diagonal.x, xy, xz, xy, diagonal.y, yz, xz, yz, diagonal.z)};
+}
+
+/// The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
+dvec3 foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
+    for (int step = 0; step < shader::FOOT_STEPS; ++step) {
+        const double steep = glm::length(q.slope(at)), value = q.at(at);
+        const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
+        const double bend = glm::dot(up, q.h * up);
+        const double moved = -2 * value / (steep + std::sqrt(std::max(steep * steep - 2 * value * bend, 0.0)) + 1e-6);
+        at += std::clamp(moved, -1.0, 1.0) * up;
+        const dvec3 from = at - voxel_at;
+        if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
+    }
+    return at;
+}
+
+/// How far a point is from a quadric, to first order.
+double off_of(const Quadric& q, const dvec3& r) {
+    return q.at(r) / std::max(glm::length(q.slope(r)), 0.2);
+}
+
+/// By how much samples around voxel i lie on the wrong side of what `off` says, squared.
+template <typename Off>
+double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec3& i, const Off& off) {
+    const int m = scene.material(field.at(i));
+    double wrong = 0;
+    for (int k = 0; k < 27; ++k) {
+        const glm::ivec3 o = glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1, j = i + o;
+        const bool inside = j == field.clamped(j) && scene.material(field.at(j)) == m;
+        const double d = off(dvec3(o));
+        wrong += std::pow(std::clamp(inside ? d : -d, 0.0, 1.0), 2);
+    }
+    return wrong;
+}
+
+}  // namespace
+
+VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+    VoxelEdge edge = surfel_in_field(field, scene, i, cubic);
+    const dvec3 out_of = border_beside(field, i);
+    if (glm::dot(out_of, out_of) == 0 || (edge.has_edge && std::abs(edge.D) <= 0.5)) return edge;
+    edge = {};
+    edge.n = out_of;
+    edge.D = 0.5;
+    edge.has_edge = edge.has_normal = edge.border = true;
+    return edge;
+}
+
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                    const glm::ivec3& i) {
     const int m = scene.material(field.at(i));
@@ -197,7 +274,17 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         distance = glm::length(s.at);
         nearest = s;
     });
-    if (!(distance < kFaceSearch)) return normal_alone(field, i);
+    const bool found = distance < kFaceSearch;
+    if (!found) {
+        Crossed crossed;
+        for (int k = 0; k < 27; ++k) {
+            const int other = scene.material(field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1));
+            crossed.down = crossed.down || other < m;
+            crossed.up = crossed.up || other > m;
+        }
+        if (!crossed.down && !crossed.up) return normal_alone(field, i);
+        nearest.upper = !crossed.down;
+    }
     const dvec3 middle = nearest.at, n = nearest.n;
     const glm::ivec3 center = i + glm::ivec3(glm::roundEven(middle));
     Moments all, same;
@@ -208,12 +295,14 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         if (glm::dot(s.n, n) > 0) same.add(r, s.n, w);
     });
     const Quadric one = quadric_of(all), wall = quadric_of(same);
-    double of_one = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
+    const double iso = nearest.upper ? scene.upper(m) : scene.lower(std::max(m, 1));
+    const Quadric own = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
+    double of_one = 0, of_own = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
     around(center, [&](const Surfel& s) {
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n), facing = glm::dot(s.n, n), level = wall.at(r);
-        const double off = one.at(r) / std::max(glm::length(one.slope(r)), 0.2);
-        of_one += w * off * off;
+        of_one += w * std::pow(off_of(one, r), 2);
+        of_own += w * std::pow(off_of(own, s.at), 2);
         if (facing > 0) of_same += w * level * level;
         if (facing <= 0 && facing >= -0.5) of_same += w;
         if (facing >= -0.5) return;
@@ -223,27 +312,39 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     });
     // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
     const double level = sum / std::max(opposite, 1e-20);
-    const bool is_wall =
-        opposite > 0 && level < -kThinnest && of_same + std::max(sum2 - sum * level, 0.0) < kWallShare * of_one;
-    const Quadric& q = is_wall ? wall : one;
-    // The foot point: where the quadric's own normal leads to the voxel.
-    dvec3 at(0);
-    for (int step = 0; step < shader::FOOT_STEPS; ++step) {
-        const double steep = glm::length(q.slope(at)), value = q.at(at);
-        const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
-        const double bend = glm::dot(up, q.h * up);
-        const double moved = -2 * value / (steep + std::sqrt(std::max(steep * steep - 2 * value * bend, 0.0)) + 1e-6);
-        at += std::clamp(moved, -1.0, 1.0) * up;
-        const dvec3 from = at + middle;
-        if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
+    const double of_wall = of_same + std::max(sum2 - sum * level, 0.0);
+    bool is_wall = opposite > 0 && level < -kThinnest && of_wall < kWallShare * of_one;
+    const double error =
+        is_wall ? of_wall + wrong_sides(field, scene, i,
+                                        [&](const dvec3& r) {
+                                            const double to_wall = wall.at(r - middle);
+                                            return std::max(to_wall, level - to_wall);
+                                        })
+                : of_one + wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(one, r - middle); });
+    const double own_error = of_own + wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(own, r); });
+    // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
+    // voxel.
+    const bool is_own = !found || (error > kWell && own_error < kOwnShare * error);
+    is_wall = is_wall && !is_own;
+    const Quadric& q = is_own ? own : (is_wall ? wall : one);
+    const dvec3 about = is_own ? dvec3(0) : middle;
+    dvec3 begin(0);
+    if (is_own) {
+        const dvec3 d(q.h[0][0], q.h[1][1], q.h[2][2]);
+        const int axis = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
+        dvec3 way = q.g;
+        way[axis] += 1e-3;
+        begin = 0.1 * glm::normalize(way);
     }
+    const dvec3 at = foot_of(q, -about, begin);
     const double steep = glm::length(q.slope(at));
     const bool real = steep >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius;
+    if (is_own && !real) return normal_alone(field, i);
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;
     edge.n = real ? q.slope(at) / steep : n;
-    edge.D = glm::dot(middle + (real ? at : dvec3(0)), edge.n);
+    edge.D = glm::dot(about + (real ? at : dvec3(0)), edge.n);
     if (real) edge.bending = q.h / steep;
     if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     return edge;

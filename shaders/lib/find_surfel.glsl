@@ -44,3 +44,17 @@ Edge find_surfel(ivec3 p, float value, float low, float high) {
     if (found) e = Edge(n, d, 1e9, upper ? EDGE_UPPER : EDGE_LOWER);
     return e;
 }
+
+// Where the volume ends, half a voxel beyond its outermost samples: the side nearest to voxel p, towards it; 0 where none
+// is nearer than a voxel.
+vec3 border_beside(ivec3 p) {
+    ivec3 at = p + params.scene.block_origin;
+    bvec3 low = equal(at, ivec3(0)), high = equal(at, params.scene.volume_dims - 1);
+    for (int i = 0; i < 3; ++i)
+        if (low[i] || high[i]) {
+            vec3 n = vec3(0.0);
+            n[i] = high[i] ? 1.0 : -1.0;
+            return n;
+        }
+    return vec3(0.0);
+}

@@ -19,6 +19,8 @@ EDGESPLAT_CONSTANT float FIT_RADIUS = 1.5f;     // voxels around it from which a
 EDGESPLAT_CONSTANT float FIT_RIDGE = 1e-3f;     // voxels^2: weight of H = 0 against the scatter of what is fitted
 EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave less of the squared error than one quadric
 EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
+EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
+EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 2.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 2), 1/voxel
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record

@@ -47,6 +47,7 @@ EDGESPLAT_CONSTANT uint EDGE_NONE = 0u;           // neither edge nor normal
 EDGESPLAT_CONSTANT uint EDGE_NORMAL = 1u;         // a normal for light, no edge
 EDGESPLAT_CONSTANT uint EDGE_LOWER = 2u;          // edge at the lower end of the voxel's interval: the voxel is inside
 EDGESPLAT_CONSTANT uint EDGE_UPPER = 3u;          // edge at the upper end: the voxel is outside
+EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 29;   // likewise: the volume ends there
 EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: plane taken from a neighbour
 
 EDGESPLAT_SHARED_END
