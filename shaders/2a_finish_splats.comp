@@ -84,7 +84,7 @@ void main() {
             e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
             BendingsRef(params.scene.traits).at[i] =
-                cut ? uvec2(pack_bending(face.h.diagonal), pack_bending(face.h.mixed)) : uvec2(0u);
+                cut ? uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed)) : uvec2(0u);
         }
         with_edge = e.state >= EDGE_LOWER;
         splats.at[i] = Splat(splat.voxel, normal, (e.state == EDGE_NONE ? 0u : pack_edge(e)) | (material << 28));

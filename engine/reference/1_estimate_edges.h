@@ -25,6 +25,7 @@ struct VoxelEdge {
     bool has_normal = false;
     bool has_edge = false;
     bool border = false;   ///< of a point of the surface: the volume ends there
+    bool mixed = false;    ///< of a face: what faces the other way is the other end of the interval
     bool upper = false;    ///< the edge is the upper end of the voxel's interval
     bool adopted = false;  ///< the plane is a neighbour's
 };

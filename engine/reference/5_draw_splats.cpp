@@ -91,14 +91,18 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
     glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
     double z = 0;
+    bool upper = edge.upper;
     if (footprints.cuts(edge)) {
         const FaceFootprint seen = footprints.at_face(edge, p, u, slice);
         z = seen.entry;
-        outward = face_sight(edge, p, u).outward(z, seen.from_behind);
+        const FaceSight sight = face_sight(edge, p, u), there = face_sight(edge, glm::dvec3(0), u);
+        outward = sight.outward(z, seen.from_behind);
+        // Both faces of a layer between two iso-values face the lower values.
+        upper = upper != (edge.mixed && glm::dot(outward, there.slope) < 0);
     }
     const glm::dvec3 at = glm::dvec3(field.voxel(record.voxel)) + p + z * u;
     const bool faceless = glm::length(outward) == 0;
-    const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, edge.upper ? -outward : outward);
+    const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, upper ? -outward : outward);
     if (payload == Payload::Depth) return {view.depth(at), 0, 0};
     if (payload == Payload::Normal) return normal;
     const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;

@@ -288,11 +288,13 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const dvec3 middle = nearest.at, n = nearest.n;
     const glm::ivec3 center = i + glm::ivec3(glm::roundEven(middle));
     Moments all, same;
+    double mixed = 0;
     around(center, [&](const Surfel& s) {
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n);
         all.add(r, s.n, w);
         if (glm::dot(s.n, n) > 0) same.add(r, s.n, w);
+        if (glm::dot(s.n, n) < 0) mixed += s.upper != nearest.upper ? w : -w;
     });
     const Quadric one = quadric_of(all), wall = quadric_of(same);
     const double iso = nearest.upper ? scene.upper(m) : scene.lower(std::max(m, 1));
@@ -343,6 +345,8 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;
+    // Where none is seen a layer ends at its lower values.
+    edge.mixed = mixed > 0 || (mixed == 0 && nearest.upper);
     edge.n = real ? q.slope(at) / steep : n;
     edge.D = glm::dot(about + (real ? at : dvec3(0)), edge.n);
     if (real) edge.bending = q.h / steep;

@@ -16,5 +16,5 @@ struct FaceForm {
     FaceCut cut;  // depth < 0: the kernel is plain
 };
 
-const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u;  // of SplatInputs::number_material.y
+const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // of SplatInputs::number_material.y
 #endif

@@ -117,6 +117,7 @@ Quadric quadric_of(Moments sums) {
 struct Face {
     Edge edge;
     Bending h;
+    bool mixed;  // what faces the other way around is the other end of the material's interval
 };
 
 // How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
@@ -210,7 +211,7 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
 
 // Without a surface in reach: no edge.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)));
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = FACE_SEARCH;
     uint state = EDGE_LOWER;
@@ -233,6 +234,7 @@ Face fit_face(ivec3 p, uint material) {
     if (!found) state = crossed.x ? EDGE_LOWER : EDGE_UPPER;
     for (int run = found || crossed.x || crossed.y ? 1 : 0; run > 0; --run) {
         Moments all = no_moments(), same = no_moments();
+        float mixed = 0.0;
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
             Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
@@ -240,7 +242,10 @@ Face fit_face(ivec3 p, uint material) {
             float w = s.there ? surfel_weight(r, n, s.n) : 0.0;
             add_surfel(all, r, s.n, w);
             add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
+            mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
         }
+        // Where none is seen a layer ends at its lower values.
+        face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
         Quadric one = quadric_of(all), wall = quadric_of(same);
         bool upper = state == EDGE_UPPER;
         Quadric centred = field_quadric(p, params.scene.iso[upper ? material : max(material, 1u) - 1u], upper ? -1.0 : 1.0);

@@ -171,8 +171,10 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
     if (!state.volume_resources.traits) return records;
     if (state.collected->faces) {
         const auto bendings = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
-        for (std::size_t i = 0; i < records.size(); ++i)
+        for (std::size_t i = 0; i < records.size(); ++i) {
             records[i].edge.bending = decode_bending(bendings[i]);
+            records[i].edge.mixed = (bendings[i].x >> 30U & 1U) != 0;
+        }
         return records;
     }
     const auto traits = download<std::uint32_t>(state, state.volume_resources.traits, records.size());
