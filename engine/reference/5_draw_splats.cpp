@@ -95,10 +95,11 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     if (footprints.cuts(edge)) {
         const FaceFootprint seen = footprints.at_face(edge, p, u, slice);
         z = seen.entry;
-        const FaceSight sight = face_sight(edge, p, u), there = face_sight(edge, glm::dvec3(0), u);
-        outward = sight.outward(z, seen.from_behind);
+        outward = face_sight(edge, p, u).outward(z, seen.from_behind);
         // Both faces of a layer between two iso-values face the lower values.
-        upper = upper != (edge.mixed && glm::dot(outward, there.slope) < 0);
+        const glm::dvec3 a = glm::abs(edge.n);
+        const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+        upper = upper != (edge.mixed && outward[axis] * edge.n[axis] < 0);
     }
     const glm::dvec3 at = glm::dvec3(field.voxel(record.voxel)) + p + z * u;
     const bool faceless = glm::length(outward) == 0;

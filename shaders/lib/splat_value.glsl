@@ -96,7 +96,10 @@ vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
     vec3 slope = sight.slope + z * sight.turn;
     // Both faces of a layer between two iso-values face the lower values.
-    upward = upward != ((number_material.y & IS_MIXED) != 0u && side * dot(slope, face_form.slope) < 0.0);
+    uint axis = number_material.y >> MAIN_AXIS_AT;
+    float along = (axis & 3u) == 0u ? slope.x : (axis & 3u) == 1u ? slope.y : slope.z;
+    bool is_other = ((axis & 4u) != 0u ? -side : side) * along < 0.0;
+    upward = upward != ((number_material.y & IS_MIXED) != 0u && is_other);
     vec3 outward = (upward ? -side : side) * slope;
     vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
