@@ -29,7 +29,7 @@ constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
 constexpr double kFewNodesSpacing = 0.3;
-constexpr std::uint32_t kFaceNodes = 5;       // of a piece of a kernel that a face cuts
+constexpr std::uint32_t kFaceNodes = 6;       // of a piece of a kernel that a face cuts
 constexpr double kFarthestPointLight = 1e12;  // mm
 
 /// Millimetres per voxel along the axis of shortest step.

@@ -67,7 +67,7 @@ class RayWalker {
                 const double step = std::min(kPanel, last - t);
                 cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
                 light(cut_seen ? piece.face : std::nullopt, origin + piece.first * u, u);
-                if (!active_.empty()) integrator.add(t, step);
+                if (!active_.empty()) add_pieces(integrator, origin, u, t, t + step);
                 t += kPanel;
             }
         }
@@ -80,6 +80,22 @@ class RayWalker {
     }
 
   private:
+    /// From `begin` to `end`, in pieces that end where a face begins, ends or changes how a kernel is moved.
+    template <typename Integrator>
+    void add_pieces(Integrator& integrator, const glm::dvec3& origin, const glm::dvec3& u, double begin, double end) {
+        breaks_.assign({begin, end});
+        for (std::size_t i = 0; i < active_.size(); ++i) {
+            if (!paths_[i]) continue;
+            const double center = glm::dot(active_[i]->center - origin, u);
+            for (const FacePiece& piece : paths_[i]->pieces())
+                for (const double z : {piece.low, 0.5 * (piece.low + piece.high), piece.high})
+                    if (center + z > begin && center + z < end) breaks_.push_back(center + z);
+        }
+        std::ranges::sort(breaks_);
+        for (std::size_t i = 1; i < breaks_.size(); ++i)
+            if (breaks_[i] - breaks_[i - 1] > 1e-9) integrator.add(breaks_[i - 1], breaks_[i] - breaks_[i - 1]);
+    }
+
     /// What the gathered splats are and emit along a piece that begins in a cut, if any, at `entry`.
     void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry, const glm::dvec3& u) {
         emission_.clear();
@@ -113,7 +129,8 @@ class RayWalker {
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
-    std::vector<glm::dvec3> emission_;            ///< of each active splat
+    std::vector<glm::dvec3> emission_;  ///< of each active splat
+    std::vector<double> breaks_;
     std::vector<std::optional<FacePath>> paths_;  ///< of each whose kernel a face cuts
 };
 

@@ -95,7 +95,7 @@ bool Footprints::cuts(const VoxelEdge& edge) const {
 
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                   const Slice& slice) const {
-    constexpr int kNodes = 5;
+    constexpr int kNodes = 6;
     return face_path(edge, p, u).footprint(kNodes, slice);
 }
 
