@@ -193,7 +193,7 @@ void main() {
             if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
         }
         uint border = 0u;
-        if (FACES == 1u) {
+        if (FACES == 1u && marched) {
             vec3 out_of = border_beside(p);
             bool ends = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
             if (ends) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);

@@ -185,9 +185,7 @@ void main() {
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
-        // What a pixel that is full would still get is taken to be like what it has.
-        vec4 last = open || PAYLOAD == PAYLOAD_TAU ? sum : sum / sum.a;
-        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, last);
+        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {

@@ -166,18 +166,16 @@ AnalyticScene plane_scene(const glm::ivec3& dims, const glm::dvec3& normal, cons
 AnalyticScene sphere_scene(const glm::ivec3& dims, const glm::dvec3& center, double radius,
                            const EdgeProfile& profile) {
     if (!(radius > 0)) fail("sphere: radius {} must be above 0", radius);
-    return solid("sphere", dims, profile, [center, radius](const glm::dvec3& x) {
-        return ball_distance(x - center, radius);
-    });
+    return solid("sphere", dims, profile,
+                 [center, radius](const glm::dvec3& x) { return ball_distance(x - center, radius); });
 }
 
 AnalyticScene torus_scene(const glm::ivec3& dims, const glm::dvec3& center, double major_radius, double minor_radius,
                           const EdgeProfile& profile) {
     if (!(minor_radius > 0 && major_radius > minor_radius))
         fail("torus: radii {} and {}: expected 0 < minor < major", major_radius, minor_radius);
-    return solid("torus", dims, profile, [=](const glm::dvec3& x) {
-        return ring_distance(x - center, major_radius, minor_radius);
-    });
+    return solid("torus", dims, profile,
+                 [=](const glm::dvec3& x) { return ring_distance(x - center, major_radius, minor_radius); });
 }
 
 AnalyticScene slab_scene(const glm::ivec3& dims, const glm::dvec3& normal, const glm::dvec3& point, double thickness,
