@@ -109,7 +109,7 @@ std::string SceneKey::refusal(const KeyValue& value) const {
     };
     const auto suggestion = [this](const std::string& text) -> std::string {
         for (const auto& [choice, instead] : gone)
-            if (choice == text) return "; \"" + text + "\" is gone, write " + instead;
+            if (choice == text) return fmt::format("; \"{}\" is gone, write {}", text, instead);
         const std::string name = nearest_name(text, choices);
         return name.empty() ? "" : "; did you mean \"" + name + "\"?";
     };

@@ -28,7 +28,7 @@ std::vector<float> few_whole_numbers(const std::vector<float>& samples) {
 }  // namespace
 
 std::vector<float> labels_of(const Volume& volume) {
-    const std::vector<float> values = few_whole_numbers(volume.values);
+    std::vector<float> values = few_whole_numbers(volume.values);
     if (values.size() < 2) return {};
     const auto rank = [&](float sample) { return std::ranges::lower_bound(values, sample) - values.begin(); };
     const glm::ivec3 dims = volume.geometry.dims;
