@@ -37,10 +37,10 @@ class Measurement {
           journal_(journal),
           work_(journal, progress),
           references_(input, options.tolerance, options.folder / "cache", journal,
-                      [this](double share) { return work_.go_on(share); }) {
+                      [this](double share) { return work_.go_on(share); }),
+          trilinear_{.settings = options.base, .rays = RaycastFilter::Trilinear} {
         report_.input = input;
         report_.options = options;
-        trilinear_ = {.settings = options.base, .rays = RaycastFilter::Trilinear};
         report_.device = renderer.device();
         report_.cameras = report_cameras(*input.volume, input.scene, options.size.x, options.size.y);
         far_ = report_.cameras.front().camera;
