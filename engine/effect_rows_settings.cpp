@@ -10,9 +10,10 @@
 namespace edgesplat {
 namespace {
 
-void warp(FrameRequest& request) {
+void cut_at_faces(FrameRequest& request) {
     request.settings.edges = EdgeEstimator::March;
     request.settings.footprints = FootprintMode::Procedural;
+    request.settings.warp = WarpFamily::Face;
 }
 
 }  // namespace
@@ -26,23 +27,28 @@ std::vector<Effect> settings_effects() {
     std::vector<Effect> rows;
     rows.push_back(
         {.name = "edge preservation",
-         .help = "kernels are warped at iso-values, so that surfaces stay sharp however near they are looked at",
-         .call = "settings.edges and footprints; --edges, --footprints (on by default)",
+         .help =
+             "kernels are cut at the surface, a quadric that is found once, and lit where rays meet it: it stays sharp "
+             "however near it is looked at",
+         .call = "settings.edges, warp and footprints; --edges, --warp, --footprints (on by default)",
          .reason = [](const FrameRequest& r) -> std::string {
              const Settings s = drawn_settings(r);
              if (!draws_warped(s)) return "";
-             return fmt::format("edges are estimated ({}) and footprints warped ({})", name_of(s.edges),
-                                name_of(s.footprints));
+             return draws_faces(s) ? fmt::format("edges are found ({}) and kernels cut at faces", name_of(s.edges))
+                                   : fmt::format("edges are found ({}) and kernels warped by the paper's curve ({})",
+                                                 name_of(s.edges), name_of(s.footprints));
          },
-         .turn_on = warp,
+         .turn_on = cut_at_faces,
          .passes = {"1_estimate_edges"},
-         .resources = {"edge field"},
-         .resized = {"prepared splats"},
+         .resources = {"edge field", "splat traits"},
+         .resized = {"prepared splats", "tile entries", "tile marks"},
+         .record = {{"bending", 8}},
          .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR"},
                        {shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS"},
                        {shader::SPEC_EDGES, "SPEC_EDGES"},
-                       {shader::SPEC_SMOOTH, "SPEC_SMOOTH"}},
-         .frame_fields = {"footprint", "support_table", "spheroids"}});
+                       {shader::SPEC_FACES, "SPEC_FACES"}},
+         .frame_fields = {"footprint", "traits"},
+         .scene_fields = {"traits"}});
     rows.push_back({.name = "spline edges",
                     .help = "edges are found on the cubic B-spline through the samples",
                     .call = "settings.edges = \"cubic\"; --edges cubic",
@@ -52,83 +58,9 @@ std::vector<Effect> settings_effects() {
                                                                                   : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.edges = EdgeEstimator::Cubic; },
-                    .base = warp,
+                    .base = cut_at_faces,
                     .resources = {"B-spline coefficients"},
-                    .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 3}}});
-    rows.push_back({.name = "curved edges",
-                    .help = "an edge is a sphere of its curvature, not its tangent plane",
-                    .call = "settings.edge_shape = \"curved\"; --edge-shape curved",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        const Settings s = drawn_settings(r);
-                        return draws_warped(s) && s.edge_shape == EdgeShape::Curved ? "edge_shape is `curved`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.edge_shape = EdgeShape::Curved; },
-                    .base = warp,
-                    .resources = {"splat traits"},
-                    .record = {{"curvature", 2}},
-                    .constants = {{shader::SPEC_CURVED, "SPEC_CURVED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}},
-                    .frame_fields = {"traits", "curvature_unit"},
-                    .scene_fields = {"traits", "curvature_unit"}});
-    rows.push_back({.name = "faces",
-                    .help = "kernels are cut at the surface, a quadric that is found once, and lit where rays meet it",
-                    .call = "settings.warp = \"face\"; --warp face",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        return draws_faces(drawn_settings(r)) ? "warp is `face`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.warp = WarpFamily::Face; },
-                    .base = warp,
-                    .resources = {"splat traits"},
-                    .resized = {"prepared splats", "tile entries", "tile marks"},
-                    .record = {{"bending", 8}},
-                    .constants = {{shader::SPEC_FACES, "SPEC_FACES"},
-                                  {shader::SPEC_WARP, "SPEC_WARP"},
-                                  {shader::SPEC_SMOOTH, "SPEC_SMOOTH", 1},
-                                  {shader::SPEC_NODES, "SPEC_NODES", 8}},
-                    .frame_fields = {"traits"},
-                    .scene_fields = {"traits"}});
-    rows.push_back({.name = "edge weights",
-                    .help = "kernels are weighted by their distance to the edge: what lies on one side has its volume",
-                    .call = "settings.normalise = \"edge\"; --normalise edge",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        const Settings s = drawn_settings(r);
-                        const bool family = draws_warped(s) && s.warp == WarpFamily::Edge;
-                        return family && s.normalisation == Normalisation::Edge ? "normalise is `edge`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.normalisation = Normalisation::Edge; },
-                    .base = warp,
-                    .resources = {"splat traits"},
-                    .record = {{"weight", 2}},
-                    .constants = {{shader::SPEC_WEIGHTED, "SPEC_WEIGHTED"}},
-                    .frame_fields = {"traits"},
-                    .scene_fields = {"traits", "edge_weights", "contrast"}});
-    rows.push_back({.name = "kernel weights",
-                    .help = "kernels are weighted so that those around a voxel sum to one",
-                    .call = "settings.normalise = \"voxel\"; --normalise voxel",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        const Settings s = drawn_settings(r);
-                        return draws_warped(s) && s.normalisation == Normalisation::Voxel ? "normalise is `voxel`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.normalisation = Normalisation::Voxel; },
-                    .base = warp,
-                    .resources = {"splat traits"},
-                    .record = {{"weight", 2}},
-                    .constants = {{shader::SPEC_WEIGHTED, "SPEC_WEIGHTED"}},
-                    .frame_fields = {"traits"},
-                    .scene_fields = {"traits", "strength"}});
-    rows.push_back(
-        {.name = "footprint table",
-         .help = "footprints are looked up, not integrated",
-         .call = "settings.footprints = \"table\" or \"table-lerp\"; --footprints table-lerp",
-         .reason = [](const FrameRequest& r) -> std::string {
-             const Settings s = drawn_settings(r);
-             const bool table = s.footprints == FootprintMode::Table || s.footprints == FootprintMode::TableLerp;
-             if (!draws_warped(s) || s.warp != WarpFamily::Edge || !table) return "";
-             return fmt::format("footprints are `{}` of size `{}`", name_of(s.footprints), name_of(s.table_size));
-         },
-         .turn_on = [](FrameRequest& r) { r.settings.footprints = FootprintMode::TableLerp; },
-         .base = warp,
-         .resources = {"footprint table"},
-         .constants = {{shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS", 4}}});
+                    .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 2}}});
     rows.push_back({.name = "sliced sheets",
                     .help = "kernels are cut at the planes between sheets, so that nothing pops as the eye moves",
                     .call = "settings.sheets = \"sliced\"; --sheets sliced",
@@ -139,25 +71,7 @@ std::vector<Effect> settings_effects() {
                     .turn_on = [](FrameRequest& r) { r.settings.sheets = SheetCut::Sliced; },
                     .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets",
                                 "prepared splats"},
-                    .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 8}}});
-    rows.push_back({.name = "half sheets",
-                    .help = "a sheet's colour and depth take half the memory",
-                    .call = "settings.sheet_format = \"half\"; --sheet-format half",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        return drawn_settings(r).sheet_format == SheetFormat::Half ? "sheet_format is `half`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Half; },
-                    .base = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Float; },
-                    .resized = {"sheet group"}});
-    rows.push_back({.name = "half accumulation",
-                    .help = "the picture that sheets are composited into takes half the memory",
-                    .call = "settings.accumulation = \"half\"; --accumulation half",
-                    .reason = [](const FrameRequest& r) -> std::string {
-                        return drawn_settings(r).accumulation == SheetFormat::Half ? "accumulation is `half`" : "";
-                    },
-                    .turn_on = [](FrameRequest& r) { r.settings.accumulation = SheetFormat::Half; },
-                    .base = [](FrameRequest& r) { r.settings.sheet_format = SheetFormat::Float; },
-                    .resized = {"accumulated picture"}});
+                    .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 6}}});
     rows.push_back({.name = "refined pixels",
                     .help = "where the picture is smooth one pixel of four or sixteen is drawn, and the others follow",
                     .call = "settings.pixels = \"refined\"; --pixels refined (on by default)",

@@ -26,7 +26,7 @@ struct FrameRequest {
 /// A specialization constant and its value in a frame without the effect.
 struct EffectConstant {
     std::uint32_t id;       ///< shader::SPEC_*
-    std::string_view name;  ///< "SPEC_CURVED"
+    std::string_view name;  ///< "SPEC_SLICED"
     std::uint32_t off = 0;
 };
 

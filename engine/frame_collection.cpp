@@ -87,7 +87,7 @@ CollectionBlock whole_block(const glm::ivec3& dims) {
 }
 
 passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
-    return {plan.estimator, plan.skip_buried, plan.params.iso_count, plan.faces};
+    return {plan.estimator, plan.skip_buried, plan.params.iso_count};
 }
 
 passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
@@ -95,9 +95,6 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .iso_count = plan.params.iso_count,
             .edges = plan.edge_field,
             .buried = plan.buried,
-            .smooth = plan.edge_field && marches(plan.estimator) && !plan.faces,
-            .curved = plan.curved,
-            .weighted = plan.weighted,
             .faces = plan.faces,
             .clip = plan.clip,
             .transfer = !plan.transfer.empty()};
@@ -134,7 +131,7 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, Bind
             gpu::Buffer(device, plan.transfer.size() * sizeof(shader::TransferRow), Place::Host, "transfer function");
         std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
     }
-    bindings.write(resources, {}, {});
+    bindings.write(resources, {});
     commands.run([&] {
         if (plan.buried) commands.prepare({&resources.buried});
         if (plan.edge_field) commands.prepare({&resources.edges});
@@ -245,17 +242,9 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     const CollectionBlock whole = whole_block(plan.dims);
     resources.splat_count = resources.edge_splat_count = 0;
     resources.bricks.clear();
-    bindings.write(resources, {}, {});
+    bindings.write(resources, {});
     place_block(plan, whole, resources);
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
-    // Estimates and adoptions are both made where either may be others: what is estimated anew has nothing adopted.
-    // The passes go further than the core, each as far as it does in a block.
-    const auto core_of = [&](int margin) {
-        const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - margin);
-        params.core_low = core.low;
-        params.core_size = core.size();
-        return passes::EdgeRegion{plan.dims, params.core_low, params.core_size};
-    };
     std::vector<PassTime> times;
     const auto run = [&](const auto& body) {
         commands.run(body);
@@ -263,13 +252,14 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
     };
     run([&] { mark_block(commands, plan, whole); });
     if (plan.edge_field) {
-        const passes::EstimateEdges in = estimate_inputs(plan);
-        const passes::EdgeRegion estimated = core_of(shader::ESTIMATE_MARGIN);
-        run([&] { commands.span("1_estimate_edges", [&] { passes::estimate_only(commands, estimated, in); }); });
-        if (passes::adopts(in)) {
-            const passes::EdgeRegion adopting = core_of(shader::ADOPT_MARGIN);
-            run([&] { commands.span("1_estimate_edges", [&] { passes::adopt_edges(commands, adopting, in); }); });
-        }
+        // The pass goes as far beyond the core as it does in a block.
+        const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - shader::ESTIMATE_MARGIN);
+        params.core_low = core.low;
+        params.core_size = core.size();
+        const passes::EdgeRegion region{plan.dims, params.core_low, params.core_size};
+        run([&] {
+            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
+        });
     }
     place_block(plan, whole, resources);
     run([&] { count_block(commands, collect_inputs(plan)); });

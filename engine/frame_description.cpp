@@ -107,7 +107,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
             if (effect.reason(with).empty()) {
                 row.obstacle = "it has no say beside what is called for";
             } else {
-                const double reach = farthest_reach(drawn_settings(with));
+                const double reach = kernel_reach(drawn_settings(with));
                 const CollectionPlan collection = planned_collection(with);
                 const SplatCount splats =
                     collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
@@ -192,7 +192,7 @@ FrameDescription describe_frame(const FrameRequest& request) {
     check(request);
     const CollectionPlan collection = planned_collection(request);
     const SplatCount splats = count_splats(*request.volume, collection);
-    return describe(request, forecast_frame(request, collection, splats, farthest_reach(drawn_settings(request))),
+    return describe(request, forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request))),
                     nullptr);
 }
 

@@ -84,14 +84,11 @@ class Passes {
             add("setup", "1a_mark_buried", kRates.bury_voxel * voxels, axes);
         }
         if (plan.edge_field) {
-            std::vector<std::string> shaders{
-                variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))};
-            if (passes::adopts(estimate_inputs(plan)))
-                shaders.push_back(variant("1c_adopt_edges.comp", passes::adopt_constants(estimate_inputs(plan))));
             const double rate = plan.estimator == EdgeEstimator::Off     ? kRates.normal_voxel
                                 : plan.estimator == EdgeEstimator::Cubic ? kRates.spline_voxel
                                                                          : kRates.edge_voxel;
-            add("setup", "1_estimate_edges", kRates.normal_voxel * voxels + rate * 3 * splats, shaders);
+            add("setup", "1_estimate_edges", kRates.normal_voxel * voxels + rate * 3 * splats,
+                {variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))});
         }
         const passes::CollectSplats collect = collect_inputs(plan);
         std::vector<std::string> shaders{variant("2_collect_splats.comp", passes::collect_constants(collect))};

@@ -5,7 +5,6 @@
 #include "engine/frame_reach.h"
 #include "engine/passes/2_collect_splats.h"
 #include "engine/volume/filters.h"
-#include "footprints/edge_warp.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
@@ -72,7 +71,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
         if (!plan.clip.any()) continue;
         const glm::ivec3 at(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny));
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
-        if (is_cut_away(params, plan.clip, at, params.band)) visible[i] = 0;
+        if (is_cut_away(params, plan.clip, at, params.reach)) visible[i] = 0;
     }
     if (plan.buried) {
         const auto buried = buried_voxels(std::move(opaque), dims, params.bury_distance);
@@ -97,10 +96,6 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     out.box_low = box.empty() ? glm::ivec3(0) : box.low;
     out.box_high = box.empty() ? dims - 1 : box.high;
     return out;
-}
-
-double farthest_reach(const Settings& drawn) {
-    return support_spheres(drawn).farthest;
 }
 
 Settings drawn_settings(const FrameRequest& request) {

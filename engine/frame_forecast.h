@@ -57,11 +57,8 @@ struct FrameForecast {
     std::vector<PlannedResource> resources;  ///< everything a Renderer holds at some time of this frame
 };
 
-/// The request's settings as they are drawn: drawn_as() with its clip.
+/// The request's settings as they are drawn: drawn_as().
 Settings drawn_settings(const FrameRequest& request);
-
-/// What the settings draw with: the furthest that any of their kernels reaches, voxels.
-double farthest_reach(const Settings& drawn);
 
 /// The payloads that a request draws, colour first: shader::PAYLOAD_*.
 std::vector<std::uint32_t> payloads_of(const AovRequest& outputs);
@@ -75,7 +72,7 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast);
 /// What the request's passes 1 and 2 do.
 CollectionPlan planned_collection(const FrameRequest& request);
 
-/// `collection` is planned_collection(request), `reach` farthest_reach(drawn_settings(request)). Throws Error as
+/// `collection` is planned_collection(request), `reach` kernel_reach(drawn_settings(request)). Throws Error as
 /// plan_frame does.
 FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
                              double reach);

@@ -120,21 +120,8 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
     }
     out.push_back(buffer("splat list", f.splats.splats * sizeof(shader::Splat), "(splats) Splat", "2", "3, 5"));
     if (const std::size_t bytes = plan.trait_bytes(); bytes > 0) {
-        out.push_back(buffer("splat traits", f.splats.splats * bytes,
-                             plan.faces ? "(splats) second derivatives" : "(splats) curvature, weight", "2", "5"));
+        out.push_back(buffer("splat traits", f.splats.splats * bytes, "(splats) second derivatives", "2", "5"));
     }
-}
-
-void add_table(const FrameForecast& f, std::vector<PlannedResource>& out) {
-    if (!uses_table(f.settings)) return;
-    const FootprintTableSize size = table_size_of(f.settings.table_size);
-    out.push_back(image("footprint table",
-                        {.format = vk::Format::eR16Sfloat,
-                         .size = {size.width, size.height, 1},
-                         .layers = size.distances * size.directions,
-                         .array = true,
-                         .usage = Usage::eSampled | Usage::eTransferDst},
-                        "(layers, y, x) footprints", "host", "5"));
 }
 
 /// What of the light reaches each splat, and what that is found with.
@@ -157,17 +144,12 @@ void add_reach(const FrameForecast& f, std::vector<PlannedResource>& out) {
 
 /// Sheets as layers: images, and what their draws take.
 void add_layers(const std::vector<FramePlan>& f, std::vector<PlannedResource>& out) {
-    const auto sheet_bytes = [](const FramePlan& p) {
-        return std::uint64_t{vk::blockSize(p.sheet_format)} * p.params.sheets_per_group;
-    };
-    const FramePlan& sheets = largest(f, sheet_bytes);
-    const FramePlan& depth = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheets_per_group}; });
-    const FramePlan& accumulated =
-        largest(f, [](const FramePlan& p) { return std::uint64_t{vk::blockSize(p.accumulated_format)}; });
+    constexpr vk::Format kSums = vk::Format::eR32G32B32A32Sfloat;
+    const FramePlan& sheets = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheets_per_group}; });
     const FramePlan& groups = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.group_count}; });
     const glm::ivec3 size(sheets.params.size, 1);
     out.push_back(image("sheet group",
-                        {.format = sheets.sheet_format,
+                        {.format = kSums,
                          .size = size,
                          .layers = static_cast<int>(sheets.params.sheets_per_group),
                          .array = true,
@@ -176,13 +158,13 @@ void add_layers(const std::vector<FramePlan>& f, std::vector<PlannedResource>& o
     out.push_back(image("sheet depth",
                         {.format = vk::Format::eD16Unorm,
                          .size = size,
-                         .layers = static_cast<int>(depth.params.sheets_per_group),
+                         .layers = static_cast<int>(sheets.params.sheets_per_group),
                          .array = true,
                          .usage = Usage::eDepthStencilAttachment},
                         "(sheets at once, y, x) 0 where a pixel is opaque", "5", "5"));
     out.push_back(
         image("accumulated picture",
-              {.format = accumulated.accumulated_format,
+              {.format = kSums,
                .size = size,
                .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
               "(y, x) colour and opacity so far", "6", "5, 7"));
@@ -272,7 +254,6 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<PlannedResource> out;
     add_volume_resources(forecast, out);
-    add_table(forecast, out);
     add_reach(forecast, out);
     std::vector<FramePlan> draws;
     for (const ForecastDraw& draw : forecast.draws)

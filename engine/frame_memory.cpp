@@ -66,7 +66,7 @@ class Fit {
 
     bool operator()(const FrameRequest& request) const {
         try {
-            const double reach = farthest_reach(drawn_settings(request));
+            const double reach = kernel_reach(drawn_settings(request));
             const CollectionPlan plan = planned_collection(request);
             const auto fits = [&](const SplatCount& splats) {
                 return memory_need(*device_, forecast_frame(request, plan, splats, reach), budget_).fits();
@@ -199,13 +199,6 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
     };
     FrameRequest changed = request;
     offer_size("", request);
-    if (drawn_settings(request).sheet_format == SheetFormat::Float) {
-        changed.settings.sheet_format = SheetFormat::Half;
-        offer("--sheet-format half", changed);
-    }
-    const FrameRequest half = changed;
-    const std::string halved = half.settings == request.settings ? "" : "--sheet-format half";
-    changed = request;
     if (request.settings.sheet_format != SheetFormat::Tiles) {
         changed.settings.sheet_format = SheetFormat::Tiles;
         offer("--sheet-format tiles", changed);
@@ -242,13 +235,10 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
         }
     };
     offer_crop("", request);
-    if (changes.empty() && !halved.empty()) offer_size(halved + " and ", half);
     if (changes.empty()) {
-        changed = half;
+        changed = request;
         changed.size = glm::max(request.size / 4, glm::ivec2(1));
-        offer_crop(
-            fmt::format("{}{}--size {}x{} and ", halved, halved.empty() ? "" : ", ", changed.size.x, changed.size.y),
-            changed);
+        offer_crop(fmt::format("--size {}x{} and ", changed.size.x, changed.size.y), changed);
     }
     return changes;
 }

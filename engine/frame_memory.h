@@ -27,7 +27,7 @@ struct MemoryNeed {
 /// `budget`: bytes that may be held in all, 0: as much as the device has. Allocates nothing.
 MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast, std::uint64_t budget);
 
-/// Changes, one at a time and then together, each of which is known to fit. `reach`: farthest_reach of the settings.
+/// Changes, one at a time and then together, each of which is known to fit. `reach`: kernel_reach of the settings.
 std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameRequest& request, std::uint64_t budget);
 
 /// Throws Error with what is needed, resource by resource, what is available and what would fit, if `need` does not.

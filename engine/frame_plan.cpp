@@ -11,9 +11,9 @@
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
-#include "footprints/edge_weight.h"
 #include "footprints/face.h"
 #include "footprints/kernel.h"
+#include "footprints/paper_warp.h"
 
 namespace edgesplat {
 
@@ -29,7 +29,9 @@ constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
 constexpr double kFewNodesSpacing = 0.3;
-constexpr std::uint32_t kFaceNodes = 6;       // of a piece of a kernel that a face cuts
+// Of a piece of a kernel that a face cuts, where it hides what is behind; and where one sees through it, or of the
+// paper's profile.
+constexpr std::uint32_t kCutNodes = 6, kManyNodes = 10;
 constexpr double kFarthestPointLight = 1e12;  // mm
 
 /// Millimetres per voxel along the axis of shortest step.
@@ -142,72 +144,12 @@ template <typename Enum>
 constexpr bool is(Enum value, std::uint32_t constant) {
     return static_cast<std::uint32_t>(value) == constant;
 }
-static_assert(is(EdgeEstimator::Taylor, shader::TAYLOR) && is(EdgeEstimator::Quadratic, shader::QUADRATIC));
-static_assert(is(EdgeEstimator::March, shader::MARCH) && is(EdgeEstimator::Cubic, shader::CUBIC));
-static_assert(is(FootprintMode::Isotropic, shader::ISOTROPIC) && is(FootprintMode::Warp2d, shader::WARP2D));
-static_assert(is(FootprintMode::Table, shader::TABLE) && is(FootprintMode::TableLerp, shader::TABLE_LERP));
-static_assert(is(FootprintMode::Procedural, shader::PROCEDURAL));
-static_assert(is(WarpFamily::Edge, shader::EDGE) && is(WarpFamily::Paper, shader::PAPER));
-static_assert(is(WarpFamily::Face, shader::FACE));
-static_assert(kEdgeWeightSteps == shader::EDGE_WEIGHT_STEPS);
-static_assert(sizeof(shader::SceneParams::edge_weights) == (kEdgeWeightSteps + 1) * sizeof(float));
-static_assert(static_cast<std::uint32_t>(Normalisation::Edge) == shader::WEIGHTED_EDGE);
-static_assert(static_cast<std::uint32_t>(Normalisation::Voxel) == shader::WEIGHTED_VOXEL);
-
-std::uint32_t weighting(const Settings& settings) {
-    const bool weighs = draws_warped(settings) && settings.warp == WarpFamily::Edge;
-    return weighs ? static_cast<std::uint32_t>(settings.normalisation) : 0;
-}
-
-/// Edge weights of one scene: none where the matter across is as dense.
-void plan_edge_weights(const Scene& scene, const Settings& settings, shader::SceneParams& params) {
-    std::ranges::transform(edge_weights({settings.edge_half_width, settings.edge_strength}), params.edge_weights,
-                           [](double weight) { return static_cast<float>(weight); });
-    const auto contrast = [&](std::size_t m, std::size_t other) {
-        if (other >= scene.materials.size()) return 0.0F;
-        const double own = scene.materials[m].extinction;
-        return own > 0 ? static_cast<float>(std::max(1 - scene.materials[other].extinction / own, 0.0)) : 0.0F;
-    };
-    if (!scene.transfer.empty()) return;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m)
-        params.contrast[m] = {contrast(m, m - 1), contrast(m, m + 1)};
-}
+static_assert(is(EdgeEstimator::Taylor, shader::TAYLOR) && is(EdgeEstimator::March, shader::MARCH));
+static_assert(is(EdgeEstimator::Cubic, shader::CUBIC) && is(FootprintMode::Isotropic, shader::ISOTROPIC));
+static_assert(is(FootprintMode::Warp2d, shader::WARP2D) && is(FootprintMode::Procedural, shader::PROCEDURAL));
+static_assert(is(WarpFamily::Paper, shader::PAPER) && is(WarpFamily::Face, shader::FACE));
 
 }  // namespace
-
-SupportSpheres support_spheres(const Settings& drawn) {
-    if (!draws_warped(drawn)) return {{}, kKernelRadius};
-    const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
-    SupportSpheres out;
-    if (draws_faces(drawn)) {
-        // Each face has a reach of its own, which the shaders find; no more than this.
-        out.farthest = kKernelRadius + kFaceDepth;
-        out.by_distance.assign(shader::SUPPORT_STEPS, {0, out.farthest, out.farthest});
-        return out;
-    }
-    const bool plane = drawn.edge_shape != EdgeShape::Curved;
-    out.by_distance = plane ? covering_supports(band, shader::SUPPORT_STEPS)
-                            : covering_supports_of_curved(band, shader::SUPPORT_STEPS);
-    out.farthest = largest_support_radius(band);
-    for (const Support& s : out.by_distance)
-        out.farthest = std::max(out.farthest, std::abs(s.shift) + s.radius);
-    return out;
-}
-
-std::vector<glm::vec4> support_spheroids(const Settings& drawn, const SupportSpheres& spheres) {
-    std::vector<glm::vec4> out;
-    // Tables and short cuts leave something where the kernel they stand for is zero.
-    if (drawn.edge_shape == EdgeShape::Plane && drawn.warp == WarpFamily::Edge &&
-        drawn.footprints == FootprintMode::Procedural) {
-        const EdgeBand band{drawn.edge_half_width, drawn.edge_strength};
-        for (const Spheroid& s : covering_spheroids(band, shader::SUPPORT_STEPS))
-            out.emplace_back(s.shift, s.along, s.across, 0);
-    } else {
-        for (const Support& s : spheres.by_distance)
-            out.emplace_back(s.shift, s.radius, s.radius, 0);
-    }
-    return out;
-}
 
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
                              glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]) {
@@ -243,14 +185,11 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
-           curved == other.curved && faces == other.faces && weighted == other.weighted &&
-           std::ranges::equal(transfer, other.transfer, same_row) && a.curvature_unit == b.curvature_unit &&
-           a.estimate_mask == b.estimate_mask && a.strength == b.strength && a.iso_count == b.iso_count &&
-           std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
-           std::ranges::equal(a.edge_weights, b.edge_weights) && std::ranges::equal(a.contrast, b.contrast) &&
-           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
-           clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
-           std::ranges::equal(a.clip_remove, b.clip_remove);
+           faces == other.faces && std::ranges::equal(transfer, other.transfer, same_row) &&
+           a.estimate_mask == b.estimate_mask && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
+           a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
+           a.band == b.band && a.reach == b.reach && clip == other.clip &&
+           std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -284,14 +223,9 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
-    plan.curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
-    plan.weighted = weighting(settings);
-    params.estimate_mask = plan.weighted == shader::WEIGHTED_VOXEL || plan.faces ? ~0U : params.visible_mask;
-    params.half_width = static_cast<float>(settings.edge_half_width);
-    // Only weights depend on the strength here.
-    params.strength = plan.weighted == shader::WEIGHTED_VOXEL ? static_cast<float>(settings.edge_strength) : 0.0F;
-    if (plan.weighted == shader::WEIGHTED_EDGE) plan_edge_weights(scene, settings, params);
-    params.curvature_unit = plan.curved ? static_cast<float>(most_curved(settings)) : 1.0F;
+    params.reach = static_cast<float>(kernel_reach(settings));
+    // Faces are of both sides of a surface, drawn or not.
+    params.estimate_mask = plan.faces ? ~0U : params.visible_mask;
     return plan;
 }
 
@@ -330,18 +264,13 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const int samples = payload == shader::PAYLOAD_COLOR ? scene.effects.samples : 1;
     // Optical depth is a plain sum: sheets would change nothing.
     const bool sliced = settings.sheets == SheetCut::Sliced && payload != shader::PAYLOAD_TAU;
-    const bool curved = draws_warped(settings) && settings.edge_shape == EdgeShape::Curved;
     plan.variant = {.footprints = settings.footprints,
                     .warp = settings.warp,
                     .payload = payload,
                     .sliced = sliced,
-                    .curved = curved,
-                    .weighted = weighting(settings) != 0,
-                    .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing ? 4U
-                             : curved                                             ? 16U
-                             : settings.warp == WarpFamily::Paper                 ? 10U
-                             : draws_faces(settings)                              ? kFaceNodes
-                                                                                  : 8U};
+                    .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing                         ? 4U
+                             : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kCutNodes
+                                                                                                          : kManyNodes};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
     plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
@@ -349,17 +278,17 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.may_refine = plan.refined;
     plan.variant.transfer = !scene.transfer.empty();
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
-    plan.accumulated_format = settings.accumulation == SheetFormat::Half && payload == shader::PAYLOAD_COLOR
-                                  ? vk::Format::eR16G16B16A16Sfloat
-                                  : vk::Format::eR32G32B32A32Sfloat;
-    const bool half = settings.sheet_format == SheetFormat::Half && payload == shader::PAYLOAD_COLOR;
-    plan.sheet_format = half ? vk::Format::eR16G16B16A16Sfloat : vk::Format::eR32G32B32A32Sfloat;
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 
     auto& p = plan.params;
     plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
     p.anchor = to_float(anchor);
     p.support = static_cast<float>(kKernelRadius);
+    const PaperShape paper;
+    p.footprint = {.paper_inset = static_cast<float>(paper.inset),
+                   .paper_rise = static_cast<float>(paper.rise),
+                   .paper_smooth = 0,
+                   .paper_reach = static_cast<float>(kPaperReach)};
     p.view_x = to_float(glm::transpose(to_world) * view.right);
     p.view_y = to_float(glm::transpose(to_world) * down);
     p.view_z = to_float(glm::transpose(to_world) * view.forward);
@@ -385,9 +314,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(edge_reach(settings));
+    p.face_depth = static_cast<float>(face_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
-    plan.variant.opaque =
-        draws_faces(settings) && payload != shader::PAYLOAD_TAU && hides_what_is_behind(scene, geometry);
+    plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;
@@ -412,11 +341,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
             "--sheet-spacing",
             sheets, thickness, base, kMaxSheets);
     }
-    const std::uint64_t layer_bytes =
-        static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) * (half ? 8 : 16);
+    const std::uint64_t layer_bytes = 16 * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
     p.sheet_base = static_cast<int>(base);
     p.sheet_zero = static_cast<float>(base * thickness - glm::dot(view.forward, anchor_view));
-    p.curvature_unit = static_cast<float>(most_curved(settings));
     p.sheet_count = static_cast<std::uint32_t>(sheets);
     p.sheets_per_group = static_cast<std::uint32_t>(
         std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));

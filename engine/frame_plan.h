@@ -4,7 +4,6 @@
 #include "engine/frame_bricks.h"
 #include "engine/passes/5_draw_splats.h"
 #include "engine/renderer.h"
-#include "footprints/edge_warp.h"
 #include "shaders/shared/frame_params.h"
 #include "shaders/shared/transfer_rows.h"
 
@@ -19,19 +18,16 @@ std::uint32_t light_code(const Scene& scene);
 /// Passes 1 and 2 for one volume, scene and set of edge settings.
 struct CollectionPlan {
     glm::ivec3 dims{0};
-    EdgeEstimator estimator = EdgeEstimator::March;
+    EdgeEstimator estimator = EdgeEstimator::Cubic;
     bool blocks = false;     ///< the device holds a block of the volume at a time (engine/frame_blocks.h)
     bool edge_field = true;  ///< edges are preserved, or a light wants normals
     bool buried = true;      ///< some material is opaque enough to hide what lies behind it
     /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
-    /// voxel may adopt an edge that two of them share.
+    /// voxel's face may be fitted to what two of them share.
     bool skip_buried = true;
-    bool curved = false;  ///< splats carry the curvature of their edge
-    bool faces = false;   ///< edges are faces, found on both sides, and splats carry their second derivatives
+    bool faces = false;  ///< edges are faces, found on both sides, and splats carry their second derivatives
     /// Bytes of a splat's traits; 0 where it has none.
-    std::size_t trait_bytes() const { return faces ? 8 : (curved || weighted != 0 ? 4 : 0); }
-    std::uint32_t weighted = 0;  ///< splats carry a weight: shader::WEIGHTED_*
-                                 ///< (VOXEL: edges are estimated on both sides, also where nothing is drawn)
+    std::size_t trait_bytes() const { return faces ? 8 : 0; }
     /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not
     /// depend on the planes: they move without a new collection.
     passes::ClipCount clip{};
@@ -55,8 +51,6 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 /// Passes 3 to 7 for one picture.
 struct FramePlan {
     passes::DrawVariant variant{};
-    vk::Format sheet_format{};
-    vk::Format accumulated_format{};
     bool gradient = false;               ///< colour over a background of two colours
     bool wide_marks = false;             ///< of tiles' entries, for 4 x 2 pixels at once (4_mark_pixels)
     bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
@@ -67,7 +61,7 @@ struct FramePlan {
     std::vector<std::uint32_t> bricks;   ///< numbers of those in view, where bricks are culled
     std::vector<glm::uvec2> batches;     ///< FrameParams::batches, likewise
     std::uint64_t looked_at = 0;         ///< splats that were gone through, and are
-    shader::FrameParams params{};        ///< without addresses and what FootprintResources holds
+    shader::FrameParams params{};        ///< without addresses
 };
 
 /// The picture is then of the first `splats` of the list alone, none of its bricks being culled.
@@ -93,16 +87,6 @@ std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks);
 
 /// Columns of that histogram, 1 to 64, as far as can be scanned.
 std::uint32_t tile_blocks(const glm::ivec2& tiles);
-
-/// Spheres that hold the kernels of some settings.
-struct SupportSpheres {
-    std::vector<Support> by_distance;  ///< SUPPORT_STEPS cells of |D| in [0, R + a]; empty without a warp
-    double farthest = 0;               ///< how far from its voxel any kernel reaches
-};
-SupportSpheres support_spheres(const Settings& drawn);
-
-/// FrameParams::spheroids of settings that draw warped kernels, with their spheres.
-std::vector<glm::vec4> support_spheroids(const Settings& drawn, const SupportSpheres& spheres);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

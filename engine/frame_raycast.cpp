@@ -62,7 +62,7 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands)
     : bindings_(device, pipelines),
       block_(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters") {
-    bindings_.write({}, {}, {});
+    bindings_.write({}, {});
     bindings_.set().put_block(shader::BIND_RAYS, block_);
     commands.run([&] { bindings_.prepare(commands); });
 }

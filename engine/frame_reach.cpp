@@ -117,7 +117,7 @@ ShadowPlan plan_shadows(const Scene& scene, const Settings& settings) {
     // Slices make the depth at every layer exact, whatever the kernel's size.
     plan.settings.sheets = SheetCut::Sliced;
     plan.settings.sheet_spacing = std::max(plan.settings.sheet_spacing, kThinnestLayer);
-    plan.settings.sheet_format = plan.settings.accumulation = SheetFormat::Float;
+    plan.settings.sheet_format = SheetFormat::Layers;
     plan.settings = drawn_as(plan.settings, scene);
     plan.settings.saturation = Settings{}.saturation;
     return plan;

@@ -23,8 +23,6 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     vk::SamplerCreateInfo sampler;
     sampler.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
     nearest_ = vk::raii::Sampler(device.handle(), sampler);
-    sampler.setMinFilter(vk::Filter::eLinear).setMagFilter(vk::Filter::eLinear);
-    linear_ = vk::raii::Sampler(device.handle(), sampler);
     no_scalar_ = placeholder(device, vk::Format::eR32Sfloat, true, false, Usage::eStorage);
     no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
@@ -48,14 +46,12 @@ void Bindings::write_volume(const VolumeResources& volume) {
     set_.put_image(shader::BIND_EDGES, volume.edges ? volume.edges : no_edges_);
 }
 
-void Bindings::write(const VolumeResources& volume, const FootprintResources& footprints,
-                     const TargetResources& targets) {
+void Bindings::write(const VolumeResources& volume, const TargetResources& targets) {
     write_volume(volume);
     set_.put_image(shader::BIND_BURIED, volume.buried ? volume.buried : no_mask_);
     set_.put_image(shader::BIND_PREPARED, targets.prepared ? targets.prepared : no_records_);
     set_.put_image(shader::BIND_SHEETS, targets.sheets ? targets.sheets : no_array_, *nearest_);
     set_.put_image(shader::BIND_ACCUMULATED, targets.accumulated ? targets.accumulated : no_picture_, *nearest_);
-    set_.put_image(shader::BIND_TABLE, footprints.table ? footprints.table : no_array_, *linear_);
     const std::array texels{
         std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
         std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},

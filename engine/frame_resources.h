@@ -22,32 +22,22 @@ struct VolumeResources {
     gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
     gpu::Buffer run_offsets;     ///< (runs + 1) uint, mapped; 2 <-> host
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
-    gpu::Buffer
-        traits;  ///< (splat_count) uint: curvature, weight; 2 -> 5; only where edges are curved or kernels weighted
-    gpu::Buffer occlusion;  ///< (splat_count) uint: ambient light that reaches it; 2b -> 5; only with occlusion
-    gpu::Buffer shadows;    ///< (splat_count) uint: light that reaches it; 2d -> 5; only with shadow lights
-    gpu::Buffer transfer;   ///< (TRANSFER_ROWS + 1) TransferRow, mapped; host -> 2, 5; only with a transfer function
-    gpu::Buffer values;     ///< (splat_count) float: what each splat is classified by; 2 -> 5; likewise
+    gpu::Buffer traits;          ///< (splat_count) uvec2: second derivatives of its face; 2 -> 5; only with faces
+    gpu::Buffer occlusion;       ///< (splat_count) uint: ambient light that reaches it; 2b -> 5; only with occlusion
+    gpu::Buffer shadows;         ///< (splat_count) uint: light that reaches it; 2d -> 5; only with shadow lights
+    gpu::Buffer transfer;  ///< (TRANSFER_ROWS + 1) TransferRow, mapped; host -> 2, 5; only with a transfer function
+    gpu::Buffer values;    ///< (splat_count) float: what each splat is classified by; 2 -> 5; likewise
     std::uint64_t splat_count = 0, edge_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
     SplatBricks bricks;                  ///< of the list
 };
 
-/// What stands until the footprint settings change.
-struct FootprintResources {
-    gpu::GpuImage table;  ///< (layers, height, width) r16f; host -> 5, modes `table` and `table-lerp` of family `edge`
-    shader::FootprintParams params{};
-    std::array<glm::vec2, shader::SUPPORT_STEPS> supports{};   ///< FrameParams::support_table
-    std::array<glm::vec4, shader::SUPPORT_STEPS> spheroids{};  ///< FrameParams::spheroids
-    double farthest_reach = 0;                                 ///< of any kernel, voxels
-};
-
 /// What stands until the picture's size, the number of sheets or of splats changes. A picture whose sheets are layers
 /// has the first three, `groups` and `draws`, one that is summed tile by tile what is of tiles.
 struct TargetResources {
-    gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f or rgba16f; 5 -> 6
+    gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f; 5 -> 6
     gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
-    gpu::GpuImage accumulated;  ///< (height, width) rgba32f or rgba16f; 6 -> 5a, 7
+    gpu::GpuImage accumulated;  ///< (height, width) rgba32f; 6 -> 5a, 7
     gpu::GpuImage prepared;   ///< rgba32f, PREPARED_ROW wide: records of a chunk's splats (prepared_splat.glsl); 4 -> 5
     gpu::Buffer batches;      ///< (splat_count / SPLAT_BATCH + 1) uvec2, mapped: FrameParams::batches; host -> 3, 4
     gpu::Buffer sheet_of;     ///< (splat_count) uint: of slots; 3 -> 4, 5
@@ -85,13 +75,13 @@ class Bindings {
     const gpu::DescriptorSet& set() const { return set_; }
     /// Moves the placeholders into layout GENERAL; once, while recording.
     void prepare(gpu::Commands& commands) const;
-    void write(const VolumeResources& volume, const FootprintResources& footprints, const TargetResources& targets);
+    void write(const VolumeResources& volume, const TargetResources& targets);
     /// Only what the volume's images alone say: samples, coefficients, edges.
     void write_volume(const VolumeResources& volume);
 
   private:
     gpu::DescriptorSet set_;
-    vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
+    vk::raii::Sampler nearest_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;
     gpu::Buffer no_texels_, no_counts_, no_entries_;

@@ -31,29 +31,13 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
 
 }  // namespace
 
-FootprintTableSize table_size_of(TableSize size) {
-    switch (size) {
-        case TableSize::Coarse:
-            return {.width = 32, .height = 16, .distances = 29, .directions = 18};
-        case TableSize::Fine:
-            return {.width = 128, .height = 40, .distances = 57, .directions = 35};
-        case TableSize::Medium:
-            break;
-    }
-    return {};
-}
-
-bool uses_table(const Settings& settings) {
-    return settings.warp == WarpFamily::Edge && draws_warped(settings) && asks_for_table(settings);
-}
-
 RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice), opened_as(choice) {
     targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
     targets.drawn = gpu::Buffer(device, 3 * sizeof(std::uint32_t), Place::Host, "drawn splats");
     const auto indices = passes::quad_indices();
     targets.indices = gpu::Buffer(device, indices.size() * sizeof(indices[0]), Place::Host, "quad indices");
     std::copy(indices.begin(), indices.end(), targets.indices.mapped<std::uint32_t>(indices.size()).begin());
-    bindings.write(volume_resources, footprint_resources, targets);
+    bindings.write(volume_resources, targets);
     commands.run([&] { bindings.prepare(commands); });
 }
 
@@ -125,66 +109,14 @@ bool RendererState::provide_coefficients() {
     return true;
 }
 
-void RendererState::choose_supports(const Settings& settings) {
-    if (!draws_warped(settings)) return;
-    const SupportsMadeFor wanted{
-        {settings.edge_half_width, settings.edge_strength}, settings.edge_shape, settings.warp, settings.footprints};
-    if (supports_made_for == wanted) return;
-    const SupportSpheres spheres = support_spheres(settings);
-    std::ranges::transform(spheres.by_distance, footprint_resources.supports.begin(),
-                           [](const Support& s) { return glm::vec2(s.shift, s.radius); });
-    std::ranges::copy(support_spheroids(settings, spheres), footprint_resources.spheroids.begin());
-    footprint_resources.farthest_reach = spheres.farthest;
-    supports_made_for = wanted;
-}
-
 void RendererState::release_unused(const Settings& drawn) {
-    if (!uses_table(drawn)) {
-        footprint_resources.table = {};
-        table_band.reset();
-    }
     const bool estimates = draws_warped(drawn) && drawn.edges == EdgeEstimator::Cubic;
     if (!estimates && !(raycast && raycast->takes_coefficients())) volume_resources.coefficients = {};
 }
 
-void RendererState::provide_footprints(const Settings& settings) {
-    release_unused(settings);
-    choose_supports(settings);
-    const EdgeBand band{settings.edge_half_width, settings.edge_strength};
-    const bool table = uses_table(settings);
-    const FootprintTableSize table_size = table_size_of(settings.table_size);
-    if (table && (table_band != band || table_texels != table_size)) {
-        table_band.reset();
-        const auto loaded = load_footprint_table(band, table_size);
-        if (!loaded.warning.empty()) fmt::print(stderr, "edgesplat: {}\n", loaded.warning);
-        const auto& size = loaded.table.size();
-        auto& out = footprint_resources;
-        out.table = gpu::GpuImage(device,
-                                  {.format = vk::Format::eR16Sfloat,
-                                   .size = {size.width, size.height, 1},
-                                   .layers = size.distances * size.directions,
-                                   .array = true,
-                                   .usage = Usage::eSampled | Usage::eTransferDst},
-                                  "footprint table");
-        upload_image(commands, device, out.table, loaded.table.texels().data(), sizeof(std::uint16_t));
-        out.params.table_extent = static_cast<float>(loaded.table.extent());
-        out.params.table_width = static_cast<float>(size.width);
-        out.params.table_height = static_cast<float>(size.height);
-        out.params.table_distances = static_cast<float>(size.distances);
-        out.params.table_directions = static_cast<float>(size.directions);
-        table_band = band;
-        table_texels = table_size;
-    }
-    const PaperShape paper;
-    footprint_resources.params.half_width = static_cast<float>(band.half_width);
-    footprint_resources.params.strength = static_cast<float>(band.strength);
-    footprint_resources.params.paper_inset = static_cast<float>(paper.inset);
-    footprint_resources.params.paper_rise = static_cast<float>(paper.rise);
-}
-
 FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, const Settings& settings,
                                       const glm::ivec2& size, std::uint32_t payload) const {
-    const double reach = draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius;
+    const double reach = kernel_reach(settings);
     FramePlan out = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                                volume_resources.box_low, volume_resources.box_high, reach);
     if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, out.variant.antialias});

@@ -103,7 +103,7 @@ void RendererState::settle(FrameRequest& request, int finest, bool blocks_wanted
 
 std::optional<std::uint64_t> RendererState::most_splats_in_blocks(const FrameRequest& request) {
     const Settings drawn = drawn_settings(request);
-    const double reach = reach_of(drawn);
+    const double reach = kernel_reach(drawn);
     CollectionPlan wanted = plan_collection(*request.volume, request.scene, drawn, true);
     // A mask of what is buried may be needed or not.
     wanted.buried = drawn.cull_buried;
@@ -212,7 +212,7 @@ void RendererState::begin_blocks(const CollectionPlan& wanted) {
 
 std::vector<std::size_t> RendererState::blocks_shown(const FrameRequest& request) {
     const ViewVolume view(volume->geometry, request.camera, request.size, request.scene.effects.antialias);
-    const double reach = farthest_reach(drawn_settings(request));
+    const double reach = kernel_reach(drawn_settings(request));
     std::vector<std::size_t> shown;
     for (std::size_t i = 0; i < residence->blocks.size(); ++i) {
         const CollectionBlock& block = residence->blocks[i];
@@ -277,7 +277,7 @@ void RendererState::index_held_blocks() {
 
 void RendererState::release_for_collection() {
     drop_targets();
-    bindings.write(volume_resources, {}, {});
+    bindings.write(volume_resources, {});
 }
 
 Gathered RendererState::collect_blocks(const FrameRequest& request, const CollectionPlan& wanted,
@@ -398,7 +398,7 @@ Gathered RendererState::provide_level(FrameRequest request, int finest, double w
         settle(request, at, std::isfinite(patience));
         while (!agree_on_level(at))
             settle(request, at, std::isfinite(patience));
-        provide_footprints(settings);
+        release_unused(settings);
         Gathered gathered = Gathered::All;
         if (in_blocks) {
             gathered = collect_in_blocks(request, wait, stats.setup_milliseconds);

@@ -16,11 +16,10 @@ bool RendererState::may_hide_blocks(const FrameRequest& request) const {
 }
 
 void RendererState::sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const {
-    const double thickness = sheet_thickness(volume->geometry, request.camera, drawn_settings(request));
+    const Settings drawn = drawn_settings(request);
+    const double thickness = sheet_thickness(volume->geometry, request.camera, drawn), reach = kernel_reach(drawn);
     std::ranges::stable_sort(blocks, {}, [&](std::size_t i) {
-        return sheets_of_block(volume->geometry, request.camera, thickness, footprint_resources.farthest_reach,
-                               residence->blocks[i])
-            .x;
+        return sheets_of_block(volume->geometry, request.camera, thickness, reach, residence->blocks[i]).x;
     });
 }
 
@@ -28,7 +27,7 @@ void RendererState::leave_hidden_blocks(const FrameRequest& request, std::vector
                                         std::size_t first) {
     if (volume_resources.splat_count == 0 || first + 1 >= missing.size()) return;
     const Settings drawn = drawn_settings(request);
-    const double reach = footprint_resources.farthest_reach;
+    const double reach = kernel_reach(drawn);
     const auto& geometry = volume->geometry;
     // Whatever is missing lies behind these sheets, so that pixels which they close are closed in the whole picture.
     const double thickness = sheet_thickness(geometry, request.camera, drawn);

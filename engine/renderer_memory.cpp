@@ -30,11 +30,6 @@ bool RendererState::take_changes(const std::shared_ptr<const Volume>& next) {
     return true;
 }
 
-double RendererState::reach_of(const Settings& drawn) {
-    choose_supports(drawn);
-    return draws_warped(drawn) ? footprint_resources.farthest_reach : farthest_reach(drawn);
-}
-
 std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& wanted) const {
     if (changed || !collected || !(*collected == wanted)) return std::nullopt;
     return SplatCount{SplatCount::From::Frame, volume_resources.splat_count, volume_resources.box_low,
@@ -42,7 +37,7 @@ std::optional<SplatCount> RendererState::collected_splats(const CollectionPlan& 
 }
 
 std::optional<MemoryNeed> RendererState::beyond_memory(const FrameRequest& request) {
-    const double reach = reach_of(drawn_settings(request));
+    const double reach = kernel_reach(drawn_settings(request));
     const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
     const SplatCount splats = known.value_or(most_splats(volume->geometry));
@@ -67,7 +62,7 @@ FrameForecast Renderer::forecast(const FrameRequest& request) {
     const CollectionPlan wanted = planned_collection(request);
     const auto known = request.volume == state_->volume ? state_->collected_splats(wanted) : std::nullopt;
     return forecast_frame(request, wanted, known ? *known : count_splats(*request.volume, wanted),
-                          state_->reach_of(drawn_settings(request)));
+                          kernel_reach(drawn_settings(request)));
 }
 
 std::vector<FittingChange> Renderer::what_fits(const FrameRequest& request) const {

@@ -23,7 +23,7 @@ bool RendererState::occlude(const Scene& scene) {
     if (occluded == wanted) return false;
     occluded.reset();
     volume_resources.occlusion = {};
-    bindings.write(volume_resources, {}, {});
+    bindings.write(volume_resources, {});
     add_times(collection_times, run_occlusion(device, commands, bindings, *volume, wanted, volume_resources));
     occluded = wanted;
     return true;
@@ -46,7 +46,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
     commands.run([&] { commands.fill(volume_resources.shadows, ~0U); });
 
     const auto& resources = volume_resources;
-    const double reach = draws_warped(settings) ? footprint_resources.farthest_reach : kKernelRadius;
+    const double reach = kernel_reach(settings);
     for (std::uint32_t channel = 0; channel < wanted.lights.size(); ++channel) {
         for (const Camera& view : light_views(wanted.lights[channel], volume->geometry, resources.box_low,
                                               resources.box_high, reach, wanted.quality.resolution)) {

@@ -12,8 +12,7 @@
 #include "engine/frame_raycast.h"
 #include "engine/frame_reach.h"
 #include "engine/frame_tiles.h"
-#include "footprints/footprint_cache.h"
-#include "footprints/footprint_table.h"
+#include "footprints/cache_folder.h"
 
 namespace edgesplat {
 
@@ -52,7 +51,7 @@ struct DeviceState {
     explicit DeviceState(const DeviceChoice& choice) : device(choice) {}
 
     gpu::Device device;
-    gpu::Pipelines pipelines{device, footprint_cache_folder()};
+    gpu::Pipelines pipelines{device, cache_folder()};
     Bindings bindings{device, pipelines};
     gpu::Commands commands{device, pipelines, bindings.set()};
 };
@@ -112,7 +111,7 @@ struct RendererState : DeviceState, SplatSet {
     void provide_splats(const FrameRequest& request, RenderStats& stats);
     Gathered provide_level(FrameRequest request, int finest, double patience, RenderStats& stats);
     /// Passes 1 and 2, if the plan differs from what the splat list was made with, and what the scene calls for of
-    /// passes 2b to 2d. Needs provide_footprints. Milliseconds spent.
+    /// passes 2b to 2d. Milliseconds spent.
     double collect(const Scene& scene, const Settings& settings, bool keep_buried);
     /// The same block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
@@ -133,18 +132,12 @@ struct RendererState : DeviceState, SplatSet {
     void need_layers(const Scene& scene, const Settings& settings) const;
     /// What a request takes of the device's memory, if it does not fit with the volume as a whole.
     std::optional<MemoryNeed> beyond_memory(const FrameRequest& request);
-    /// The furthest that a kernel of these settings reaches, voxels.
-    double reach_of(const Settings& drawn);
     /// The splats that are collected, if they are those of the plan.
     std::optional<SplatCount> collected_splats(const CollectionPlan& wanted) const;
     /// Brings the volume to the device if it is not there.
     void provide_volume();
     /// Frees what pictures with these settings do not use.
     void release_unused(const Settings& drawn);
-    /// Support spheres of the settings' kernels.
-    void choose_supports(const Settings& settings);
-    /// Footprint table or paper warp that the settings call for.
-    void provide_footprints(const Settings& settings);
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
     void provide_layers(FramePlan& plan);
@@ -201,20 +194,9 @@ struct RendererState : DeviceState, SplatSet {
     bool culls = true;  ///< what lies outside the picture brick by brick is left out
     /// And what is hidden, of so many splats in view: selecting and sorting fewer twice takes longer than all once.
     std::uint64_t least_hiding = std::uint64_t{1} << 16U;
-    FootprintResources footprint_resources;
     TargetResources targets;
     std::optional<RaycastResources> raycast;  ///< of this volume, once a picture was made that way
 
-    std::optional<EdgeBand> table_band;  ///< what the footprint table was made for
-    FootprintTableSize table_texels;
-    struct SupportsMadeFor {
-        EdgeBand band;
-        EdgeShape shape;
-        WarpFamily warp;
-        FootprintMode footprints;
-        bool operator==(const SupportsMadeFor&) const = default;
-    };
-    std::optional<SupportsMadeFor> supports_made_for;
     FramePlan plan;  ///< of the last draw
     std::vector<PassTime> collection_times;
     std::uint64_t voxels_estimated = 0;                          ///< for this picture
@@ -234,10 +216,6 @@ struct RendererState : DeviceState, SplatSet {
 
 /// Opens the device; where it is lost meanwhile, up to so many times. Throws Error, DeviceLost in the end.
 std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attempts);
-
-/// Whether footprints are looked up, and how large the table is.
-bool uses_table(const Settings& settings);
-FootprintTableSize table_size_of(TableSize size);
 
 /// Scales state.volume and brings it to the device.
 void upload_volume(RendererState& state);

@@ -68,11 +68,8 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
         provide_tiles(plan_in_use);
     else
         provide_layers(plan_in_use);
-    p.footprint = footprint_resources.params;
-    std::ranges::copy(footprint_resources.supports, p.support_table);
-    std::ranges::copy(footprint_resources.spheroids, p.spheroids);
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
-    bindings.write(volume_resources, footprint_resources, targets);
+    bindings.write(volume_resources, targets);
 }
 
 void RendererState::provide_layers(FramePlan& plan_in_use) {
@@ -84,15 +81,16 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
           &targets.tile_todo, &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets})
         *unused = {};
     targets.prepared = {};
-    if (!has_shape(targets.sheets, plan_in_use.sheet_format, p.size, layers) ||
+    constexpr vk::Format kSums = vk::Format::eR32G32B32A32Sfloat;
+    if (!has_shape(targets.sheets, kSums, p.size, layers) ||
         !has_shape(targets.depth, vk::Format::eD16Unorm, p.size, layers) ||
-        !has_shape(targets.accumulated, plan_in_use.accumulated_format, p.size, 1)) {
+        !has_shape(targets.accumulated, kSums, p.size, 1)) {
         targets.sheets = {};
         targets.depth = {};
         targets.accumulated = {};
         const glm::ivec3 size(p.size, 1);
         targets.sheets = gpu::GpuImage(device,
-                                       {.format = plan_in_use.sheet_format,
+                                       {.format = kSums,
                                         .size = size,
                                         .layers = layers,
                                         .array = true,
@@ -107,7 +105,7 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
                                       "sheet depth");
         targets.accumulated = gpu::GpuImage(
             device,
-            {.format = plan_in_use.accumulated_format,
+            {.format = kSums,
              .size = size,
              .usage = Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc | Usage::eTransferDst},
             "accumulated picture");
@@ -187,7 +185,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
         if (blocks * tiles > kMostTileCounters) {
             fail(
                 "a sheet of this view has {} pairs of splat and tile, more than can be sorted: choose a smaller "
-                "--sheet-spacing, or --sheet-format float",
+                "--sheet-spacing, or --sheet-format layers",
                 chunks.most_pairs);
         }
         plan.params.tile_blocks = p.tile_blocks = blocks;
@@ -196,7 +194,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
          vk::Format::eR32Uint);
     p.tile_counters = targets.tile_counters.address();
     p.entries_first = 0;
-    bindings.write(volume_resources, footprint_resources, targets);
+    bindings.write(volume_resources, targets);
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());
 }
 

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "footprints/gauss_legendre.h"
 
@@ -14,7 +13,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Where phi is this nearly linear along a ray, its second zero lies out of every kernel's reach.
 constexpr double kStraight = 1e-6;
 constexpr double kLeastSlope2 = 1e-8;
-constexpr double kFar = 1e3;  // voxels: a face that a ray meets further off is not met
+constexpr double kNowhere = 1e9;  // voxels along a ray: out of every kernel's reach, and with a middle
 
 struct Roots {
     bool real = false;
@@ -33,23 +32,19 @@ Roots roots(const Quadratic& phi, double level) {
     return {true, std::min(near, far), std::max(near, far)};
 }
 
-/// Where a ray meets a face at z. `out_along`: 1 where it leaves there, -1 where it enters.
-FacePlane plane_at(const FaceRay& ray, double depth, double z, double out_along) {
-    if (!(std::abs(z) < kFar)) return {};
-    const double slope = std::sqrt(std::max(ray.slope2.at(z), kLeastSlope2));
-    const double p = (ray.across + z * ray.turn) / slope, u = (ray.phi.b + 2 * z * ray.phi.a) / slope;
-    const double side = u * out_along < 0 ? -1 : 1;
-    return {side * p, side * u, side * (p + z * u) - depth};
-}
+/// A face that bounds the matter, and which way it faces.
+struct End {
+    double level = 0;  ///< phi = -level
+    double side = 1;   ///< -1: matter lies where phi is larger
+};
 
-const QuadratureRule& rule_of(int nodes) {
-    static const std::map<int, QuadratureRule> rules = [] {
-        std::map<int, QuadratureRule> made;
-        for (int n = 1; n <= 32; ++n)
-            made.emplace(n, gauss_legendre(n));
-        return made;
-    }();
-    return rules.at(nodes);
+/// Where a ray meets that face at z. Within the reach it may be next to it only: then by the distance there.
+FacePlane plane_at(const FaceRay& ray, double depth, double z, const End& end) {
+    const double slope = std::sqrt(std::max(ray.slope2.at(z), kLeastSlope2));
+    const double p = end.side * (ray.across + z * ray.turn) / slope;
+    const double u = end.side * (ray.phi.b + 2 * z * ray.phi.a) / slope;
+    const double distance = end.side * (ray.phi.at(z) + end.level) / slope;
+    return {p, u, p + z * u - distance - depth};
 }
 
 double reach2_of(double distance, double depth, double norm) {
@@ -63,8 +58,9 @@ double reach2_of(double distance, double depth, double norm) {
 
 }  // namespace
 
-FaceCut face_cut(double distance, double bend, double norm, double thickness) {
+FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest) {
     FaceCut cut;
+    cut.depth = deepest;
     cut.bend = bend;
     cut.thickness = thickness;
     // What is bent away from both sides is as deep as the ridge, where the slope is 0.
@@ -89,17 +85,23 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     const Roots behind = wall ? roots(ray.phi, cut.thickness) : Roots{};
     // Along the ray phi has a least value between its zeros, or a largest.
     const bool opens = ray.phi.a >= 0;
-    const Roots everywhere{true, -kInfinity, kInfinity};
+    const Roots everywhere{true, -kNowhere, kNowhere};
     const Roots outer = opens ? face : (wall ? behind : everywhere);
     const Roots inner = opens ? behind : face;
     if (!outer.real) return;
-    const auto add = [&](double low, double high, bool from_behind) {
-        pieces_.at(count_++) = {low, high, from_behind, plane_at(ray, cut.depth, low, -1),
-                                plane_at(ray, cut.depth, high, 1)};
+    const End front, back{cut.thickness, -1};
+    const End outer_end = opens || !wall ? front : back, inner_end = opens ? back : front;
+    const auto add = [&](double low, double high, const End& entry, const End& leave) {
+        // A ray that meets no face is nearest to it where phi turns.
+        const bool meets = low > -kNowhere || high < kNowhere;
+        const double turn = -0.5 * ray.phi.b / std::min(ray.phi.a, -kStraight);
+        const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
+        pieces_.at(count_++) = {low, high, entry.side < 0, plane_at(ray, cut.depth, held(meets ? low : turn), entry),
+                                plane_at(ray, cut.depth, held(meets ? high : turn), leave)};
     };
-    add(outer.low, inner.real ? inner.low : outer.high, !opens && wall);
+    add(outer.low, inner.real ? inner.low : outer.high, outer_end, inner.real ? inner_end : outer_end);
     if (!inner.real) return;
-    add(inner.high, outer.high, opens);
+    add(inner.high, outer.high, inner_end, outer_end);
     if (choice == FacePieces::Both) return;
     if (!(overlap(pieces_[0]) > overlap(pieces_[1]))) pieces_[0] = pieces_[1];
     count_ = 1;
@@ -119,7 +121,7 @@ double FacePath::kernel_at(double z) const {
 FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     FaceFootprint out;
     const double plain = std::sqrt(std::max(kKernelRadius * kKernelRadius - rho2_, 0.0));
-    const QuadratureRule& rule = rule_of(nodes);
+    const QuadratureRule& rule = kept_gauss_legendre(nodes);
     for (const FacePiece& piece : pieces()) {
         // Deeper than what is moved there is nothing beyond the plain kernel's reach.
         const double low = piece.entry.is_deep(-plain) ? -plain : -half_chord_;

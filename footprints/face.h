@@ -42,16 +42,17 @@ struct FaceCut {
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
 };
 
-/// How deep under a face kernels are sampled where there is room: most of the sum of kernels is there (.8 of a voxel
-/// behind a lattice plane .82 at least, .966 in the mean), and what lies deeper than R + that is not drawn for the
-/// face.
-inline constexpr double kFaceDepth = 0.8;
+/// How deep under a face kernels are sampled where there is room. Of opaque matter most of the sum of kernels is enough
+/// (.8 of a voxel behind a lattice plane .82 at least, .966 in the mean); where one sees through it, it is all but 1
+/// (.999 at least). Faces further away than R + that cut nothing.
+inline constexpr double kFaceDepth = 0.8, kDeepFaceDepth = 1.4;
 
 /// `FaceCut` of a face with that bend and thickness whose foot point lies `distance` from the voxel's centre; `norm` is
-/// the Frobenius norm of H, 1/voxel.
-FaceCut face_cut(double distance, double bend, double norm, double thickness);
+/// the Frobenius norm of H, 1/voxel, `deepest` one of the two above.
+FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth);
 
-/// The plane that touches a face where a ray meets it: n . x along the ray, and from which value on x is moved along n.
+/// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n . x
+/// along the ray, and from which value on x is moved along n.
 struct FacePlane {
     double p = 0, u = 0, level = std::numeric_limits<double>::infinity();
     double at(double z) const { return p + z * u; }
@@ -61,7 +62,7 @@ struct FacePlane {
 };
 
 /// A piece of the ray on the own side of a face. It begins where the ray enters the matter, by the face or, of a wall,
-/// by the face behind; or nowhere (-infinity).
+/// by the face behind; or nowhere (at -1e9).
 struct FacePiece {
     double low = 0, high = 0;
     bool from_behind = false;
@@ -87,6 +88,8 @@ class FacePath {
     FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice = FacePieces::Both);
 
     std::span<const FacePiece> pieces() const { return {pieces_.data(), count_}; }
+    /// Of the ray within the cut kernel's reach: beyond it the kernel is 0.
+    double half_chord() const { return half_chord_; }
 
     /// The cut kernel at the point z of the ray; 0 outside the matter.
     double kernel_at(double z) const;
@@ -97,7 +100,7 @@ class FacePath {
   private:
     double overlap(const FacePiece& piece) const;
 
-    double rho2_, half_chord_;  ///< half_chord_: of the ray within the cut kernel's reach
+    double rho2_, half_chord_;
     std::array<FacePiece, 2> pieces_;
     std::size_t count_ = 0;
 };

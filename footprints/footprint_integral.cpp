@@ -12,22 +12,13 @@ namespace {
 
 // Squared distance from the voxel to the warped position of the ray's point z (voxels from p): the part along n becomes
 // w.
-template <typename AnyEdge>
-double warped_r2(const Ray& ray, const AnyEdge& edge, double z) {
+double warped_r2(const Ray& ray, const PaperEdge& edge, double z) {
     const double t = ray.pn + z * ray.un;
     const double w = warped_coordinate(t, edge);
     return ray.rho2 + z * z + (w - t) * (w + t);
 }
 
 // Values of t where the displacement is not smooth.
-std::vector<double> breaks_of(const Edge& edge) {
-    const double a = edge.band.half_width;
-    std::vector<double> t = {edge.distance - a, edge.distance, edge.distance + a};
-    if (std::isfinite(edge.second_distance))
-        t.insert(t.end(), {-edge.second_distance - a, -edge.second_distance, -edge.second_distance + a});
-    return t;
-}
-
 std::vector<double> breaks_of(const PaperEdge& edge) {
     const double start = paper_interval(edge);
     const PaperProfile q = paper_profile_for(edge);
@@ -56,8 +47,13 @@ double refine(const Function& f, double low, double high, double whole, int dept
     return refine(f, low, middle, left, depth - 1) + refine(f, middle, high, right, depth - 1);
 }
 
-template <typename AnyEdge>
-double exact(const Ray& ray, const AnyEdge& edge) {
+}  // namespace
+
+Ray ray_through(double x, double y, double c) {
+    return {x * x + y * y, x * std::sqrt(std::max(0.0, 1 - c * c)), c};
+}
+
+double exact_footprint(const Ray& ray, const PaperEdge& edge) {
     // The ray stays at one t: the kernel is shifted, not bent.
     if (std::abs(ray.un) < 1e-9) return kernel_footprint(std::max(0.0, warped_r2(ray, edge, 0)));
 
@@ -93,19 +89,6 @@ double exact(const Ray& ray, const AnyEdge& edge) {
             sum += refine(f, cuts[j], cuts[j + 1], panel(f, cuts[j], cuts[j + 1]), 24);
     }
     return sum;
-}
-
-}  // namespace
-
-Ray ray_through(double x, double y, double c) {
-    return {x * x + y * y, x * std::sqrt(std::max(0.0, 1 - c * c)), c};
-}
-
-double exact_footprint(const Ray& ray, const Edge& edge) {
-    return exact(ray, edge);
-}
-double exact_footprint(const Ray& ray, const PaperEdge& edge) {
-    return exact(ray, edge);
 }
 
 }  // namespace edgesplat

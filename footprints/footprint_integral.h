@@ -1,5 +1,5 @@
-// Footprints: the integral of a warped kernel along a viewing ray, exactly (the oracle) and by the rules the shaders
-// use.
+// Footprints of plain kernels and of those that the paper's curve warps: the integral along a viewing ray, exactly (the
+// oracle) and by the rules the shaders use.
 //
 // The kernel of a voxel at the origin is K(|W(x)|), W moving x along n only. So a ray matters through three numbers,
 // and a footprint is a function of them and of the edge. Values are integrals of K along the ray, in 1/voxel^2.
@@ -7,7 +7,6 @@
 
 #include <limits>
 
-#include "footprints/edge_warp.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {
@@ -32,21 +31,17 @@ double sliced_kernel_footprint(double rho2, const Slice& slice);
 /// The ray of design (8): n = (sqrt(1-c^2), 0, c), u = z, through (x, y).
 Ray ray_through(double x, double y, double c);
 
-/// Design (8) to an absolute 1e-10: panels split at the faces, the ends of their bands and the borders of the support,
-/// each refined until it no longer changes.
-double exact_footprint(const Ray& ray, const Edge& edge);
+/// Design (8) to an absolute 1e-10: panels split at the knots of the profile and the borders of the support, each
+/// refined until it no longer changes.
 double exact_footprint(const Ray& ray, const PaperEdge& edge);
 
-/// As the shader computes it: in closed form outside the bands, and a fixed rule of `nodes` (4, 6, 8, 10, 12 or 16) per
-/// half band (edge) or per piece of the profile (paper) within. The rule of 8 crowds towards the face of a half band.
-/// A curved edge's half bands meet the ray in up to two pieces each.
-double procedural_footprint(const Ray& ray, const Edge& edge, int nodes = 8, const Slice& slice = {});
+/// As the shader computes it: in closed form outside the warped interval, and Gauss-Legendre with `nodes` (4 or 10)
+/// nodes per piece of the profile within.
 double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes = 10, const Slice& slice = {});
 
 /// The paper's short cut: the two-dimensional footprint, warped by the projected edge. The displacement is that of the
 /// point p, shortened by the projection of n: the edge stands at D/sin(theta), its strength fades to 1 as n turns along
 /// the ray.
-double warp2d_footprint(const Ray& ray, const Edge& edge, const Slice& slice = {});
 double warp2d_footprint(const Ray& ray, const PaperEdge& edge, const Slice& slice = {});
 
 }  // namespace edgesplat

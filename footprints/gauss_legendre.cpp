@@ -1,6 +1,7 @@
 #include "footprints/gauss_legendre.h"
 
 #include <cmath>
+#include <map>
 #include <numbers>
 
 namespace edgesplat {
@@ -28,14 +29,14 @@ QuadratureRule gauss_legendre(int n) {
     return rule;
 }
 
-QuadratureRule crowded(const QuadratureRule& rule) {
-    QuadratureRule nearer;
-    for (std::size_t i = 0; i < rule.size(); ++i) {
-        const double away = 2 - rule.nodes[i];
-        nearer.nodes.push_back(rule.nodes[i] / away);
-        nearer.weights.push_back(rule.weights[i] * 2 / (away * away));
-    }
-    return nearer;
+const QuadratureRule& kept_gauss_legendre(int n) {
+    static const std::map<int, QuadratureRule> rules = [] {
+        std::map<int, QuadratureRule> made;
+        for (int nodes = 1; nodes <= 32; ++nodes)
+            made.emplace(nodes, gauss_legendre(nodes));
+        return made;
+    }();
+    return rules.at(n);
 }
 
 }  // namespace edgesplat

@@ -3,7 +3,7 @@
 // The paper warps the unit interval between the two voxels that enclose the edge: x in [0, 1] is sampled at map(x), the
 // inverse of a monotone profile p. As p' vanishes at t1 and t2, map rises with infinite slope at m1 and m2. `Smooth`
 // puts a monotone rational quadratic through the same knots instead. Both lose the partition of unity on edges that are
-// not aligned with the grid: they are here to compare with, `edge` is the default.
+// not aligned with the grid: they are here to compare with; faces (face.h) are the default.
 #pragma once
 
 namespace edgesplat {
@@ -37,6 +37,10 @@ struct PaperEdge {
     double distance = 0;  ///< D, voxels
     PaperShape shape;
 };
+
+/// How far from its voxel a kernel of the usual shape reaches: sqrt(R^2 - w(t)^2 + t^2) at most, 1.9074 over every
+/// edge.
+inline constexpr double kPaperReach = 1.91;
 
 /// First t of the warped unit interval: 0 or 1.
 double paper_interval(const PaperEdge& edge);

@@ -47,8 +47,7 @@ void main() {
         uint material = material_at(p);
         bool visible = in_mask(params.scene.visible_mask, material);
         if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
-        // No kernel reaches further than R + a.
-        if (CLIP_KEEP + CLIP_REMOVE > 0u) visible = visible && !is_cut_away(vec3(p), params.scene.band);
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) visible = visible && !is_cut_away(vec3(p), params.scene.reach);
         float value = 0.0;
         if (TRANSFER == 1u) {
             uvec2 code = EDGES == 1u && visible ? imageLoad(edges, p).xy : uvec2(0u);

@@ -1,5 +1,5 @@
-// Gives each collected splat its edge, evened out along the surface (pass 1, step 5), its curvature and its weight: one
-// invocation a splat, where voxels that are seen lie one behind the other.
+// Gives each collected splat its edge or the face that fits the surface around it: one invocation a splat, where voxels that are
+// seen lie one behind the other. docs/method.md, pass 2.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -8,10 +8,6 @@
 #include "shaders/shared/scene_params.h"
 
 layout(local_size_x = 64) in;
-layout(constant_id = SPEC_SMOOTH) const uint SMOOTH = 1u;
-layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
-layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
@@ -21,24 +17,9 @@ layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params
 ivec3 dims;
 #include "shaders/lib/material.glsl"
 #include "shaders/lib/volume_sampling.glsl"
-#include "shaders/lib/transfer.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
-#include "shaders/lib/edge_smoothing.glsl"
-#include "shaders/lib/kernel_weight.glsl"
 #include "shaders/lib/fit_face.glsl"
-#include "shaders/lib/edge_weight.glsl"
-
-// With the other side of the edge, a voxel beyond it.
-float contrast_of(ivec3 p, float value, uint material, Edge e) {
-    if (TRANSFER == 1u && e.state >= EDGE_LOWER) {
-        float beyond = trilinear(vec3(p) + (1.0 + max(e.d, 0.0)) * e.n);
-        TransferRef transfer = TransferRef(params.scene.transfer);
-        return clamp(1.0 - transfer_at(transfer, beyond).a / transfer_at(transfer, value).a, 0.0, 1.0);
-    }
-    vec2 contrast = params.scene.contrast[material];
-    return e.state == EDGE_UPPER ? contrast.y : contrast.x;
-}
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -53,27 +34,6 @@ void main() {
         uint material = splat.edge >> 28;
         uvec2 code = imageLoad(edges, p).xy;
         Edge e = unpack_edge(code.x, code.y);
-        if (WEIGHTED == WEIGHTED_VOXEL)
-            UintsRef(params.scene.traits).at[i] = pack_traits(0.0, kernel_weight(p, dims, e), params.scene.curvature_unit);
-        float value = 0.0;
-        if (TRANSFER == 1u) value = ClassifiedRef(params.scene.values).at[i];
-        float contrast = WEIGHTED == WEIGHTED_EDGE ? contrast_of(p, value, material, e) : 0.0, curvature = 0.0;
-        if (SMOOTH == 1u || CURVED == 1u) {
-            SurfaceAround around = surface_around(p, dims, e, material);
-            if (SMOOTH == 1u) {
-                e.d += around.distance_correction;
-                e.d2 -= around.distance_correction;
-            }
-            if (CURVED == 1u) {
-                // The centre must not lie between the voxel and its edge.
-                float most = 0.95 / max(abs(e.d), 0.1);
-                curvature = clamp(around.curvature, -most, most);
-            }
-        }
-        if (e.state >= EDGE_LOWER && abs(e.d) > params.scene.band) e = Edge(e.n, 1e9, 1e9, EDGE_NORMAL);
-        if (CURVED == 1u || WEIGHTED == WEIGHTED_EDGE)
-            UintsRef(params.scene.traits).at[i] = pack_traits(
-                curvature, WEIGHTED == WEIGHTED_EDGE ? edge_weight(e, contrast) : 1.0, params.scene.curvature_unit);
         uint normal = code.x;
         if (FACES == 1u) {
             // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.

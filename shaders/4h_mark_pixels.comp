@@ -6,13 +6,11 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 8, local_size_y_id = SPEC_LIST_PARTS) in;
-layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
-layout(constant_id = SPEC_WARP) const uint WARP = 0u;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_NODES) const uint NODES = 8u;
-layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;

@@ -9,13 +9,11 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x_id = SPEC_GROUP) in;
-layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
-layout(constant_id = SPEC_WARP) const uint WARP = 0u;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_NODES) const uint NODES = 8u;
-layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
@@ -27,7 +25,6 @@ layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
-layout(binding = BIND_TABLE) uniform sampler2DArray table;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
@@ -47,7 +44,7 @@ layout(push_constant) uniform Push { uint what; };  // round | groups of a tile 
 vec3 from_eye;
 vec4 color_sigma;
 vec4 normal_distance;
-vec4 shape;
+vec3 shape;
 vec2 pixels;
 vec3 matter;
 uvec2 number_material;
@@ -56,8 +53,6 @@ FaceForm face_form;
 #define CLIP_PARAMS params.frame
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/prepared_splat.glsl"
-FaceBand band;
-#define FACE_BAND(d, d2, faces) band
 #include "shaders/lib/splat_value.glsl"
 #include "shaders/lib/fold_sheet.glsl"
 #include "shaders/lib/pixel_in_tile.glsl"
@@ -114,6 +109,7 @@ void main() {
         vec3 u = way / way_length;
         float mm = length(params.frame.index_to_world * u);
         normal_distance = vec4(0.0);
+        if (FACES) volume_piece = piece_in_volume(u);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint current = imageLoad(entries, at).y;
@@ -153,9 +149,7 @@ void main() {
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], sheet);
                 color_sigma = h.inputs.color_sigma;
                 normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
-                shape = vec4(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, CURVED == 1u ? h.inputs.shape.y : 0.0,
-                             SLICED == 1u ? h.inputs.shape.zw : vec2(0.0));
-                if (BANDS) band = h.band;
+                shape = vec3(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, SLICED == 1u ? h.inputs.shape.yz : vec2(0.0));
                 if (FACES) {
                     face_form = h.inputs.face;
                     number_material = h.inputs.number_material;

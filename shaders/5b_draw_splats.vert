@@ -5,12 +5,10 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 3u;
-layout(constant_id = SPEC_WARP) const uint WARP = 0u;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
-layout(constant_id = SPEC_CURVED) const uint CURVED = 0u;
-layout(constant_id = SPEC_WEIGHTED) const uint WEIGHTED = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
@@ -28,7 +26,7 @@ layout(location = 0) out vec3 offset;              // a point of the pixel's ray
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
 layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
-layout(location = 4) flat out vec4 shape;  // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
+layout(location = 4) flat out vec3 shape;  // negative: the splat is not warped; depths of the slice (mm from the voxel)
 layout(location = 5) out vec2 pixels;              // from the voxel's centre to the fragment's; with antialias only
 layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
 layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise

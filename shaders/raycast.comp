@@ -15,7 +15,7 @@ float crossing(Ray ray, float low, float high, float f_low, float f_high, float 
         // Newton from the chord on, or the middle where that leads out of what is left: to 1e-3 voxel.
         c = low + (high - low) * f_low / (f_low - f_high);
         for (int k = 0; k < 3; ++k) {
-            vec4 s = bspline_slope(at(ray, c));
+            vec4 s = bspline_slope(ivec3(0), at(ray, c));
             float f = s.w - iso;
             bool near = (f < 0.0) == (f_low < 0.0);
             low = near ? c : low;
@@ -111,8 +111,10 @@ void main() {
             // Surfaces are lit where they are entered, wherever the samples lie.
             float here = entered ? a : 0.5 * (a + c);
             bool dark = LIGHT != LIGHT_NONE && material.a > 0.0 && (entered || (stale > STALE_LIGHT && here - lit_at >= STALE_WAY));
+            // Matter that the volume's border cuts is lit by the border.
+            bool cut = !entered && lit_at < -1e8 && dot(ray.border, ray.border) > 0.0;
             for (int run = dark ? 1 : 0; run > 0; --run) {
-                light = light_on(gradient(at(ray, here)), ray.u);
+                light = light_on(cut ? ray.border : gradient(at(ray, here)), ray.u);
                 lit_at = here;
                 stale = 0.0;
             }

@@ -90,8 +90,7 @@ CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume
             frame.result.color = take(edgesplat::reference::truth(scene_behind(volume), volume.geometry, scene, camera,
                                                                   width, height, options));
         } else {
-            const edgesplat::reference::PreparedVolume prepared(volume, scene,
-                                                                edgesplat::reference::without_tables(frame.settings));
+            const edgesplat::reference::PreparedVolume prepared(volume, scene, frame.settings);
             const auto picture = [&](Output output) {
                 return take(edgesplat::reference::direct_evaluation(prepared, camera, width, height, output, options));
             };

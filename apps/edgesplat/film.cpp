@@ -20,7 +20,8 @@ constexpr int kMostFrames = 1'000'000;
 }  // namespace
 
 void check_film(const SceneDocument& document) {
-    if (!document.output.aovs.empty() || document.output.compare_plain || on_processor(document.output.renderer))
+    if (!document.output.aovs.empty() || document.output.compare_plain || document.output.compare_raycast ||
+        on_processor(document.output.renderer))
         fail("a movie has neither extra outputs nor comparisons, and is made by --renderer splat or a ray caster");
 }
 

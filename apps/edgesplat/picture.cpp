@@ -35,6 +35,8 @@ void check(const PictureRequest& request) {
         edgesplat::fail("--explain explains splatting; it needs --renderer splat");
     if (output.renderer == edgesplat::RendererKind::Raycast && !output.aovs.empty())
         edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
+    if (ranks::count() > 1 && output.compare_raycast)
+        edgesplat::fail("--compare raycast draws no sheets that ranks could divide; run it without mpirun");
     if (ranks::count() > 1 && output.renderer != edgesplat::RendererKind::Splat)
         edgesplat::fail("--renderer {} draws no sheets that ranks could divide; run it without mpirun",
                         name_of(output.renderer));
@@ -58,7 +60,8 @@ edgesplat::Volume load(const PictureRequest& request) {
     return volume;
 }
 
-/// The frames asked for: with `compare_plain` the plain one first. Of several ranks the first has them.
+/// The frames asked for: first, where it is compared, the plain one, then the ray caster's. Of several ranks the first
+/// has them.
 std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
                                          edgesplat::Renderer& renderer, const edgesplat::Volume& volume,
                                          const edgesplat::Scene& scene, const edgesplat::Camera& camera) {
@@ -68,6 +71,7 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
         plain.edges = edgesplat::EdgeEstimator::Off;
         frames.push_back({"plain", plain, {}});
     }
+    if (output.compare_raycast) frames.push_back({"raycast", settings, {}, {}, true});
     const bool edges = settings.edges != edgesplat::EdgeEstimator::Off;
     frames.push_back({edges ? "edges" : "plain", settings, {}});
     const edgesplat::AovRequest aovs = aov_request(output.aovs);
@@ -75,7 +79,7 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
     renderer.divide_sheets(exchange.get());
     for (RenderedFrame& frame : frames) {
-        frame.result = output.renderer == edgesplat::RendererKind::Raycast
+        frame.result = frame.rays || output.renderer == edgesplat::RendererKind::Raycast
                            ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
                            : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
         frame.ranks = gather_reports(frame.result.stats, volume);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 
@@ -65,7 +66,7 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
                [&edits](const std::vector<std::string>& aovs) {
                    edits.add([aovs](SceneDocument& d) {
                        d.output.aovs = aovs;
-                       d.output.compare_plain = false;
+                       d.output.compare_plain = d.output.compare_raycast = false;
                    });
                },
                "Extra outputs, with commas between: channels of an .exr picture, or FILE.tau.exr, ... beside a .png")
@@ -74,17 +75,21 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
             ->allow_extra_args(false)
             ->check(CLI::IsMember(std::vector<std::string>(kAovNames.begin(), kAovNames.end())).description(""))
             ->group(kGroup);
-    app.add_option_function<std::string>(
+    app.add_option_function<std::vector<std::string>>(
            "--compare",
-           [&edits](const std::string&) {
-               edits.add([](SceneDocument& d) {
-                   d.output.compare_plain = true;
+           [&edits](const std::vector<std::string>& beside) {
+               edits.add([beside](SceneDocument& d) {
+                   d.output.compare_plain = std::ranges::count(beside, "plain") > 0;
+                   d.output.compare_raycast = std::ranges::count(beside, "raycast") > 0;
                    d.output.aovs.clear();
                });
            },
-           "Side by side: conventional splatting left, this command's picture right")
-        ->type_name("plain")
-        ->check(CLI::IsMember(std::vector<std::string>{"plain"}).description(""))
+           "Side by side, with commas between: conventional splatting, the ray caster (--raycast-filter), and on the "
+           "right this command's picture")
+        ->type_name("plain,raycast")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->check(CLI::IsMember(std::vector<std::string>{"plain", "raycast"}).description(""))
         ->excludes(aov)
         ->group(kGroup);
     app.add_option("--json", command.json, "Statistics: milliseconds per pass, counts, memory, device, driver, version")

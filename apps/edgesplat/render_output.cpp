@@ -11,7 +11,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kDividerWidth = 2;  ///< pixels between the two pictures of --compare
+constexpr int kDividerWidth = 2;  ///< pixels between the pictures of --compare
 constexpr float kDividerColor = 0.5F;
 
 ordered_json to_json(const glm::dvec3& v) {
@@ -166,8 +166,9 @@ std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& p
                                                   const std::vector<RenderedFrame>& frames,
                                                   const edgesplat::ImageMetadata& metadata) {
     const edgesplat::RenderResult& last = frames.back().result;
-    const edgesplat::Image color =
-        frames.size() == 2 ? side_by_side(frames.front().result.color, last.color) : last.color;
+    edgesplat::Image color = frames.front().result.color;
+    for (std::size_t i = 1; i < frames.size(); ++i)
+        color = side_by_side(color, frames[i].result.color);
     const auto aovs = aov_layers(last);
     std::vector<edgesplat::FileContent> files;
     if (edgesplat::is_png_path(path)) {

@@ -11,12 +11,13 @@
 #include "engine/image_file.h"
 #include "engine/renderer.h"
 
-/// One picture of the run: `--compare plain` makes two.
+/// One picture of the run: `--compare` makes two or three.
 struct RenderedFrame {
-    std::string name;  ///< "plain" or "edges"
+    std::string name;  ///< "plain", "raycast" or "edges"
     edgesplat::Settings settings;
     edgesplat::RenderResult result;
     std::vector<RankReport> ranks{};  ///< where its sheets were divided
+    bool rays = false;                ///< cast, not splatted
 };
 
 /// What the statistics and the metadata say about the run.
@@ -41,9 +42,9 @@ nlohmann::ordered_json statistics(const RunDescription& run, const std::vector<R
 /// Where the extra output `aov` of a .png goes: "out.png" -> "out.tau.exr".
 std::filesystem::path aov_path(const std::filesystem::path& picture, const std::string& aov);
 
-/// The picture of the frames, side by side with a divider where there are two, with the extra outputs of the last one:
-/// inside an .exr (R,G,B,A, tau, depth.Z, normal.X/Y/Z, distance), in files of their own (`aov_path`) beside a .png,
-/// which holds R,G,B over the background.
+/// The picture of the frames, side by side with dividers where there are several, with the extra outputs of the last
+/// one: inside an .exr (R,G,B,A, tau, depth.Z, normal.X/Y/Z, distance), in files of their own (`aov_path`) beside a
+/// .png, which holds R,G,B over the background.
 std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& path,
                                                   const std::vector<RenderedFrame>& frames,
                                                   const edgesplat::ImageMetadata& metadata);

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/scene/removed.h"
 
 using edgesplat::SceneDocument;
 
@@ -34,10 +35,8 @@ void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
         .add_option_function<std::string>(
             "--renderer",
             [&edits](const std::string& text) {
-                if (text == "raycast-warped")
-                    throw CLI::ValidationError("--renderer",
-                                               "'raycast-warped' is gone; write raycast --raycast-filter cubic for "
-                                               "rays whose surfaces are nearer to the truth");
+                if (const std::string removed = edgesplat::removed_step("renderer", text); !removed.empty())
+                    throw CLI::ValidationError("--renderer", fmt::format("'{}' {}", text, removed));
                 const auto kind =
                     named<edgesplat::RendererKind>(edgesplat::kRendererNames, "--renderer", "renderer", text);
                 edits.add([kind](SceneDocument& d) { d.output.renderer = kind; });

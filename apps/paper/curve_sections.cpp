@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "apps/paper/footprint_tiles.h"
+#include "footprints/face.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
@@ -47,7 +48,6 @@ std::string map_text(const CurveExample& e, const std::filesystem::path& file) {
     const PaperProfile smooth = e.smooth();
     const double at = e.edge(), h = 1e-6;
     const auto width = [](const auto& inverse) { return inverse(0.8) - inverse(0.2); };
-    const auto ours = [&](double w) { return at + edge_warp_inverse(w - at, e.band); };
     return fmt::format(
         "## Figure 6: map, the inverse of p\n\n{}\nWhere a kernel is sampled instead of at x. Measured:\n\n"
         "| map | slope at the edge | voxels in which the sampled place goes from 0.2 to 0.8 | reaches |\n"
@@ -55,22 +55,23 @@ std::string map_text(const CurveExample& e, const std::filesystem::path& file) {
         "| none | 1 | {:.4f} | |\n"
         "| paper (corrected) | {:.3f}, infinite at m1 and m2 | {:.4f} | [0, 1] |\n"
         "| paper-smooth | {:.3f} | {:.4f} | [0, 1] |\n"
-        "| edge | {:.3f} | {:.4f} | {} voxel to either side of the edge |\n\n"
+        "| face | a step: nothing of the voxel beyond it | {} voxel from the face and less, all at that depth | its "
+        "own "
+        "side |\n\n"
         "The two infinite slopes make a double step out of one edge: see \"Not a misprint\" below.\n",
-        picture("map(x) of the paper, of its smooth variant and of the edge family", file), 0.6,
-        1 / paper_profile_slope(0.5, q), width([&](double w) { return paper_profile(w, q); }),
+        picture("map(x) of the paper, of its smooth variant and of a face", file), 0.6, 1 / paper_profile_slope(0.5, q),
+        width([&](double w) { return paper_profile(w, q); }),
         (paper_map(at + h, smooth) - paper_map(at - h, smooth)) / (2 * h),
-        width([&](double w) { return paper_profile(w, smooth); }), edge_warp_slope(0, e.band), width(ours),
-        e.band.half_width);
+        width([&](double w) { return paper_profile(w, smooth); }), kFaceDepth);
 }
 
-/// Largest |sum of the kernels - 1| over the line, all moved by one map.
-template <typename Map>
-double ripple(const Map& map) {
+/// Largest |sum of the kernels - 1| over the line; `sum` of uniform data at x.
+template <typename Sum>
+double ripple(const Sum& sum) {
     const CurveExample uniform{.left = 1, .right = 1};
     double most = 0;
     for (int i = 0; i <= 4000; ++i)
-        most = std::max(most, std::abs(reconstruction(uniform, map(kLow + (kHigh - kLow) * i / 4000)) - 1));
+        most = std::max(most, std::abs(sum(uniform, kLow + (kHigh - kLow) * i / 4000) - 1));
     return most;
 }
 
@@ -80,34 +81,36 @@ std::string splat_text(const CurveExample& e, const std::filesystem::path& file,
         "## Figure 7: splats 0 to 3\n\n{}\nThe voxels at -1, 0, 1, 2, weighted with their values ({} up to voxel 0, {} "
         "from voxel 1 on): secondary and primary on\nthe larger-value side, primary and secondary on the lower-value "
         "side.\n\nMeasured: in one dimension all four share one map, so in uniform data their sum stays as even as "
-        "without any warp\n(largest deviation from 1: not warped {:.1e}, paper {:.1e}, edge {:.1e}).\n\n{}\n"
+        "without any warp\n(largest deviation from 1: not warped {:.1e}, paper {:.1e}); cut at a face, either side "
+        "loses what the other had there\n({:.1e} at most).\n\n{}\n"
         "The same four as footprints. Top: the kernel as it is. Seen edge-on (the edge's normal across the ray) the "
         "short cut,\nwarping the two-dimensional footprint, is exact (largest difference {:.1e} of the plain peak). At "
         "{:.0f} degrees between\nnormal and ray it is off by up to {:.0f} % of the peak where no warp at all is off "
-        "by {:.0f} %: a tilted edge blurs in\nprojection. Ours integrates the warped kernel along the ray at every "
+        "by {:.0f} %: a tilted edge blurs in\nprojection. Ours integrates the cut kernel along the ray at every "
         "angle. (Curve parameters here: those the renderer\ngives an edge at {}: t1, t2 = 0.2, 0.8; m1, m2 = {:.2f}, "
         "{:.2f}.)\n",
-        picture("Four weighted kernels, warped and not", file), e.left, e.right, ripple([](double x) { return x; }),
-        ripple([&](double x) { return paper_map(x, e.profile); }), ripple([&](double x) { return e.edge_map(x); }),
-        picture("Table of footprints of the four splats", tiles), t.edge_on_difference, t.degrees,
-        100 * t.short_cut_error, 100 * t.no_warp_error, t.edge, t.edge - PaperShape{}.rise, t.edge + PaperShape{}.rise);
+        picture("Four weighted kernels, warped and not", file), e.left, e.right, ripple(reconstruction),
+        ripple([&](const CurveExample& u, double x) { return reconstruction(u, paper_map(x, e.profile)); }),
+        ripple(cut_reconstruction), picture("Table of footprints of the four splats", tiles), t.edge_on_difference,
+        t.degrees, 100 * t.short_cut_error, 100 * t.no_warp_error, t.edge, t.edge - PaperShape{}.rise,
+        t.edge + PaperShape{}.rise);
 }
 
 std::string reconstruction_text(const CurveExample& e, const std::filesystem::path& file) {
     const PaperProfile smooth = e.smooth();
-    const auto row = [&](const char* name, const std::function<double(double)>& map) {
-        const StepQuality q = step_quality(e, [&](double x) { return reconstruction(e, map(x)); });
+    const auto row = [&](const char* name, const std::function<double(double)>& value) {
+        const StepQuality q = step_quality(e, value);
         return fmt::format("| {} | {:.3f} | {:+.4f} | {:.4f} |\n", name, q.rise, q.location, q.rms);
     };
     return fmt::format(
         "## Figure 8: two-tone data reconstructed\n\n{}\nThe sum of the splats of Figure 7 on [-1.5, 2.5]. Measured "
         "(voxels; rms against the ideal step of height {}):\n\n| | rise, 10 to 90 % | location error | rms |\n"
         "|---|--:|--:|--:|\n{}{}{}{}",
-        picture("Normal reconstruction against three warped ones", file), e.left - e.right,
-        row("normal", [](double x) { return x; }),
-        row("paper (corrected)", [&](double x) { return paper_map(x, e.profile); }),
-        row("paper-smooth", [&](double x) { return paper_map(x, smooth); }),
-        row("edge", [&](double x) { return e.edge_map(x); }));
+        picture("Normal reconstruction against two warped ones and one that is cut", file), e.left - e.right,
+        row("normal", [&](double x) { return reconstruction(e, x); }),
+        row("paper (corrected)", [&](double x) { return reconstruction(e, paper_map(x, e.profile)); }),
+        row("paper-smooth", [&](double x) { return reconstruction(e, paper_map(x, smooth)); }),
+        row("face", [&](double x) { return cut_reconstruction(e, x); }));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "engine/gnuplot.h"
 #include "footprints/footprint_integral.h"
 #include "footprints/kernel.h"
+#include "footprints/plane_face.h"
 
 namespace edgesplat {
 namespace {
@@ -59,7 +60,9 @@ FootprintTiles draw_footprint_tiles(const std::filesystem::path& target) {
     const auto plain = [](const Ray& ray, double) { return kernel_footprint(ray.rho2); };
     const auto short_cut = [](const Ray& ray, double d) { return warp2d_footprint(ray, PaperEdge{d, {}}); };
     const auto paper = [](const Ray& ray, double d) { return exact_footprint(ray, PaperEdge{d, {}}); };
-    const auto ours = [](const Ray& ray, double d) { return exact_footprint(ray, Edge{d, EdgeBand{}}); };
+    const auto ours = [](const Ray& ray, double d) {
+        return FacePath(plane_face(ray, d), plane_cut(d)).footprint(32).integral;
+    };
     const double tilted = std::cos(result.degrees * std::numbers::pi / 180);
     const std::vector<Row> rows = {{"no warp", 0, plain},
                                    {"paper,\\nedge-on", 0, short_cut},

@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "footprints/face.h"
 #include "footprints/kernel.h"
 
 namespace edgesplat {
@@ -41,8 +44,7 @@ Plot map_plot(const CurveExample& e) {
               "set key left top\nset grid"};
     plot.curves = {{"paper (corrected)", [=](double x) { return paper_map(x, q); }},
                    {"paper-smooth", [=](double x) { return paper_map(x, smooth); }, "lw 2 dt 2"},
-                   {fmt::format("edge, a = {}, k = {}", e.band.half_width, e.band.strength),
-                    [=](double x) { return e.edge_map(x); }},
+                   {"face, from its left", [=](double x) { return std::min(x, e.edge() - kFaceDepth); }},
                    no_warp()};
     return plot;
 }
@@ -82,7 +84,7 @@ Plot two_tone_plot(const CurveExample& e) {
     plot.curves = {{"normal", [=](double x) { return reconstruction(e, x); }},
                    {"paper (corrected)", [=](double x) { return reconstruction(e, paper_map(x, q)); }},
                    {"paper-smooth", [=](double x) { return reconstruction(e, paper_map(x, smooth)); }, "lw 2 dt 2"},
-                   {"edge", [=](double x) { return reconstruction(e, e.edge_map(x)); }}};
+                   {"face", [=](double x) { return cut_reconstruction(e, x); }}};
     return plot;
 }
 
@@ -102,6 +104,15 @@ double reconstruction(const CurveExample& example, double x) {
     double sum = 0;
     for (int i = -5; i <= 6; ++i)
         sum += weighted_kernel(example, i, x);
+    return sum;
+}
+
+double cut_reconstruction(const CurveExample& example, double x) {
+    const bool left = x < example.edge();
+    const double at = left ? std::min(x, example.edge() - kFaceDepth) : std::max(x, example.edge() + kFaceDepth);
+    double sum = 0;
+    for (int i = left ? -5 : 1; i <= (left ? 0 : 6); ++i)
+        sum += weighted_kernel(example, i, at);
     return sum;
 }
 

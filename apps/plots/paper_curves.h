@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "engine/gnuplot.h"
-#include "footprints/edge_warp.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {
@@ -13,12 +12,10 @@ namespace edgesplat {
 /// p(1/2) = (m1 + m2)/2 puts it.
 struct CurveExample {
     PaperProfile profile{0.2, 0.8, 0.3, 0.4};
-    EdgeBand band;
     double left = 1, right = 0.25;
 
     double edge() const { return (profile.m1 + profile.m2) / 2; }
-    double edge_map(double x) const { return edge() + edge_warp(x - edge(), band); }  ///< the `edge` family's map
-    PaperProfile smooth() const;                                                      ///< the profile's smooth variant
+    PaperProfile smooth() const;  ///< the profile's smooth variant
 };
 
 /// The weighted kernel of voxel i (-1, 0, 1, 2: the paper's splats 0 to 3) at x, which a warp has moved from elsewhere.
@@ -26,6 +23,10 @@ double weighted_kernel(const CurveExample& example, int i, double x);
 
 /// Their sum over all voxels: the reconstruction at x.
 double reconstruction(const CurveExample& example, double x);
+
+/// The same at x of kernels that a face at the edge cuts: only those of x's own side, sampled no nearer to it than a
+/// face's depth.
+double cut_reconstruction(const CurveExample& example, double x);
 
 /// Figures 4, 6, 7 and 8, in that order.
 std::vector<Plot> paper_plots(const CurveExample& example);

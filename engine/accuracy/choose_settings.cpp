@@ -51,7 +51,6 @@ std::vector<Settings> candidates(const Settings& base, Tier tier) {
         s.sheet_spacing = row.spacing;
         s.saturation = row.saturation;
         s.sheet_format = row.format;
-        s.accumulation = SheetFormat::Float;
         if (tier == Tier::Dear) s.pixels = PixelChoice::Every;
         const std::string key = settings_key(s);
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;

@@ -53,7 +53,7 @@ void add_combinations(const Settings& base, std::vector<Configuration>& rows) {
     Combinations combinations(base, rows);
     combinations.add({"warp2d", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999"});
     combinations.add({"procedural"}, {"sliced"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999"});
-    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"half"}, {"0.98"});
+    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"layers"}, {"0.98"});
     combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"tiles"}, {"0.98"});
     combinations.add({"procedural"}, {"sliced"}, {"1", "0.5"}, {"tiles"}, {"0.98", "0.9999"});
 }

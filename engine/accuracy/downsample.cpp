@@ -139,8 +139,7 @@ class Experiment {
         full_ = render_all(request_.settings);
         for (const RenderResult& r : full_)
             report_.full.push_back(r.color);
-        const reference::PreparedVolume model(*request_.volume, request_.scene,
-                                              reference::without_tables(request_.settings));
+        const reference::PreparedVolume model(*request_.volume, request_.scene, request_.settings);
         for (const int factor : request_.factors)
             report_.factors.push_back(measure(factor, model));
         renderer_.set_volume(request_.volume);
@@ -193,7 +192,7 @@ class Experiment {
                 variant.pictures.push_back(pictures[c].color);
             }
             variant.rmse = pooled(errors).rms;
-            const reference::PreparedVolume model(*coarse, request_.scene, reference::without_tables(settings));
+            const reference::PreparedVolume model(*coarse, request_.scene, settings);
             variant.edges = edge_figures(model, coarser(surface.points, factor), range);
             result.variants.push_back(std::move(variant));
         }

@@ -6,6 +6,7 @@
 
 #include "engine/accuracy/metrics.h"
 #include "engine/reference/parallel.h"
+#include "engine/scene/transfer_function.h"
 
 namespace edgesplat::accuracy {
 namespace {
@@ -52,7 +53,7 @@ std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, 
                 const std::size_t i = field.offset({x, y, z});
                 if (prepared.scaled_scene().material(static_cast<double>(field.values[i])) < 1) continue;
                 const reference::VoxelEdge& edge = prepared.edges()[i];
-                const Support support = footprints.support(edge);
+                const auto support = footprints.support(edge);
                 splats.push_back({&edge, {x, y, z}, support.radius + std::abs(support.shift)});
             }
         }
@@ -112,7 +113,7 @@ EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<co
                          const ProfileRange& range) {
     Settings settings = prepared.settings();
     settings.footprints = FootprintMode::Procedural;  // points need no table
-    const reference::Footprints footprints(settings);
+    const reference::Footprints footprints(settings, face_depth(prepared.scene(), prepared.volume().geometry));
     std::vector<std::optional<ProfileEdge>> edges(points.size());
     reference::parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)

@@ -1,18 +1,6 @@
 #include "engine/passes/1_estimate_edges.h"
 
 namespace edgesplat::passes {
-namespace {
-
-/// A workgroup a brick of 8^3 (shaders/lib/brick_list.glsl).
-gpu::Groups brick_groups(const EdgeRegion& region, int margin) {
-    const glm::ivec3 low = glm::max(region.core_low - margin, 0);
-    const glm::ivec3 high = glm::min(region.core_low + region.core_size + margin, region.dims);
-    const glm::uvec3 groups = (glm::uvec3(high - low) + 7U) / 8U;
-    return {groups.x, groups.y, groups.z};
-}
-
-}  // namespace
-
 gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, const ClipCount& clip) {
     return {{shader::SPEC_AXIS, axis},
             {shader::SPEC_ISO_COUNT, iso_count},
@@ -30,35 +18,18 @@ void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t 
     }
 }
 
-bool adopts(const EstimateEdges& in) {
-    return marches(in.estimator) && !in.faces;
-}
-
 gpu::Specialization estimate_constants(const EstimateEdges& in) {
     return {{shader::SPEC_ESTIMATOR, static_cast<std::uint32_t>(in.estimator)},
             {shader::SPEC_BURIED, in.skip_buried ? 1 : 0},
-            {shader::SPEC_FACES, in.faces ? 1 : 0},
             {shader::SPEC_ISO_COUNT, in.iso_count}};
 }
 
-gpu::Specialization adopt_constants(const EstimateEdges& in) {
-    return {{shader::SPEC_BURIED, in.skip_buried ? 1 : 0}, {shader::SPEC_ISO_COUNT, in.iso_count}};
-}
-
-void estimate_only(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
-    commands.dispatch("1b_estimate_edges.comp", estimate_constants(in), 0,
-                      brick_groups(region, shader::ESTIMATE_MARGIN));
-    commands.barrier();
-}
-
-void adopt_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
-    commands.dispatch("1c_adopt_edges.comp", adopt_constants(in), 0, brick_groups(region, shader::ADOPT_MARGIN));
-    commands.barrier();
-}
-
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in) {
-    estimate_only(commands, region, in);
-    if (adopts(in)) adopt_edges(commands, region, in);
+    const glm::ivec3 low = glm::max(region.core_low - shader::ESTIMATE_MARGIN, 0);
+    const glm::ivec3 high = glm::min(region.core_low + region.core_size + shader::ESTIMATE_MARGIN, region.dims);
+    const glm::uvec3 bricks = (glm::uvec3(high - low) + 7U) / 8U;
+    commands.dispatch("1b_estimate_edges.comp", estimate_constants(in), 0, {bricks.x, bricks.y, bricks.z});
+    commands.barrier();
 }
 
 }  // namespace edgesplat::passes

@@ -20,27 +20,17 @@ struct EdgeRegion {
 };
 
 struct EstimateEdges {
-    EdgeEstimator estimator = EdgeEstimator::March;
+    EdgeEstimator estimator = EdgeEstimator::Cubic;
     bool skip_buried = true;  ///< voxels marked by mark_buried get no edge
     std::uint32_t iso_count = 1;
-    bool faces = false;  ///< the surface's point nearest to a voxel is found instead; nothing is adopted
 };
 
-/// Whether voxels without an edge take one from others.
-bool adopts(const EstimateEdges& in);
-
-/// Specialization of 1b_estimate_edges.comp and of 1c_adopt_edges.comp, which follows it where edges are marched to.
+/// Specialization of 1b_estimate_edges.comp.
 gpu::Specialization estimate_constants(const EstimateEdges& in);
-gpu::Specialization adopt_constants(const EstimateEdges& in);
 
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
-/// per voxel of the core and as far around it as its splats depend on. With EdgeEstimator::Off only normals for light
+/// per voxel of the core and ESTIMATE_MARGIN around it. With EdgeEstimator::Off only normals for light
 /// are written.
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
-
-/// Its two halves: every voxel's own edge, ESTIMATE_MARGIN around the core too; then, where edges are marched to, those
-/// that voxels without one take from others, ADOPT_MARGIN around it.
-void estimate_only(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
-void adopt_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
 
 }  // namespace edgesplat::passes

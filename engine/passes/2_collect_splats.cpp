@@ -20,9 +20,7 @@ gpu::Specialization collect_constants(const CollectSplats& in) {
 }
 
 gpu::Specialization finish_constants(const CollectSplats& in) {
-    return {{shader::SPEC_ISO_COUNT, in.iso_count},   {shader::SPEC_SMOOTH, in.smooth ? 1 : 0},
-            {shader::SPEC_CURVED, in.curved ? 1 : 0}, {shader::SPEC_WEIGHTED, in.weighted},
-            {shader::SPEC_FACES, in.faces ? 1 : 0},   {shader::SPEC_TRANSFER, in.transfer ? 1 : 0}};
+    return {{shader::SPEC_ISO_COUNT, in.iso_count}, {shader::SPEC_FACES, in.faces ? 1 : 0}};
 }
 
 std::uint64_t collect_runs(const glm::ivec3& core_size) {

@@ -9,14 +9,11 @@ namespace edgesplat::passes {
 struct CollectSplats {
     glm::ivec3 core_size;  ///< voxels that become splats, along each axis
     std::uint32_t iso_count = 1;
-    bool edges = true;           ///< the edge field exists
-    bool buried = true;          ///< the buried mask exists: `mark_buried` has run
-    bool smooth = true;          ///< edge distances are smoothed along the surface (`march`, `cubic`)
-    bool curved = false;         ///< the curvature of each splat's edge is wanted
-    std::uint32_t weighted = 0;  ///< how each splat's kernel is weighted: shader::WEIGHTED_*, 0: not at all
-    bool faces = false;          ///< splats get the faces that fit the surface around them
-    ClipCount clip{};            ///< voxels whose kernels are cut away whole are dropped
-    bool transfer = false;       ///< splats are classified by a transfer function
+    bool edges = true;      ///< the edge field exists
+    bool buried = true;     ///< the buried mask exists: `mark_buried` has run
+    bool faces = false;     ///< splats get the faces that fit the surface around them
+    ClipCount clip{};       ///< voxels whose kernels are cut away whole are dropped
+    bool transfer = false;  ///< splats are classified by a transfer function
 };
 
 /// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.

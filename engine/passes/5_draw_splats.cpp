@@ -17,8 +17,6 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
             {shader::SPEC_LIGHT, variant.lights},
             {shader::SPEC_PAYLOAD, variant.payload},
             {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
-            {shader::SPEC_CURVED, variant.curved ? 1U : 0U},
-            {shader::SPEC_WEIGHTED, variant.weighted ? 1U : 0U},
             {shader::SPEC_NODES, variant.nodes},
             {shader::SPEC_TRANSFER, variant.transfer ? 1U : 0U},
             {shader::SPEC_RESPONSE, variant.response ? 1U : 0U},

@@ -15,11 +15,9 @@ struct DrawVariant {
     std::uint32_t lights = 0;   ///< how many
     std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
     bool sliced = false;        ///< kernels are cut at the sheets' planes
-    bool curved = false;        ///< edges are spheres of their curvature
-    bool weighted = false;      ///< kernels are normalised
     bool occlusion = false;     ///< ambient light is what 2b_occlude_ambient left of it
     std::uint32_t shadows = 0;  ///< lights with shadows
-    std::uint32_t nodes = 8;    ///< quadrature nodes of a piece of a footprint: 4, 8, 10 or 16
+    std::uint32_t nodes = 5;    ///< quadrature nodes of a piece of a footprint: 4, 5 or 10
     bool transfer = false;      ///< colour and extinction by a transfer function
     bool response = false;      ///< materials answer to light each in its own way
     bool gloss = false;         ///< some have highlights

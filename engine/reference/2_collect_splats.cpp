@@ -68,27 +68,6 @@ std::vector<double> classified_values(const Field& field, const ScaledScene& sca
     return values;
 }
 
-std::vector<double> edge_contrasts(const Field& field, const ScaledScene& scaled, const Scene& scene,
-                                   const std::vector<VoxelEdge>& edges, std::span<const double> values) {
-    std::vector<double> contrasts(edges.size(), 0.0);
-    for (std::size_t at = 0; at < edges.size(); ++at) {
-        const VoxelEdge& edge = edges[at];
-        if (!edge.has_edge) continue;
-        double own = 0, across = 0;
-        if (scaled.transfer.empty()) {
-            const auto m = static_cast<std::size_t>(scaled.material(static_cast<double>(field.values[at])));
-            own = scene.materials[m].extinction;
-            across = scene.materials[edge.upper ? m + 1 : m - 1].extinction;
-        } else {
-            const glm::dvec3 beyond = glm::dvec3(field.voxel(at)) + (1 + std::max(edge.D, 0.0)) * edge.n;
-            own = transfer_at(scaled.transfer, values[at]).extinction;
-            across = transfer_at(scaled.transfer, sample(field, beyond)).extinction;
-        }
-        if (own > 0) contrasts[at] = std::max(1 - across / own, 0.0);
-    }
-    return contrasts;
-}
-
 std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& scaled,
                                         const std::vector<VoxelEdge>& edges, const Scene& scene,
                                         const VolumeGeometry& geometry, const Settings& settings, const glm::dvec3& eye,
@@ -114,7 +93,7 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
             rule.reset();
         }
     }
-    const double reach = edge_reach(settings);
+    const double reach = kernel_reach(settings);
     const std::vector<char> buried =
         rule ? buried_voxels(field, opaque, rule->distance) : std::vector<char>(opaque.size(), 0);
 

@@ -33,15 +33,9 @@ struct BuryRule {
 std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geometry, const Settings& settings);
 
 /// What each voxel is classified by (two-sided classification): its sample, or where an edge is nearer than a voxel the
-/// value a voxel further on its own side. Edges as estimated, before step 5.
+/// value a voxel further on its own side. Edges as estimated.
 std::vector<double> classified_values(const Field& field, const ScaledScene& scaled,
                                       const std::vector<VoxelEdge>& edges);
-
-/// How much less lies across a voxel's edge than it absorbs itself, as a share of that, 0..1. `values` as
-/// classified_values() gives them with a transfer function: then the other side is looked up a voxel beyond the edge.
-/// Edges as estimated, before step 5; 0 where there is none.
-std::vector<double> edge_contrasts(const Field& field, const ScaledScene& scaled, const Scene& scene,
-                                   const std::vector<VoxelEdge>& edges, std::span<const double> values);
 
 /// The visible voxels in ascending linear order. `edges` has one entry per voxel, `values` likewise with a transfer
 /// function (classified_values); `eye` is in world mm; with `for_tau` nothing is buried. What the scene's clip planes

@@ -33,6 +33,16 @@ struct View {
     glm::dvec2 pixel_of(const glm::dvec3& index) const;
 };
 
+/// What of a ray lies in the volume, whose border cuts kernels as a face does: from the eye, voxels; low > high where
+/// it misses it.
+struct VolumePiece {
+    double low = 0, high = 0;
+    glm::dvec3 normal{0};  ///< of the border where the ray enters, out of the volume; index space, unit
+};
+
+/// Along the unit vector `u`, index space.
+VolumePiece piece_in_volume(const View& view, const glm::dvec3& u);
+
 /// Pixels [x0, x1) x [y0, y1).
 struct PixelBox {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
@@ -86,14 +85,14 @@ glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::d
 
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                         const Settings& settings, Payload payload, const Footprints& footprints, const glm::dvec3& p,
-                        const glm::dvec3& u, const Slice& slice) {
+                        const glm::dvec3& u, const Slice& slice, bool plain) {
     const VoxelEdge& edge = record.edge;
     if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
     glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
     double z = 0;
     bool upper = edge.upper;
     if (footprints.cuts(edge)) {
-        const FaceFootprint seen = footprints.at_face(edge, p, u, slice);
+        const FaceFootprint seen = plain ? FaceFootprint{} : footprints.at_face(edge, p, u, slice);
         z = seen.entry;
         outward = face_sight(edge, p, u).outward(z, seen.from_behind);
         // Both faces of a layer between two iso-values face the lower values.
@@ -101,7 +100,16 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
         const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
         upper = upper != (edge.mixed && outward[axis] * edge.n[axis] < 0);
     }
-    const glm::dvec3 at = glm::dvec3(field.voxel(record.voxel)) + p + z * u;
+    // What the eye is in is seen right before it.
+    const glm::dvec3 on_ray = glm::dvec3(field.voxel(record.voxel)) + p;
+    const double eye = glm::dot(view.eye_index - on_ray, u);
+    if (const VolumePiece inside = piece_in_volume(view, u);
+        footprints.cuts(edge) && !plain && inside.low > 0 && eye + inside.low > z) {
+        z = eye + inside.low;
+        outward = inside.normal;
+        upper = false;
+    }
+    const glm::dvec3 at = on_ray + std::max(z, eye + 1e-4) * u;
     const bool faceless = glm::length(outward) == 0;
     const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, upper ? -outward : outward);
     if (payload == Payload::Depth) return {view.depth(at), 0, 0};
@@ -139,9 +147,16 @@ double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec
                               const std::optional<Slice>& slice) const {
     const VoxelEdge& edge = records_[splat].edge;
     const PixelFilter& filter = selected_[splat].filter;
-    const double own = filter.share == 1 ? 0
-                       : slice           ? footprints_.along_slice(edge, p, u, *slice)
-                                         : footprints_.along_ray(edge, p, u);
+    double own = 0;
+    if (filter.share < 1 && footprints_.cuts(edge)) {
+        const double eye = glm::dot(view_.eye_index - glm::dvec3(field_.voxel(records_[splat].voxel)), u);
+        const VolumePiece inside = piece_in_volume(view_, u);
+        const Slice piece = slice.value_or(Slice{});
+        own = footprints_.along_slice(edge, p, u,
+                                      {std::max(piece.low, eye + inside.low), std::min(piece.high, eye + inside.high)});
+    } else if (filter.share < 1) {
+        own = slice ? footprints_.along_slice(edge, p, u, *slice) : footprints_.along_ray(edge, p, u);
+    }
     if (filter.share == 0) return own;
     // The pixel's filter lies across the view, and so its kernels keep their depths.
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
@@ -161,7 +176,7 @@ double SplatDrawer::depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const
 bool SplatDrawer::in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                             double z) const {
     const PixelFilter& filter = selected_[splat].filter;
-    if (filter.share < 1) return footprints_.in_matter(records_[splat].edge, p + z * u);
+    if (filter.share < 1) return footprints_.in_matter(records_[splat].edge, p, u, z);
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
     const double from_voxel = z - depth_on_ray(p, u);
     return rho2 + from_voxel * from_voxel < kKernelRadius * kKernelRadius;
@@ -194,18 +209,20 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
     const double s0 = glm::dot(center - view_.eye_index, u);
     const glm::dvec3 p = view_.eye_index + s0 * u - center;
     const bool faces = draws_faces(settings_);
+    const bool plain = selected_[splat].filter.share == 1;  // widened, it is cut no more
     const auto met = [&](const Slice& slice) {
-        return face_payload(record, field_, scene_, view_, settings_, payload, footprints_, p, u, slice);
+        return face_payload(record, field_, scene_, view_, settings_, payload, footprints_, p, u, slice, plain);
     };
-    if (clip_.empty()) {
-        const double share = tau(splat, x, y, cut);
-        return share > 0 ? share * glm::dvec4(faces ? met({}) : own, 1) : glm::dvec4(0);
-    }
-    Slice slice{-s0, std::numeric_limits<double>::infinity()};
+    Slice slice;
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
-        slice = {std::max(cut->near / depth_along - s0, -s0), cut->far / depth_along - s0};
+        slice = {cut->near / depth_along - s0, cut->far / depth_along - s0};
     }
+    if (clip_.empty()) {
+        const double share = tau(splat, x, y, cut);
+        return share > 0 ? share * glm::dvec4(faces ? met(slice) : own, 1) : glm::dvec4(0);
+    }
+    slice.low = std::max(slice.low, -s0);
     glm::dvec4 sum(0);
     for (const KeptPiece& piece : clip_.kept_along(center + p, u)) {
         const Slice kept{std::max(piece.first, slice.low), std::min(piece.last, slice.high)};

@@ -34,10 +34,11 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
                       const Reach& reach = {});
 
 /// The same where a ray p + z u (index space; p relative to the voxel centre) meets the face that cuts the kernel, or
-/// of a plain kernel where it passes the voxel: light falls on the surface there.
+/// of a plain kernel (also one that is `plain` for being widened, whose normal is still the face's) where it passes the
+/// voxel: light falls on the surface there.
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                         const Settings& settings, Payload payload, const Footprints& footprints, const glm::dvec3& p,
-                        const glm::dvec3& u, const Slice& slice = {});
+                        const glm::dvec3& u, const Slice& slice = {}, bool plain = false);
 
 /// Everything the sheets of a frame have in common. Referenced objects must outlive it.
 class SplatDrawer {

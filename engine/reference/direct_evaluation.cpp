@@ -34,6 +34,12 @@ class RayWalker {
         double begin = 0;
         double end = 0;
         if (!cloud_.clip(eye, u, begin, end)) return sum;
+        if (draws_faces(prepared_.settings())) {
+            const VolumePiece inside = piece_in_volume(view_, u);
+            begin = std::max(begin, inside.low);
+            end = std::min(end, inside.high);
+            if (!(begin < end)) return sum;
+        }
         // Counted from where the ray enters, t stays small, however far away the eye is.
         const glm::dvec3 origin = eye + begin * u;
         const double length = end - begin;
@@ -66,7 +72,7 @@ class RayWalker {
                 }
                 const double step = std::min(kPanel, last - t);
                 cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
-                light(cut_seen ? piece.face : std::nullopt, origin + piece.first * u, u);
+                light(cut_seen ? piece.face : std::nullopt, origin + (cut_seen ? piece.first : 0) * u, u);
                 if (!active_.empty()) add_pieces(integrator, origin, u, t, t + step);
                 t += kPanel;
             }
@@ -87,37 +93,43 @@ class RayWalker {
         for (std::size_t i = 0; i < active_.size(); ++i) {
             if (!paths_[i]) continue;
             const double center = glm::dot(active_[i]->center - origin, u);
+            const auto add = [&](double z) {
+                if (center + z > begin && center + z < end) breaks_.push_back(center + z);
+            };
             for (const FacePiece& piece : paths_[i]->pieces())
                 for (const double z : {piece.low, 0.5 * (piece.low + piece.high), piece.high})
-                    if (center + z > begin && center + z < end) breaks_.push_back(center + z);
+                    add(z);
+            for (const double z : {-paths_[i]->half_chord(), paths_[i]->half_chord()})
+                add(z);
         }
         std::ranges::sort(breaks_);
         for (std::size_t i = 1; i < breaks_.size(); ++i)
             if (breaks_[i] - breaks_[i - 1] > 1e-9) integrator.add(breaks_[i - 1], breaks_[i] - breaks_[i - 1]);
     }
 
-    /// What the gathered splats are and emit along a piece that begins in a cut, if any, at `entry`.
+    /// What the gathered splats are and emit along the ray through `entry`, where it begins in a cut, if any.
     void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry, const glm::dvec3& u) {
         emission_.clear();
         paths_.clear();
         for (const ModelSplat* splat : active_) {
-            const bool shows_cut = face && footprints_.in_matter(*splat->edge, entry - splat->center);
+            const glm::dvec3 off = entry - splat->center;
+            const double along = glm::dot(off, u);
+            const glm::dvec3 p = off - along * u;
+            const bool shows_cut = face && footprints_.in_matter(*splat->edge, p, u, along);
             emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->material, glm::dvec3(0), *face,
                                                                             entry, scene_, view_, Payload::Color)
-                                          : splat->extinction * own_light(*splat, entry, u));
+                                          : splat->extinction * own_light(*splat, p, u));
             paths_.emplace_back();
             if (!footprints_.cuts(*splat->edge)) continue;
-            const glm::dvec3 off = entry - splat->center;
-            paths_.back().emplace(face_path(*splat->edge, off - glm::dot(off, u) * u, u));
+            paths_.back().emplace(footprints_.face_path(*splat->edge, p, u));
         }
     }
 
     /// Faces are lit where the ray meets them, from whichever point of it that is seen.
-    glm::dvec3 own_light(const ModelSplat& splat, const glm::dvec3& on_ray, const glm::dvec3& u) const {
+    glm::dvec3 own_light(const ModelSplat& splat, const glm::dvec3& p, const glm::dvec3& u) const {
         if (tau_only_ || !draws_faces(prepared_.settings())) return splat.emission / splat.extinction;
-        const glm::dvec3 off = on_ray - splat.center;
         return face_payload(splat.record, prepared_.field(), scene_, view_, prepared_.settings(), Payload::Color,
-                            footprints_, off - glm::dot(off, u) * u, u);
+                            footprints_, p, u);
     }
 
     const SplatCloud& cloud_;
@@ -136,11 +148,6 @@ class RayWalker {
 
 }  // namespace
 
-Settings without_tables(Settings settings) {
-    if (asks_for_table(settings)) settings.footprints = FootprintMode::Procedural;
-    return settings;
-}
-
 void check_options(const DirectOptions& options) {
     if (!(options.tolerance > 0 && options.tolerance <= 0.1)) {
         fail("tolerance: {} is not above 0 and at most 0.1", options.tolerance);
@@ -154,7 +161,7 @@ DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& cam
     if (output != Output::Color && output != Output::Tau) fail("direct evaluation gives colour or tau only");
     const VolumeGeometry& geometry = prepared.volume().geometry;
     const View view(camera, geometry, width, height);
-    const Footprints footprints(without_tables(prepared.settings()));
+    const Footprints& footprints = prepared.footprints();
     const SplatCloud cloud(prepared, view, footprints);
 
     const RayValue value = output == Output::Tau ? RayValue::Tau : RayValue::Opacity;

@@ -21,10 +21,6 @@ struct DirectResult {
     std::uint64_t samples = 0;  ///< points at which the model was evaluated
 };
 
-/// Settings of the same model that need no table, which takes seconds to build and is of no use here: for the
-/// PreparedVolume of a direct evaluation.
-Settings without_tables(Settings settings);
-
 /// Throws Error unless the tolerance is in range.
 void check_options(const DirectOptions& options);
 

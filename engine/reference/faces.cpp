@@ -59,6 +59,7 @@ struct Surfel {
     dvec3 at{0};  ///< relative to the voxel
     dvec3 n{0};   ///< out of the voxel's material
     bool upper = false;
+    bool border = false;  ///< of the volume
 };
 
 /// What voxel j found, where it bounds material m.
@@ -72,7 +73,8 @@ std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, co
     // The volume's border bounds what is inside of it alone.
     const bool below = own + 1 == m && edge.upper && !edge.border, above = own == m + 1 && !edge.upper && !edge.border;
     if (own != m && !below && !above) return std::nullopt;
-    return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above};
+    return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above,
+                  edge.border};
 }
 
 double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
@@ -171,12 +173,12 @@ VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const gl
         if (step + 1 == shader::SURFEL_STEPS) break;
         at -= std::clamp(off, -0.6, 0.6) * n;
         const dvec3 from = at - x;
-        if (step >= 2 && step + 4 < shader::SURFEL_STEPS) at -= 0.8 * (from - glm::dot(from, n) * n);
+        if (step >= 2 && step + 4 < shader::SURFEL_STEPS) at -= 0.5 * (from - glm::dot(from, n) * n);
     }
     const dvec3 from = at - x, last(field.dims - 1);
     n = upper ? n : -n;
     const double d = glm::dot(from, n);
-    const bool inside = glm::all(glm::greaterThanEqual(at, dvec3(0))) && glm::all(glm::lessThanEqual(at, last));
+    const bool inside = glm::all(glm::greaterThan(at, dvec3(-1e-3))) && glm::all(glm::lessThan(at, last + 1e-3));
     if (!(std::abs(off) < 2e-3 && glm::length(from - d * n) < 0.25 && std::abs(d) <= kSurfelReach && inside))
         return none;
     VoxelEdge edge;
@@ -190,7 +192,8 @@ VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const gl
 /// Where the volume ends, half a voxel beyond its outermost samples: the side beside voxel i, towards it, or 0.
 dvec3 border_beside(const Field& field, const glm::ivec3& i) {
     for (int axis = 0; axis < 3; ++axis) {
-        if (i[axis] != 0 && i[axis] != field.dims[axis] - 1) continue;
+        const bool outermost = i[axis] == 0 || i[axis] == field.dims[axis] - 1;
+        if (!outermost || field.dims[axis] == 1) continue;  // along an axis of one voxel nothing ends
         dvec3 n(0);
         n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
         return n;
@@ -270,10 +273,20 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     Surfel nearest;
     double distance = kFaceSearch;
     around(i, [&](const Surfel& s) {
-        if (!(glm::length(s.at) < distance)) return;
+        // Of what is equally far the first is taken, whichever way numbers are rounded.
+        if (!(glm::length(s.at) < distance - 1e-4)) return;
         distance = glm::length(s.at);
         nearest = s;
     });
+    if (nearest.border) {
+        // A plane, and behind it where the volume ends on the other side.
+        VoxelEdge edge;
+        edge.n = nearest.n;
+        edge.D = glm::dot(nearest.at, nearest.n);
+        edge.D2 = glm::dot(glm::abs(nearest.n), dvec3(field.dims)) - edge.D;
+        edge.has_edge = edge.has_normal = true;
+        return edge;
+    }
     const bool found = distance < kFaceSearch;
     if (!found) {
         Crossed crossed;
@@ -290,6 +303,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     Moments all, same;
     double mixed = 0;
     around(center, [&](const Surfel& s) {
+        if (s.border) return;
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n);
         all.add(r, s.n, w);
@@ -301,6 +315,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const Quadric own = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
     double of_one = 0, of_own = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
     around(center, [&](const Surfel& s) {
+        if (s.border) return;
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n), facing = glm::dot(s.n, n), level = wall.at(r);
         of_one += w * std::pow(off_of(one, r), 2);
@@ -367,13 +382,13 @@ dmat3 quantise_bending(const dmat3& bending) {
     return stored;
 }
 
-FaceCut cut_of(const VoxelEdge& edge) {
+FaceCut cut_of(const VoxelEdge& edge, double deepest) {
     double norm2 = 0;
     for (int i = 0; i < 3; ++i)
         norm2 += glm::dot(edge.bending[i], edge.bending[i]);
-    const bool wall = edge.D2 < kKernelRadius + kFaceDepth;
+    const bool wall = edge.D2 < kKernelRadius + kDeepFaceDepth;
     const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
-    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), std::sqrt(norm2), thickness);
+    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), std::sqrt(norm2), thickness, deepest);
 }
 
 FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
@@ -390,10 +405,6 @@ FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
     sight.ray.across = glm::dot(p, slope);
     sight.ray.turn = glm::dot(p, hu);
     return sight;
-}
-
-FacePath face_path(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
-    return {face_sight(edge, p, u).ray, cut_of(edge)};
 }
 
 }  // namespace edgesplat::reference

@@ -19,8 +19,8 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
 /// The second derivatives after their way through the 60 stored bits.
 glm::dmat3 quantise_bending(const glm::dmat3& bending);
 
-/// How the edge's face cuts its kernel; the edge has one.
-FaceCut cut_of(const VoxelEdge& edge);
+/// How the edge's face cuts its kernel; the edge has one. `deepest` as in face_cut().
+FaceCut cut_of(const VoxelEdge& edge, double deepest);
 
 /// What the ray p + z u sees of a face; p is its point nearest to the voxel, relative to it.
 struct FaceSight {
@@ -31,8 +31,5 @@ struct FaceSight {
     glm::dvec3 outward(double z, bool from_behind) const { return (from_behind ? -1.0 : 1.0) * (slope + z * turn); }
 };
 FaceSight face_sight(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u);
-
-/// What the ray passes of the kernel that the edge's face cuts.
-FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u);
 
 }  // namespace edgesplat::reference

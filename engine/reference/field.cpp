@@ -140,23 +140,4 @@ glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic) {
     return g;
 }
 
-glm::dmat3 voxel_hessian(const Field& field, const glm::ivec3& i) {
-    glm::dmat3 h(0);
-    const auto step = [](int axis, int sign) {
-        glm::ivec3 e(0);
-        e[axis] = sign;
-        return e;
-    };
-    for (int a = 0; a < 3; ++a) {
-        h[a][a] = field.at(i + step(a, 1)) - 2 * field.at(i) + field.at(i + step(a, -1));
-        for (int b = a + 1; b < 3; ++b) {
-            h[a][b] = (field.at(i + step(a, 1) + step(b, 1)) - field.at(i + step(a, 1) + step(b, -1)) -
-                       field.at(i + step(a, -1) + step(b, 1)) + field.at(i + step(a, -1) + step(b, -1))) /
-                      4;
-            h[b][a] = h[a][b];
-        }
-    }
-    return h;
-}
-
 }  // namespace edgesplat::reference

@@ -50,7 +50,4 @@ glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i);
 /// voxel inside the border.
 glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic = false);
 
-/// H(i) by central differences with clamped neighbours; symmetric.
-glm::dmat3 voxel_hessian(const Field& field, const glm::ivec3& i);
-
 }  // namespace edgesplat::reference

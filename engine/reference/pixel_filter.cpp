@@ -14,7 +14,7 @@ double PixelFilter::rho2(double rho2_of_ray, const glm::dvec2& at) const {
 }
 
 double matter_of_voxel(const VoxelEdge& edge, const Footprints& footprints) {
-    if (!footprints.near_edge(edge) || edge.D + edge.D2 < 1) return 1;
+    if (!footprints.warped(edge) || edge.D + edge.D2 < 1) return 1;
     const auto behind_face = [](double distance) { return distance < 1 ? std::max(distance + 0.5, 0.0) : 1.0; };
     return behind_face(edge.D) + behind_face(edge.D2) - 1;
 }

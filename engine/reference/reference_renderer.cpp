@@ -6,6 +6,7 @@
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/pixel_rows.h"
 #include "engine/sample_mean.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 
 namespace edgesplat::reference {
@@ -50,21 +51,16 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
       settings_((validate(settings), drawn_as(settings, scene))),
       scaled_(scale_scene(scene, volume)),
       values_(scaled_field(volume)),
-      footprints_(settings_) {
+      footprints_(settings_, face_depth(scene_, volume.geometry)) {
     if (settings_.edges == EdgeEstimator::Cubic) {
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
-    // Weights are of the kernels on both sides of an edge, drawn or not.
-    const bool family = draws_warped(settings_) && settings_.warp == WarpFamily::Edge;
-    const bool weighted = family && settings_.normalisation == Normalisation::Voxel;
+    // Faces are of both sides of a surface, drawn or not.
     ScaledScene estimated = scaled_;
-    if (weighted || draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
-    std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
-    if (weighted) weigh_kernels(field(), settings_, edges);
+    if (draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
+    const std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
-    edges_ = smooth_edges(field(), scaled_, settings_, edges);
-    if (family && settings_.normalisation == Normalisation::Edge)
-        weigh_by_edge(settings_, edge_contrasts(field(), scaled_, scene_, edges, classified_), edges_);
+    edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
 }
 
@@ -91,7 +87,9 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const std::vector<Selected> selected =
         select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);
-    const SplatDrawer drawer(records, selected, f, scene_, view, settings_, footprints_);
+    const bool one_piece = output != Output::Tau && one_piece_is_enough(settings_, scene_, geometry);
+    const Footprints drawn(settings_, face_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
+    const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn);
 
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<glm::dvec4> frame(pixels, glm::dvec4(0));

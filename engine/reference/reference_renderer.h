@@ -22,10 +22,14 @@ class PreparedVolume {
     const Scene& scene() const { return scene_; }
     const Settings& settings() const { return settings_; }
     const ScaledScene& scaled_scene() const { return scaled_; }
+    const Footprints& footprints() const { return footprints_; }
     Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }
     const std::vector<VoxelEdge>& edges() const { return edges_; }
     /// classified_values() of the voxels; empty without a transfer function.
     const std::vector<double>& classified() const { return classified_; }
+
+    /// Draws with these, one per voxel, instead of its own.
+    void replace_edges(std::vector<VoxelEdge> edges) { edges_ = std::move(edges); }
 
     /// Passes 2 to 7. 4 channels (Color), 3 (Normal) or 1, as engine/renderer.h says of each. Throws Error for an
     /// invalid camera or a picture without pixels.

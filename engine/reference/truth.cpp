@@ -223,9 +223,37 @@ class TruthWalker {
         glm::dvec3 n = scene_.signed_distance ? distance_slope(x) : -scene_.gradient(x);
         const double length = glm::length(n);
         n = length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
+        const Border border = border_beside(x);
+        if (border.distance < distance_to_surface(x, length)) n = border.normal;
         if (n != glm::dvec3(0)) n = glm::normalize(glm::transpose(view_.world_to_index) * n);
         return lit(look_, {.color = material.color, .normal = n, .position = view_.geometry.to_world(x)},
                    view_.frame.eye);
+    }
+
+    struct Border {
+        double distance = std::numeric_limits<double>::infinity();
+        glm::dvec3 normal{0};  ///< out of the volume
+    };
+
+    /// Where matter is cut by the end of the data, that is its surface.
+    Border border_beside(const glm::dvec3& x) const {
+        Border nearest;
+        for (int axis = 0; axis < 3; ++axis) {
+            const double below = x[axis] + 0.5, above = view_.geometry.dims[axis] - 0.5 - x[axis];
+            if (std::min(below, above) >= nearest.distance) continue;
+            nearest = {std::min(below, above), glm::dvec3(0)};
+            nearest.normal[axis] = below < above ? -1 : 1;
+        }
+        return nearest;
+    }
+
+    /// To the nearest iso-value; `slope` is the length of the gradient, where no distance is known.
+    double distance_to_surface(const glm::dvec3& x, double slope) const {
+        if (scene_.signed_distance) return std::abs(scene_.signed_distance(x));
+        double nearest = std::numeric_limits<double>::infinity();
+        for (const double iso : look_.iso_values)
+            nearest = std::min(nearest, std::abs(scene_.value(x) - iso) / slope);
+        return nearest;
     }
 
     glm::dvec3 distance_slope(const glm::dvec3& x) const {

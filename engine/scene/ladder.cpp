@@ -41,102 +41,33 @@ void set_number(Settings& s, const Knob& knob, View text) {
     s.*Member = value;
 }
 
-bool edge_family(const Settings& s) {
-    return draws_warped(s) && s.warp == WarpFamily::Edge;
-}
-/// The two-dimensional short cut knows planes only.
-bool may_curve(const Settings& s) {
-    return edge_family(s) && s.footprints != FootprintMode::Warp2d;
-}
-bool tables(const Settings& s) {
-    return edge_family(s) && s.sheets == SheetCut::Whole && s.edge_shape == EdgeShape::Plane && asks_for_table(s);
-}
-
 std::vector<Knob> make_ladder() {
     std::vector<Knob> knobs;
     knobs.push_back({.name = "edges",
                      .help = "How edges are found; off: conventional splatting, taylor: as in the paper",
                      .kind = KnobKind::Model,
-                     .steps = {"off", "quadratic", "march", "cubic"},
+                     .steps = {"off", "march", "cubic"},
                      .others = {"taylor"},
                      .get = get_name<&Settings::edges>,
                      .assign = [](Settings& s, const Knob&, View v) { s.edges = edge_estimator_named(v); }});
     knobs.push_back({.name = "warp",
-                     .help =
-                         "How kernels end at edges: warped in a band, by the distance to the edge or by the paper's "
-                         "curve, or cut at faces, which are surfaces found as quadrics and lit where rays meet them",
+                     .help = "How kernels end at edges: warped by the paper's curve, or cut at faces, which are "
+                             "surfaces found as quadrics and lit where rays meet them",
                      .kind = KnobKind::Model,
-                     .steps = {"edge", "face"},
+                     .steps = {"face"},
                      .others = {"paper"},
                      .get = get_name<&Settings::warp>,
                      .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },
                      .matters = draws_warped});
-    knobs.push_back({.name = "edge-half-width",
-                     .help = "Half width of the warped band, voxels",
-                     .kind = KnobKind::Model,
-                     .steps = {"0.4", "0.8", "1.2", "1.6"},
-                     .others = {},
-                     .number = true,
-                     .low = 0,
-                     .high = 3,
-                     .above_low = true,
-                     .get = get_number<&Settings::edge_half_width>,
-                     .assign = set_number<&Settings::edge_half_width>,
-                     .matters = edge_family});
-    knobs.push_back({.name = "edge-strength",
-                     .help = "Slope of the warp at the edge; 1 is no warp",
-                     .kind = KnobKind::Model,
-                     .steps = {"2", "4", "8", "16", "20"},
-                     .others = {},
-                     .number = true,
-                     .low = 1,
-                     .high = 64,
-                     .get = get_number<&Settings::edge_strength>,
-                     .assign = set_number<&Settings::edge_strength>,
-                     .matters = edge_family});
-    knobs.push_back({.name = "edge-shape",
-                     .help = "What an edge is within a kernel's reach: its tangent plane, or a sphere of its curvature",
-                     .kind = KnobKind::Model,
-                     .steps = all(edge_shape_names()),
-                     .others = {},
-                     .get = get_name<&Settings::edge_shape>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.edge_shape = edge_shape_named(v); },
-                     .matters = may_curve});
-    knobs.push_back(
-        {.name = "normalise",
-         .help = "How kernels are weighted; edge: so that matter on one side of an edge has its volume, voxel: so that "
-                 "those around a voxel sum to one, also at curved edges",
-         .kind = KnobKind::Model,
-         .steps = all(normalisation_names()),
-         .others = {},
-         .from = [](Settings& s) { s.edge_shape = EdgeShape::Plane; },
-         .get = get_name<&Settings::normalisation>,
-         .assign = [](Settings& s, const Knob&, View v) { s.normalisation = normalisation_named(v); },
-         .matters = edge_family});
     knobs.push_back(
         {.name = "footprints",
-         .help = "How a warped kernel's footprint is evaluated; tables serve whole kernels at plane edges and were "
-                 "slower than the quadrature they stand for",
+         .help = "How a kernel's footprint is evaluated at an edge; warp2d is the paper's, for warp = paper",
          .kind = KnobKind::Method,
-         .steps = {"isotropic", "warp2d", "procedural"},
-         .others = {"table", "table-lerp"},
+         .steps = {"isotropic", "procedural"},
+         .others = {"warp2d"},
          .get = get_name<&Settings::footprints>,
          .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
          .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
-    knobs.push_back({.name = "table-size",
-                     .help = "Texels and layers of the footprint table",
-                     .kind = KnobKind::Method,
-                     .steps = all(table_size_names()),
-                     .others = {},
-                     .from =
-                         [](Settings& s) {
-                             s.sheets = SheetCut::Whole;
-                             s.edge_shape = EdgeShape::Plane;
-                             s.footprints = FootprintMode::TableLerp;
-                         },
-                     .get = get_name<&Settings::table_size>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.table_size = table_size_named(v); },
-                     .matters = tables});
     knobs.push_back({.name = "sheets",
                      .help = "Whether a kernel lies in one sheet whole, or is cut at the planes between sheets",
                      .kind = KnobKind::Method,
@@ -157,19 +88,12 @@ std::vector<Knob> make_ladder() {
          .get = get_number<&Settings::sheet_spacing>,
          .assign = set_number<&Settings::sheet_spacing>});
     knobs.push_back({.name = "sheet-format",
-                     .help = "Where sheets are summed: in layers of 16 or 32 bit, or tile by tile in registers",
+                     .help = "Where sheets are summed: in layers of images, or tile by tile in registers",
                      .kind = KnobKind::Method,
                      .steps = all(sheet_format_names()),
                      .others = {},
                      .get = get_name<&Settings::sheet_format>,
                      .assign = [](Settings& s, const Knob&, View v) { s.sheet_format = sheet_format_named(v); }});
-    knobs.push_back({.name = "accumulation",
-                     .help = "Precision of the picture that layers are composited into",
-                     .kind = KnobKind::Method,
-                     .steps = all(accumulation_names()),
-                     .others = {},
-                     .get = get_name<&Settings::accumulation>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.accumulation = sheet_format_named(v); }});
     knobs.push_back(
         {.name = "detail",
          .help = "Pixels that the voxels of a coarser level may be wide where it is drawn; 0: never coarser",
@@ -226,22 +150,19 @@ const Knob& knob_named(View name) {
 std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
+        draft.edges = EdgeEstimator::March;
         draft.sheets = SheetCut::Sliced;
         draft.sheet_spacing = 0.5;
         draft.saturation = 0.98;
         Settings balanced;
         balanced.sheets = SheetCut::Sliced;
         Settings accurate = balanced;
-        accurate.edges = EdgeEstimator::Cubic;
-        accurate.edge_strength = 20;
-        accurate.edge_shape = EdgeShape::Curved;
         accurate.sheet_spacing = 0.125;
         accurate.saturation = 0.9999;
         accurate.pixels = PixelChoice::Every;
-        return std::vector<Preset>{
-            {"draft", "within 2 % of the model: slices of half a voxel", draft},
-            {"balanced", "within 0.5 %: slices of a quarter voxel", balanced},
-            {"accurate", "within 0.1 %: thin slices; curved edges from a cubic spline", accurate}};
+        return std::vector<Preset>{{"draft", "slices of half a voxel, faces by the march", draft},
+                                   {"balanced", "the default in slices of a quarter voxel", balanced},
+                                   {"accurate", "slices of an eighth voxel, every pixel", accurate}};
     }();
     return rows;
 }

@@ -52,14 +52,13 @@ struct Preset {
     Settings settings;
 };
 
-/// draft, balanced, accurate: cheapest first, chosen from measurements (docs/accuracy.md). The default settings are
-/// faster than all of them: whole kernels, with no bound on what their order in depth costs.
+/// draft, balanced, accurate: cheapest first. The default settings are faster than all of them: whole kernels.
 std::span<const Preset> presets();
 
 /// The preset of that name; throws Error listing the names.
 const Preset& preset_named(std::string_view name);
 
-/// "edges=march footprints=table-lerp ...": the knobs in which `settings` differs from `from`; empty if in none.
+/// "edges=march sheets=sliced ...": the knobs in which `settings` differs from `from`; empty if in none.
 std::string difference(const Settings& settings, const Settings& from = {});
 
 }  // namespace edgesplat

@@ -63,6 +63,7 @@ struct OutputChoice {
     glm::ivec2 size{512, 512};      ///< pixels
     std::vector<std::string> aovs;  ///< extra outputs: tau, depth, normal, distance
     bool compare_plain = false;     ///< conventional splatting beside it
+    bool compare_raycast = false;   ///< what the ray caster makes of it beside it
     RendererKind renderer = RendererKind::Splat;
     double raycast_step = 0.5;  ///< voxels
     RaycastFilter raycast_filter = RaycastFilter::Trilinear;

@@ -210,6 +210,9 @@ class Checker {
                 add("output.aovs", "\"{}\": renderer {} has {}", aov, renderer,
                     only_tau ? "no extra output but tau" : "no extra outputs");
         if (!o.aovs.empty() && o.compare_plain) add("output.compare_plain", "true: expected no aovs beside it");
+        if (!o.aovs.empty() && o.compare_raycast) add("output.compare_raycast", "true: expected no aovs beside it");
+        if (o.compare_raycast && o.renderer != RendererKind::Splat)
+            add("output.compare_raycast", "true: expected renderer \"splat\"");
         if (o.renderer == RendererKind::Truth && !is_builtin(d_.volume.path) && !d_.volume.path.empty())
             add("output.renderer", "\"truth\" needs the exact scene, which only builtin:NAME volumes have");
         if (o.renderer != RendererKind::Splat && d_.quality.max_error)

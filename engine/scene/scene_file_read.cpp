@@ -7,7 +7,6 @@
 #include <set>
 #include <sstream>
 
-#include "engine/scene/nearest_name.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/scene_table.h"
@@ -90,8 +89,7 @@ class Reader {
             if (!table) return add_problem(line, concrete, text_of(node) + ": expected a table: [" + concrete + "]");
             return read_table(*table, concrete, generic, index);
         }
-        const std::string nearest = nearest_key(concrete);
-        add_problem(line, concrete, "unknown key" + (nearest.empty() ? "" : "; did you mean " + nearest + "?"));
+        add_problem(line, concrete, unknown_key(concrete));
     }
 
   private:
@@ -297,10 +295,7 @@ void set_key(SceneDocument& document, std::string_view assignment) {
     const KeyAddress address = key_address(path);
     const SceneKey* key = find_key(address.path);
     const SceneTable* table = find_table(address.path);
-    if (!key && !table) {
-        const std::string nearest = nearest_key(path);
-        fail("{}: unknown key{}", path, nearest.empty() ? "" : "; did you mean " + nearest + "?");
-    }
+    if (!key && !table) fail("{}: {}", path, unknown_key(path));
     if (address.component && key) {
         double value = 0;
         std::istringstream in(text);

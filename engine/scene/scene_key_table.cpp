@@ -350,11 +350,10 @@ void add_output(Table& t) {
     t.add("output.aovs", MEMBER(output.aovs),
           {.help = "Extra outputs", .choices = {"tau", "depth", "normal", "distance"}, .absent = "none"});
     t.add("output.compare_plain", MEMBER(output.compare_plain), {.help = "Conventional splatting beside it"});
+    t.add("output.compare_raycast", MEMBER(output.compare_raycast),
+          {.help = "What the ray caster makes of it beside it"});
     t.add("output.renderer", MEMBER(output.renderer),
-          {.help = "Which way to the picture",
-           .choices = {kRendererNames.begin(), kRendererNames.end()},
-           .gone = {
-               {"raycast-warped", "\"raycast\", with raycast_filter = \"cubic\" for surfaces nearer to the truth"}}});
+          {.help = "Which way to the picture", .choices = {kRendererNames.begin(), kRendererNames.end()}});
     t.add("output.raycast_step", MEMBER(output.raycast_step),
           {.unit = "voxels", .help = "Between samples (raycast)", .range = {0.01, 4, true}});
     t.add("output.raycast_filter", MEMBER(output.raycast_filter),

@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/scene/nearest_name.h"
+#include "engine/scene/removed.h"
 #include "engine/scene/text_file.h"
 
 namespace edgesplat {
@@ -56,8 +57,8 @@ std::pair<const SceneKey*, KeyValue> value_at(const SceneDocument& document, con
                                               std::string_view text) {
     const SceneKey* key = find_key(address.path);
     if (!key) {
-        const std::string nearest = nearest_key(text);
-        fail("{}: unknown key{}", text, nearest.empty() ? "" : "; did you mean " + nearest + "?");
+        const std::string unknown = unknown_key(text);
+        fail("{}: {}", text, unknown);
     }
     const std::string table = table_of(*key);
     const SceneTable* group = find_table(table.ends_with("[]") ? table.substr(0, table.size() - 2) : table);
@@ -108,8 +109,8 @@ std::string SceneKey::refusal(const KeyValue& value) const {
         return choices.empty() || std::find(choices.begin(), choices.end(), text) != choices.end();
     };
     const auto suggestion = [this](const std::string& text) -> std::string {
-        for (const auto& [choice, instead] : gone)
-            if (choice == text) return fmt::format("; \"{}\" is gone, write {}", text, instead);
+        if (const std::string removed = removed_step(path, text); !removed.empty())
+            return fmt::format("; \"{}\" {}", text, removed);
         const std::string name = nearest_name(text, choices);
         return name.empty() ? "" : "; did you mean \"" + name + "\"?";
     };
@@ -168,6 +169,13 @@ KeyAddress key_address(std::string_view concrete) {
         }
     }
     return address;
+}
+
+std::string unknown_key(std::string_view concrete) {
+    std::string removed = removed_knob(concrete);
+    if (!removed.empty()) return removed;
+    const std::string nearest = nearest_key(concrete);
+    return nearest.empty() ? "unknown key" : "unknown key; did you mean " + nearest + "?";
 }
 
 std::string nearest_key(std::string_view concrete) {

@@ -36,11 +36,9 @@ struct SceneKey {
     std::string unit, help;
     KeyRange range;
     std::vector<std::string> choices;  ///< the texts that are allowed; empty: any
-    /// Choices of earlier versions, each with what to write instead.
-    std::vector<std::pair<std::string, std::string>> gone;
-    std::string absent;      ///< what holds where the key is not given, in words; empty: `default_value`
-    bool direction = false;  ///< a vector other than 0,0,0
-    bool points = false;     ///< a list of [x, y, z]
+    std::string absent;                ///< what holds where the key is not given, in words; empty: `default_value`
+    bool direction = false;            ///< a vector other than 0,0,0
+    bool points = false;               ///< a list of [x, y, z]
     std::optional<KeyValue> default_value;
     /// Nothing where the document leaves it open. The table the key is in must be there.
     std::function<std::optional<KeyValue>(const SceneDocument&, std::size_t index)> get;
@@ -82,6 +80,9 @@ struct KeyAddress {
 };
 /// Throws Error where it is no path.
 KeyAddress key_address(std::string_view concrete);
+
+/// What is wrong with a path that is no key: that it was one once, or "unknown key", with the nearest if one is near.
+std::string unknown_key(std::string_view concrete);
 
 /// The path of the table spelled most like an unknown one, with indices as given; empty if none is near.
 std::string nearest_key(std::string_view concrete);

@@ -1,36 +1,35 @@
 #include "engine/scene/settings.h"
 
-#include <algorithm>
 #include <array>
 #include <string>
 
 #include "engine/error.h"
+#include "engine/scene/removed.h"
 #include "engine/scene/scene.h"
 #include "footprints/face.h"
+#include "footprints/paper_warp.h"
 
 namespace edgesplat {
 
 namespace {
 
 // In the order of the enums, which is from cheapest to best.
-constexpr std::array<std::string_view, 5> kEdgeEstimators{"off", "taylor", "quadratic", "march", "cubic"};
-constexpr std::array<std::string_view, 5> kFootprintModes{"isotropic", "warp2d", "table", "table-lerp", "procedural"};
-constexpr std::array<std::string_view, 3> kWarpFamilies{"edge", "paper", "face"};
-constexpr std::array<std::string_view, 2> kEdgeShapes{"plane", "curved"};
-constexpr std::array<std::string_view, 3> kNormalisations{"off", "edge", "voxel"};
-constexpr std::array<std::string_view, 3> kTableSizes{"coarse", "medium", "fine"};
+constexpr std::array<std::string_view, 4> kEdgeEstimators{"off", "taylor", "march", "cubic"};
+constexpr std::array<std::string_view, 3> kFootprintModes{"isotropic", "warp2d", "procedural"};
+constexpr std::array<std::string_view, 2> kWarpFamilies{"paper", "face"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
-constexpr std::array<std::string_view, 3> kSheetFormats{"half", "float", "tiles"};
+constexpr std::array<std::string_view, 2> kSheetFormats{"layers", "tiles"};
 constexpr std::array<std::string_view, 2> kPixelChoices{"refined", "every"};
 
 template <typename Enum>
-Enum named(std::string_view name, const char* what, std::span<const std::string_view> names) {
+Enum named(std::string_view name, const char* knob, const char* what, std::span<const std::string_view> names) {
     std::string known;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i] == name) return static_cast<Enum>(i);
         known += (i == 0 ? "" : ", ") + std::string(names[i]);
     }
-    fail("unknown {} '{}', expected one of: {}", what, name, known);
+    const std::string removed = removed_step(knob, name);
+    fail("unknown {} '{}', expected one of: {}{}", what, name, known, removed.empty() ? "" : "; it " + removed);
 }
 
 template <typename Enum>
@@ -45,31 +44,22 @@ void check(const char* field, double value, bool in_range, const char* range) {
 }  // namespace
 
 EdgeEstimator edge_estimator_named(std::string_view name) {
-    return named<EdgeEstimator>(name, "edge estimator", kEdgeEstimators);
+    return named<EdgeEstimator>(name, "edges", "edge estimator", kEdgeEstimators);
 }
 FootprintMode footprint_mode_named(std::string_view name) {
-    return named<FootprintMode>(name, "footprint mode", kFootprintModes);
+    return named<FootprintMode>(name, "footprints", "footprint mode", kFootprintModes);
 }
 WarpFamily warp_family_named(std::string_view name) {
-    return named<WarpFamily>(name, "warp family", kWarpFamilies);
-}
-EdgeShape edge_shape_named(std::string_view name) {
-    return named<EdgeShape>(name, "edge shape", kEdgeShapes);
-}
-Normalisation normalisation_named(std::string_view name) {
-    return named<Normalisation>(name, "normalisation", kNormalisations);
-}
-TableSize table_size_named(std::string_view name) {
-    return named<TableSize>(name, "table size", kTableSizes);
+    return named<WarpFamily>(name, "warp", "warp family", kWarpFamilies);
 }
 SheetCut sheet_cut_named(std::string_view name) {
-    return named<SheetCut>(name, "kind of sheets", kSheetCuts);
+    return named<SheetCut>(name, "sheets", "kind of sheets", kSheetCuts);
 }
 SheetFormat sheet_format_named(std::string_view name) {
-    return named<SheetFormat>(name, "sheet format", kSheetFormats);
+    return named<SheetFormat>(name, "sheet-format", "sheet format", kSheetFormats);
 }
 PixelChoice pixel_choice_named(std::string_view name) {
-    return named<PixelChoice>(name, "choice of pixels", kPixelChoices);
+    return named<PixelChoice>(name, "pixels", "choice of pixels", kPixelChoices);
 }
 
 std::string_view name_of(EdgeEstimator value) {
@@ -80,15 +70,6 @@ std::string_view name_of(FootprintMode value) {
 }
 std::string_view name_of(WarpFamily value) {
     return spelled(value, kWarpFamilies);
-}
-std::string_view name_of(EdgeShape value) {
-    return spelled(value, kEdgeShapes);
-}
-std::string_view name_of(Normalisation value) {
-    return spelled(value, kNormalisations);
-}
-std::string_view name_of(TableSize value) {
-    return spelled(value, kTableSizes);
 }
 std::string_view name_of(SheetCut value) {
     return spelled(value, kSheetCuts);
@@ -109,15 +90,6 @@ std::span<const std::string_view> footprint_mode_names() {
 std::span<const std::string_view> warp_family_names() {
     return kWarpFamilies;
 }
-std::span<const std::string_view> edge_shape_names() {
-    return kEdgeShapes;
-}
-std::span<const std::string_view> normalisation_names() {
-    return kNormalisations;
-}
-std::span<const std::string_view> table_size_names() {
-    return kTableSizes;
-}
 std::span<const std::string_view> sheet_cut_names() {
     return kSheetCuts;
 }
@@ -126,9 +98,6 @@ std::span<const std::string_view> sheet_format_names() {
 }
 std::span<const std::string_view> pixel_choice_names() {
     return kPixelChoices;
-}
-std::span<const std::string_view> accumulation_names() {
-    return std::span(kSheetFormats).first(2);
 }
 
 bool draws_warped(const Settings& settings) {
@@ -140,26 +109,22 @@ bool draws_faces(const Settings& settings) {
 }
 
 double edge_reach(const Settings& settings) {
-    return kKernelRadius + (settings.warp == WarpFamily::Face ? kFaceDepth : settings.edge_half_width);
+    return kKernelRadius + (settings.warp == WarpFamily::Face ? kDeepFaceDepth : 0);
 }
 
-bool asks_for_table(const Settings& settings) {
-    return settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp;
-}
-
-double most_curved(const Settings& settings) {
-    return std::min(0.5, 0.9 / settings.edge_half_width);
+double kernel_reach(const Settings& settings) {
+    if (!draws_warped(settings)) return kKernelRadius;
+    return settings.warp == WarpFamily::Face ? kKernelRadius + kDeepFaceDepth : kPaperReach;
 }
 
 Settings papers_own(Settings base) {
     base.edges = EdgeEstimator::Taylor;
     base.warp = WarpFamily::Paper;
     base.footprints = FootprintMode::Warp2d;
-    base.edge_shape = EdgeShape::Plane;
     return base;
 }
 
-Settings drawn_as(const Settings& settings, bool clipped) {
+Settings drawn_as(const Settings& settings) {
     const Settings usual;
     Settings s = settings;
     if (!draws_warped(s)) {
@@ -167,46 +132,24 @@ Settings drawn_as(const Settings& settings, bool clipped) {
         s.footprints = FootprintMode::Isotropic;
         s.warp = usual.warp;
     }
-    const bool edge_family = s.edges != EdgeEstimator::Off && s.warp == WarpFamily::Edge;
-    if (!edge_family) {
-        s.edge_half_width = usual.edge_half_width;
-        s.edge_strength = usual.edge_strength;
-        s.edge_shape = EdgeShape::Plane;
-        s.normalisation = usual.normalisation;
-    }
     if (draws_faces(s)) s.footprints = FootprintMode::Procedural;
-    if (s.footprints == FootprintMode::Warp2d) s.edge_shape = EdgeShape::Plane;
-    // Kernels of curved edges sum to one as they are; one side alone is another matter.
-    if (s.edge_shape == EdgeShape::Curved && s.normalisation == Normalisation::Voxel)
-        s.normalisation = Normalisation::Off;
-    if (asks_for_table(s) &&
-        (!edge_family || clipped || s.sheets == SheetCut::Sliced || s.edge_shape == EdgeShape::Curved)) {
-        s.footprints = FootprintMode::Procedural;
-    }
-    if (!asks_for_table(s)) s.table_size = usual.table_size;
     if (s.sheet_format != SheetFormat::Tiles) s.pixels = usual.pixels;
-    // Registers hold floats.
-    if (s.sheet_format == SheetFormat::Tiles) s.accumulation = usual.accumulation;
     return s;
 }
 
 Settings drawn_as(const Settings& settings, const Scene& scene) {
     Settings s = settings;
     if (scene.iso_values.empty()) s.edges = EdgeEstimator::Off;
-    return drawn_as(s, !scene.effects.clip.empty());
+    return drawn_as(s);
 }
 
 void validate(const Settings& settings) {
     // Comparisons are written so that NaN fails them.
     const auto in = [](double v, double low, double high) { return v >= low && v <= high; };
-    const double a = settings.edge_half_width;
     const double full = settings.saturation;
-    check("edge_half_width", a, a > 0 && a <= 3, "(0, 3] voxels");
-    check("edge_strength", settings.edge_strength, in(settings.edge_strength, 1, 64), "[1, 64]");
     check("sheet_spacing", settings.sheet_spacing, in(settings.sheet_spacing, 0.05, 16), "[0.05, 16] voxels");
     check("detail", settings.detail, in(settings.detail, 0, 8), "[0, 8] pixels");
     check("saturation", full, full > 0 && full <= 1, "(0, 1]");
-    if (settings.accumulation == SheetFormat::Tiles) fail("accumulation: tiles, expected half or float");
 }
 
 }  // namespace edgesplat

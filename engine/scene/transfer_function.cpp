@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "engine/volume/filters.h"
+#include "footprints/face.h"
 
 namespace edgesplat {
 
@@ -48,6 +49,15 @@ bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
         if (range.most > 0 && !(range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel)) return false;
     }
     return true;
+}
+
+double face_depth(const Scene& scene, const VolumeGeometry& geometry) {
+    return hides_what_is_behind(scene, geometry) ? kFaceDepth : kDeepFaceDepth;
+}
+
+bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_faces(settings) && settings.sheets != SheetCut::Sliced && scene.effects.clip.empty() &&
+           hides_what_is_behind(scene, geometry);
 }
 
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume) {

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "engine/scene/scene.h"
+#include "engine/scene/settings.h"
 #include "engine/volume/volume.h"
 
 namespace edgesplat {
@@ -21,6 +22,14 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
 
 /// Whether all matter that is seen lets at most 2 % of light through a voxel.
 bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry);
+
+/// No deeper under a face kernels are sampled, voxels: `kFaceDepth` where matter hides what is behind, else
+/// `kDeepFaceDepth`.
+double face_depth(const Scene& scene, const VolumeGeometry& geometry);
+
+/// Whether of two pieces of a ray in one kernel the longer is enough: in whole kernels, uncut, that hide what is
+/// behind.
+bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
 /// The scene's points with values scaled as samples are (scaled_field), rounded to float32 as the device holds them;
 /// empty without a transfer function. In a constant volume one point: the function at its value.

@@ -43,10 +43,6 @@ Settings hasty(Settings settings, int level) {
     settings.detail = 0;
     if (level == 0 || settings.edges == EdgeEstimator::Off) return settings;
     settings.edges = EdgeEstimator::Taylor;
-    settings.edge_shape = EdgeShape::Plane;
-    settings.normalisation = Normalisation::Off;
-    if (settings.footprints == FootprintMode::Table || settings.footprints == FootprintMode::TableLerp)
-        settings.footprints = FootprintMode::Procedural;
     return settings;
 }
 

@@ -156,6 +156,7 @@ void draw_on_device(Picture& picture, Renderer& renderer) {
     renderer.set_volume(picture.volume.volume);
     picture.choice = apply_max_error(picture.document.quality.max_error, renderer, *picture.volume.volume,
                                      picture.scene, picture.camera, output.size, settings, true);
+    if (output.compare_raycast) fail("output.compare_raycast: draw a second picture with output.renderer \"raycast\"");
     if (output.compare_plain) {
         picture.frames.push_back({"plain", settings, {}});
         picture.frames.back().settings.edges = EdgeEstimator::Off;

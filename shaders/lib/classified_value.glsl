@@ -5,7 +5,7 @@ float classified_value(ivec3 p, float own, uint material, Edge e) {
     float value = own, way = max(1.0, 1.0 - e.d);
     bool mixed = e.state >= EDGE_LOWER && abs(e.d) < 1.0 && way < e.d2;
     for (int run = mixed ? 1 : 0; run > 0; --run) {
-        float further = trilinear(vec3(p) - way * e.n);
+        float further = trilinear(p, -way * e.n);
         value = material_of(further) == material ? further : own;
     }
     return value;

@@ -48,22 +48,10 @@ Kept kept_pieces(vec3 place, vec3 u, float eye) {
     return kept;
 }
 
-// Whether a point is inside a splat's matter: in its kernel, and on the voxel's own side of its edge. r2 and t: the point's squared
-// distance from the voxel and its coordinate along n; D2 < 0: a kernel without an edge. What a ray that enters there sees is the cut.
-bool is_in_matter(float r2, float t, float D, float D2, float curvature, bool paper, int faces, FootprintParams params) {
-    bool plain = D2 < 0.0;
-    float q = t - D;
-    bool own_side = 2.0 * q + curvature * (q * q + max(r2 - t * t, 0.0)) < 0.0 && t > -D2;
-    float thickness = D + D2;
-    float a = faces == 2 ? wall_half_width(thickness, params.half_width) : params.half_width;
-    float k = faces == 2 ? wall_strength(thickness, params.strength) : params.strength;
-    float moved = faces >= 1 ? edge_warp(q, a, k) - q : 0.0;
-    moved += faces == 2 ? edge_warp(t + D2, a, k) - (t + D2) : 0.0;
-    float plane2 = r2 + moved * (2.0 * t + moved);
-    float warped2 = curvature != 0.0 ? curved_distance2(r2, t, D, curvature, a, k) : plane2;
-    // The paper's curve moves points by less than a voxel.
-    float reach = paper ? KERNEL_R + 1.0 : KERNEL_R;
-    warped2 = plain || paper ? r2 : warped2;
-    return warped2 < (plain ? KERNEL_R2 : reach * reach) && (plain || own_side);
+// Whether a point is inside a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2 and t: the
+// point's squared distance from the voxel and its coordinate along n. What a ray that enters there sees is the cut.
+bool is_in_matter(float r2, float t, float D, bool plain, FootprintParams params) {
+    float reach = plain ? KERNEL_R : params.paper_reach;
+    return r2 < reach * reach && (plain || t < D);
 }
 #endif

@@ -41,14 +41,4 @@ Edge unpack_edge(uint normal_code, uint code) {
     e.d2 = d2 == FACE_NONE ? 1e9 : float(d2) / 1022.0 * FACE_DISTANCE_UNIT;
     return e;
 }
-
-// What curved or normalised kernels carry besides: curvature, 1/voxel, and weight.
-uint pack_traits(float curvature, float weight, float curvature_unit) {
-    return (packSnorm2x16(vec2(curvature / curvature_unit, 0.0)) & 0xffffu) |
-           (packUnorm2x16(vec2(0.0, weight / WEIGHT_UNIT)) & 0xffff0000u);
-}
-
-vec2 unpack_traits(uint code, float curvature_unit) {
-    return vec2(unpackSnorm2x16(code).x * curvature_unit, unpackUnorm2x16(code).y * WEIGHT_UNIT);
-}
 #endif

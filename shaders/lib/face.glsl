@@ -6,7 +6,7 @@
 #include "shaders/lib/face_cut.glsl"
 
 const float FACE_STRAIGHT = 1e-6;
-const float FACE_FAR = 1e3;  // voxels: a face that a ray meets further off is not met
+const float FACE_NOWHERE = 1e9;  // voxels along a ray: out of every kernel's reach
 
 // c + z (b + z a).
 struct Quadratic {
@@ -51,26 +51,21 @@ FaceRoots face_roots(Quadratic phi, float level) {
     return r;
 }
 
-// The plane that touches a face where a ray meets it, at z: n.p, n.u, and the n.x from which on x is moved along n.
+// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n.p, n.u, and the
+// n.x from which on x is moved along n.
 struct FacePlane {
     float p;
     float u;
     float level;
 };
 
-// `out_along`: 1 where the ray leaves by it, -1 where it enters.
-FacePlane face_plane(FaceRay ray, float depth, float z, float out_along) {
-    float inverse = inversesqrt(max(quadratic_at(ray.slope2, z), 1e-8));
-    float p = (ray.across + z * ray.turn) * inverse;
-    float u = (ray.phi.b + 2.0 * z * ray.phi.a) * inverse;
-    bool turned = u * out_along < 0.0;
-    p = turned ? -p : p;
-    u = turned ? -u : u;
-    bool met = abs(z) < FACE_FAR;
+// Of the face phi = -level; `side` -1: matter lies where phi is larger.
+FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side) {
+    float inverse = side * inversesqrt(max(quadratic_at(ray.slope2, z), 1e-8));
     FacePlane plane;
-    plane.p = met ? p : 0.0;
-    plane.u = met ? u : 0.0;
-    plane.level = met ? p + z * u - depth : FACE_FAR;
+    plane.p = (ray.across + z * ray.turn) * inverse;
+    plane.u = (ray.phi.b + 2.0 * z * ray.phi.a) * inverse;
+    plane.level = plane.p + z * plane.u - (quadratic_at(ray.phi, z) + level) * inverse - depth;
     return plane;
 }
 
@@ -83,10 +78,16 @@ float face_beyond(FacePlane plane, float z) {
 
 bool is_deep(FacePlane plane, float z) { return plane.p + z * plane.u <= plane.level; }
 
-// The kernel between two ends of a ray's way through the matter: cut, and mapped near each by the plane that touches it there.
-float face_piece(FaceRay ray, FaceCut cut, float from, float to, float half_chord, Slice slice) {
-    FacePlane entry = face_plane(ray, cut.depth, from, -1.0);
-    FacePlane leave = face_plane(ray, cut.depth, to, 1.0);
+// The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
+// and mapped near each by the plane that touches it there.
+float face_piece(FaceRay ray, FaceCut cut, float from, float to, bool from_behind, bool to_behind, float half_chord, Slice slice) {
+    // A ray that meets no face is nearest to it where phi turns.
+    bool meets = from > -FACE_NOWHERE || to < FACE_NOWHERE;
+    float turn = -0.5 * ray.phi.b / min(ray.phi.a, -FACE_STRAIGHT);
+    FacePlane entry = face_plane(ray, cut.depth, clamp(meets ? from : turn, -half_chord, half_chord), from_behind ? cut.thickness : 0.0,
+                                 from_behind ? -1.0 : 1.0);
+    FacePlane leave = face_plane(ray, cut.depth, clamp(meets ? to : turn, -half_chord, half_chord), to_behind ? cut.thickness : 0.0,
+                                 to_behind ? -1.0 : 1.0);
     float plain = sqrt(max(KERNEL_R2 - ray.rho2, 0.0));
     float core = 1.0 - ray.rho2 * KERNEL_INVERSE_R2;
     float middle = 0.5 * (from + to);
@@ -118,8 +119,8 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
     behind.real = behind.real && wall;
     bool everywhere = !opens && !wall;
     bool has_outer = everywhere || (opens ? face.real : behind.real);
-    float outer_low = everywhere ? -1e9 : (opens ? face.low : behind.low);
-    float outer_high = everywhere ? 1e9 : (opens ? face.high : behind.high);
+    float outer_low = everywhere ? -FACE_NOWHERE : (opens ? face.low : behind.low);
+    float outer_high = everywhere ? FACE_NOWHERE : (opens ? face.high : behind.high);
     bool has_inner = opens ? behind.real : face.real;
     float inner_low = has_inner ? (opens ? behind.low : face.low) : outer_high;
     float inner_high = has_inner ? (opens ? behind.high : face.high) : outer_high;
@@ -129,13 +130,14 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
     float from = first ? outer_low : inner_high;
     float to = first ? inner_low : outer_high;
     FaceFootprint result;
-    result.integral = face_piece(ray, cut, from, to, half_chord, slice);
+    bool outer_behind = !opens && wall, from_behind = first ? outer_behind : opens;
+    bool to_behind = first && has_inner ? opens : outer_behind;
+    result.integral = face_piece(ray, cut, from, to, from_behind, to_behind, half_chord, slice);
     if (FACE_PIECES == 2u) {
-        float other = face_piece(ray, cut, inner_high, outer_high, half_chord, slice);
+        float other = face_piece(ray, cut, inner_high, outer_high, opens, outer_behind, half_chord, slice);
         result.integral += first && has_inner ? other : 0.0;
     }
     result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
-    bool from_behind = first ? !opens && wall : opens;
     result.entry = clamp(from, -half_chord, half_chord);
     result.side = from_behind && from > -half_chord ? -1.0 : 1.0;
     return result;

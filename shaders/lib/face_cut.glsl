@@ -3,7 +3,6 @@
 #ifndef EDGESPLAT_FACE_CUT_GLSL
 #define EDGESPLAT_FACE_CUT_GLSL
 
-const float FACE_DEPTH = 0.8;
 const float FACE_NO_WALL = 1e8;  // a face without another behind it has a larger thickness
 
 struct FaceCut {
@@ -30,11 +29,12 @@ FaceReach face_reach(float distance, float depth, float norm) {
     return r;
 }
 
-FaceCut face_cut(float distance, float bend, float norm, float thickness) {
+// `deepest`: kFaceDepth or kDeepFaceDepth.
+FaceCut face_cut(float distance, float bend, float norm, float thickness, float deepest) {
     FaceCut cut;
     cut.bend = bend;
     cut.thickness = thickness;
-    cut.depth = min(min(FACE_DEPTH, 0.5 / max(bend, 1e-3)), 0.5 * thickness);
+    cut.depth = min(min(deepest, 0.5 / max(bend, 1e-3)), 0.5 * thickness);
     bool wall = thickness < FACE_NO_WALL;
     FaceReach face = face_reach(distance, cut.depth, norm);
     float other = wall ? face_reach(thickness - distance, cut.depth, norm).reach2 : 0.0;

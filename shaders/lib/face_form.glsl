@@ -6,7 +6,7 @@
 #include "shaders/lib/kernel.glsl"
 #include "shaders/lib/face_cut.glsl"
 
-const bool FACES = FOOTPRINTS != 0u && WARP == 2u;  // kernels are cut at faces
+const bool FACES = FOOTPRINTS != ISOTROPIC && WARP == FACE;  // kernels are cut at faces
 
 // Or a plain kernel with the normal it is lit by.
 struct FaceForm {

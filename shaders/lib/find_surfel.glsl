@@ -1,5 +1,5 @@
 // Where the surface is nearest to a voxel beside it: a point of it at right angles, by Newton's method on the field.
-// docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(vec3) and what finds voxels.
+// docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(ivec3, vec3) and what finds voxels.
 
 // Whether samples around leave [low, high) downwards, upwards. No surface within SURFEL_REACH passes between samples further off.
 bvec2 crossed_around(ivec3 p, float low, float high) {
@@ -19,39 +19,37 @@ Edge find_surfel(ivec3 p, float value, float low, float high) {
     bvec2 crossed = crossed_around(p, low, high);
     bool upper = crossed.y && (!crossed.x || high - value < value - low);
     float iso = upper ? high : low;
-    vec3 x = vec3(p), at = x, n = vec3(0.0);
+    vec3 at = vec3(0.0), n = vec3(0.0);  // from the voxel
     float off = 1.0;
     bool lost = !(crossed.x || crossed.y);
     for (int i = 0; i < SURFEL_STEPS && !lost; ++i) {
-        vec4 slope_value = field_slope(at);
+        vec4 slope_value = field_slope(p, at);
         float slope = length(slope_value.xyz);
-        lost = !(slope >= GRADIENT_MIN) || distance(at, x) > 3.0;
+        lost = !(slope >= GRADIENT_MIN) || length(at) > 3.0;
         n = slope_value.xyz / max(slope, 1e-30);
         off = (slope_value.w - iso) / max(slope, 1e-30);
         // The last step only looks.
         for (int move = i + 1 < SURFEL_STEPS && !lost ? 1 : 0; move > 0; --move) {
             at -= clamp(off, -0.6, 0.6) * n;
-            vec3 from = at - x;
             // Slides to where the voxel sees it at right angles; the last steps lead back to the surface alone.
-            at -= i >= 2 && i + 4 < SURFEL_STEPS ? 0.8 * (from - dot(from, n) * n) : vec3(0.0);
+            at -= i >= 2 && i + 4 < SURFEL_STEPS ? 0.5 * (at - dot(at, n) * n) : vec3(0.0);
         }
     }
-    vec3 from = at - x;
     n = upper ? n : -n;
-    float d = dot(from, n);
-    bool inside = all(greaterThanEqual(at, vec3(0.0))) && all(lessThanEqual(at, vec3(dims - 1)));
-    bool found = !lost && abs(off) < 2e-3 && length(from - d * n) < 0.25 && abs(d) <= SURFEL_REACH && inside;
+    float d = dot(at, n);
+    bool inside = all(greaterThan(at, vec3(-p) - 1e-3)) && all(lessThan(at, vec3(dims - 1 - p) + 1e-3));
+    bool found = !lost && abs(off) < 2e-3 && length(at - d * n) < 0.25 && abs(d) <= SURFEL_REACH && inside;
     if (found) e = Edge(n, d, 1e9, upper ? EDGE_UPPER : EDGE_LOWER);
     return e;
 }
 
 // Where the volume ends, half a voxel beyond its outermost samples: the side nearest to voxel p, towards it; 0 where none
-// is nearer than a voxel.
+// is nearer than a voxel. Along an axis of one voxel nothing ends.
 vec3 border_beside(ivec3 p) {
     ivec3 at = p + params.scene.block_origin;
     bvec3 low = equal(at, ivec3(0)), high = equal(at, params.scene.volume_dims - 1);
     for (int i = 0; i < 3; ++i)
-        if (low[i] || high[i]) {
+        if ((low[i] || high[i]) && params.scene.volume_dims[i] > 1) {
             vec3 n = vec3(0.0);
             n[i] = high[i] ? 1.0 : -1.0;
             return n;

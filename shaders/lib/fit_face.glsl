@@ -9,11 +9,12 @@ struct Surfel {
     vec3 at;  // relative to the voxel
     vec3 n;   // out of the voxel's material
     uint state;  // which end of the material's interval it is
+    bool border; // of the volume
 };
 
 // `material`: whose border is wanted, from either side.
 Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
-    Surfel s = Surfel(false, vec3(0.0), vec3(0.0), EDGE_NONE);
+    Surfel s = Surfel(false, vec3(0.0), vec3(0.0), EDGE_NONE, false);
     bool inside = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
     ivec3 held = clamp(q, ivec3(0), dims - 1);
     uvec2 code = imageLoad(edges, held).xy;
@@ -29,6 +30,7 @@ Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
         s.there = ours || below || above;
         s.at = vec3(q - p) + e.d * e.n;
         s.n = ours ? e.n : -e.n;
+        s.border = at_border;
         s.state = ours ? state : (below ? EDGE_LOWER : EDGE_UPPER);
     }
     return s;
@@ -137,7 +139,7 @@ FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Q
     for (int i = 0; i < 125; ++i) {
         Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
         vec3 r = s.at - middle;
-        float w = s.there ? surfel_weight(r, n, s.n) : 0.0;
+        float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
         for (int run = w > 0.0 ? 1 : 0; run > 0; --run) {
             float off = quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2), facing = dot(s.n, n);
             float level = quadric_at(wall, r);
@@ -216,21 +218,30 @@ Face fit_face(ivec3 p, uint material) {
     float nearest = FACE_SEARCH;
     uint state = EDGE_LOWER;
     bvec2 crossed = bvec2(false);
+    bool border = false;
     for (int i = 0; i < 125; ++i) {
         ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
         Surfel s = surfel_at(p, q, material);
         float away = s.there ? length(s.at) : 1e9;
-        bool nearer = away < nearest;
+        // Of what is equally far the first is taken, whichever way numbers are rounded.
+        bool nearer = away < nearest - 1e-4;
         nearest = nearer ? away : nearest;
         middle = nearer ? s.at : middle;
         n = nearer ? s.n : n;
         state = nearer ? s.state : state;
+        border = nearer ? s.border : border;
         uint other = material_at(clamp(q, ivec3(0), dims - 1));
         bool beside = all(lessThanEqual(abs(o), ivec3(1)));
         crossed.x = crossed.x || (beside && other < material);
         crossed.y = crossed.y || (beside && other > material);
     }
     bool found = nearest < FACE_SEARCH;
+    if (border) {
+        // A plane, and behind it where the volume ends on the other side.
+        float d = dot(middle, n);
+        face.edge = Edge(n, d, dot(abs(n), vec3(params.scene.volume_dims)) - d, EDGE_LOWER);
+        return face;
+    }
     if (!found) state = crossed.x ? EDGE_LOWER : EDGE_UPPER;
     for (int run = found || crossed.x || crossed.y ? 1 : 0; run > 0; --run) {
         Moments all = no_moments(), same = no_moments();
@@ -239,7 +250,7 @@ Face fit_face(ivec3 p, uint material) {
         for (int i = 0; i < 125; ++i) {
             Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
             vec3 r = s.at - middle;
-            float w = s.there ? surfel_weight(r, n, s.n) : 0.0;
+            float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
             add_surfel(all, r, s.n, w);
             add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
             mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;

@@ -1,4 +1,4 @@
-// The kernel and the warp: the float32 mirror of footprints/kernel.h and edge_warp.h. The subset of GLSL that is C++ too.
+// The kernel: the float32 mirror of footprints/kernel.h. The subset of GLSL that is C++ too.
 #ifndef EDGESPLAT_KERNEL_GLSL
 #define EDGESPLAT_KERNEL_GLSL
 

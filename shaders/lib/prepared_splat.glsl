@@ -1,21 +1,14 @@
 // What all pixels of a splat share, found once: where it lies, its kernel, its colour. Kept in records of PREPARED_STRIDE vec4 from
-// 4_prepare_splats to 5_draw_tiles; `prepared_stride` in C++ has the same sum. After shaders/lib/splat_inputs.glsl; the including
-// shader declares `FaceBand` footprints (shaders/lib/footprint.glsl).
+// 4_prepare_splats to 5_draw_tiles; `prepared_stride` in C++ has the same sum. After shaders/lib/splat_inputs.glsl.
 #ifndef EDGESPLAT_PREPARED_SPLAT_GLSL
 #define EDGESPLAT_PREPARED_SPLAT_GLSL
 #include "shaders/lib/splat_conic.glsl"
-
-const bool BANDS = FOOTPRINTS >= TABLE && WARP == EDGE;  // footprints are integrated between the faces of a plane edge
-
-// Supports of plain and of cut kernels are spheres, and those of kernels that are widened.
-const bool SPHERES = FOOTPRINTS == ISOTROPIC || SLICED == 1u || FACES;
 
 struct PreparedSplat {
     SplatConic conic;
     vec3 start;      // a point of the ray with slopes (0, 0), relative to the voxel, index space
     float plane;     // its depth, mm: other rays pass plane * (x ray_x + y ray_y) beside it
     vec2 slopes;     // of the voxel; with antialias only
-    FaceBand band;   // with BANDS only
     SplatInputs inputs;
 };
 
@@ -31,16 +24,13 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
         cut_support(p, depths);
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
-    bool is_sphere = SPHERES;
-    if (ANTIALIAS == 1u) is_sphere = is_sphere || p.filtered.share > 0.0;
-    s.conic = splat_conic(p, e, is_sphere);
+    s.conic = splat_conic(p);
     // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
     bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
     s.plane = at_eye ? params.frame.near_depth : p.view.z;
     s.slopes = p.view.xy / p.view.z;
     s.start = at_eye ? s.plane * params.frame.ray_z - s.inputs.from_eye
                      : -s.plane * (s.slopes.x * params.frame.ray_x + s.slopes.y * params.frame.ray_y);
-    if (BANDS) s.band = face_band(e.d, s.inputs.shape.x, footprint_faces(e.d, s.inputs.shape.x, params.frame.footprint), params.frame.footprint);
     return s;
 }
 
@@ -71,12 +61,11 @@ void keep_prepared(uint entry, PreparedSplat s) {
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
-        vec2 ends = BANDS ? vec2(s.band.first, s.band.last) : vec2(0.0);
-        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.xy, ends));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.x, 0.0, 0.0, 0.0));
     }
     imageStore(prepared, prepared_texel(at + PREPARED_START), vec4(s.start, s.plane));
     imageStore(prepared, prepared_texel(at + PREPARED_START + 1u), s.inputs.color_sigma);
-    if (SLICED == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CUT), vec4(s.inputs.shape.zw, 0.0, 0.0));
+    if (SLICED == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CUT), vec4(s.inputs.shape.yz, 0.0, 0.0));
     if (CLIP_KEEP + CLIP_REMOVE > 0u) {
         imageStore(prepared, prepared_texel(at + PREPARED_MATTER), vec4(s.inputs.from_eye, uintBitsToFloat(s.inputs.number_material.y)));
         imageStore(prepared, prepared_texel(at + PREPARED_MATTER + 1u), vec4(s.inputs.matter, uintBitsToFloat(s.inputs.number_material.x)));
@@ -105,20 +94,13 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
-        vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
-        s.inputs.shape.xy = v.xy;
-        if (BANDS) {
-            float d = s.inputs.normal_distance.w;
-            s.band = face_widths(d, v.x, footprint_faces(d, v.x, params.frame.footprint), params.frame.footprint);
-            s.band.first = v.z;
-            s.band.last = v.w;
-        }
+        s.inputs.shape.x = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u)).x;
     }
     vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_START));
     s.start = v.xyz;
     s.plane = v.w;
     s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));
-    if (SLICED == 1u) s.inputs.shape.zw = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
+    if (SLICED == 1u) s.inputs.shape.yz = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) {
         vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));
         s.inputs.from_eye = place.xyz;

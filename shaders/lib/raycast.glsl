@@ -47,6 +47,7 @@ struct Ray {
     vec3 inverse; // 1 / u
     float first, last;
     float mm;     // millimetres per voxel along it
+    vec3 border;  // where it begins at the volume's border, unit, into the volume; else 0
 };
 
 Ray ray_of(ivec2 pixel) {
@@ -66,6 +67,9 @@ Ray ray_of(ivec2 pixel) {
     vec3 near = min(a, b), far = max(a, b);
     ray.first = max(max(near.x, near.y), max(near.z, eye));
     ray.last = min(far.x, min(far.y, far.z));
+    bool y = near.y > near.x, z = near.z > max(near.x, near.y);
+    vec3 axis = vec3(!y && !z, y && !z, z);
+    ray.border = ray.first > eye ? axis * sign(ray.u) : vec3(0.0);
     return ray;
 }
 
@@ -93,7 +97,7 @@ float leave(Ray ray, vec3 p) {
 vec3 gradient(vec3 p) {
     vec3 last = vec3(dims - 1);
     p = clamp(p, min(vec3(1.0), 0.5 * last), max(last - 1.0, 0.5 * last));
-    if (FILTER == FILTER_CUBIC) return bspline_slope(p).xyz;
+    if (FILTER == FILTER_CUBIC) return bspline_slope(ivec3(0), p).xyz;
     ivec3 c = ivec3(p);
     vec3 t = p - vec3(c);
     ivec3 end = dims - 1;

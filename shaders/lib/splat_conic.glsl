@@ -1,4 +1,4 @@
-// The image of a splat's support: pixels whose rays meet a spheroid that holds it lie in a conic. After
+// The image of a splat's support: pixels whose rays meet a sphere that holds it lie in a conic. After
 // shaders/lib/splat_projection.glsl. docs/method.md, 4_mark_pixels.
 #ifndef EDGESPLAT_SPLAT_CONIC_GLSL
 #define EDGESPLAT_SPLAT_CONIC_GLSL
@@ -12,34 +12,25 @@ struct SplatConic {
     float depth;  // of the support's centre, mm
 };
 
-// With w the ray through the centre c of a spheroid |x|_A <= 1, z w = c, a ray w + d meets it where
+// With w the ray through the centre c of a sphere |x|_A <= 1, z w = c, a ray w + d meets it where
 // z^2 (|w|^2 |d|^2 - (w.d)^2) <= |w + d|^2, all of them in A: nothing of it cancels, however far the eye.
-SplatConic splat_conic(Projection p, Edge e, bool is_sphere) {
+SplatConic splat_conic(Projection p) {
     SplatConic s = SplatConic(vec2(0.0), vec3(0.0), vec2(0.0), 0.0);
-    vec3 spheroid = splat_spheroid(e);
-    vec3 shift = is_sphere ? p.centre : spheroid.x * e.n;
-    vec2 axes = (is_sphere ? vec2(reach_across(p)) : spheroid.yz) * 1.005 + 1e-4;
-    vec3 view = view_position(p.position + shift);
+    float radius = reach_across(p) * 1.005 + 1e-4;
+    vec3 view = view_position(p.position + p.centre);
     s.depth = view.z;
-    bool before = view.z > 1.05 * max(axes.x, axes.y) * length(params.frame.view_z);
+    bool before = view.z > 1.05 * radius * length(params.frame.view_z);
     vec2 slope = before ? view.xy / view.z : vec2(0.0);
     vec2 pixel = 2.0 * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
     s.centre = slope / pixel + 0.5 * vec2(params.frame.size);
     vec3 w = params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
     vec3 x = pixel.x * params.frame.ray_x, y = pixel.y * params.frame.ray_y;
-    // In A: the products of vectors less those of their parts along n.
-    vec3 n = is_sphere ? vec3(0.0) : e.n;
-    float wide = 1.0 / (axes.y * axes.y), more = 1.0 / (axes.x * axes.x) - wide;
-    vec3 along = vec3(dot(w, n), dot(x, n), dot(y, n));
-    float ww = dot(w, w) * wide + along.x * along.x * more;
-    vec3 with_w = vec3(ww, dot(w, x) * wide + along.x * along.y * more, dot(w, y) * wide + along.x * along.z * more) / ww;
-    float xx = dot(x, x) * wide + along.y * along.y * more, xy = dot(x, y) * wide + along.y * along.z * more;
-    float yy = dot(y, y) * wide + along.z * along.z * more;
-    float z2 = view.z * view.z;
-    vec3 form = z2 * (vec3(xx, xy, yy) - ww * vec3(with_w.y * with_w.y, with_w.y * with_w.z, with_w.z * with_w.z)) -
-                vec3(xx, xy, yy) / ww;
+    float wide = 1.0 / (radius * radius), ww = dot(w, w) * wide;
+    vec2 with_w = vec2(dot(w, x), dot(w, y)) * wide / ww;
+    vec3 across = vec3(dot(x, x), dot(x, y), dot(y, y)) * wide;
+    vec3 form = view.z * view.z * (across - ww * vec3(with_w.x * with_w.x, with_w.x * with_w.y, with_w.y * with_w.y)) - across / ww;
     s.form = before ? form : vec3(0.0);
-    s.linear = before ? with_w.yz : vec2(0.0);
+    s.linear = before ? with_w : vec2(0.0);
     return s;
 }
 

@@ -7,7 +7,7 @@ struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
     vec4 color_sigma;      // payload, extinction per mm
     vec4 normal_distance;  // n, D
-    vec4 shape;            // D2 (negative: the splat is not warped), curvature, depths of the slice (mm from the voxel)
+    vec3 shape;            // negative: the splat is not warped; depths of the slice (mm from the voxel)
     vec3 matter;           // colour before light: what a cut shows; with clip planes only
     uvec2 number_material; // of the splat, likewise or with faces, and how its surface is lit
     FaceForm face;         // with faces only: light falls where a ray meets it, and color_sigma has the colour before light
@@ -44,7 +44,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     s.color_sigma = vec4(payload, material.a);
     s.number_material = uvec2(number, splat.edge >> 28);
     if (FACES) {
-        bool is_cut = e.state >= EDGE_LOWER;
+        bool is_cut = e.state >= EDGE_LOWER && abs(e.d) < params.frame.support + params.frame.face_depth;
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
@@ -62,16 +62,11 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;
     s.normal_distance = vec4(e.n, e.d);
-    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < params.frame.band;
-    vec2 traits = vec2(0.0, 1.0);
-    if (CURVED == 1u || WEIGHTED == 1u)
-        traits = unpack_traits(UintsRef(params.frame.traits).at[number], params.frame.curvature_unit);
-    s.shape = vec4(warped ? e.d2 : -1.0, CURVED == 1u ? traits.x : 0.0, depths);
-    if (WEIGHTED == 1u) s.color_sigma.a *= traits.y;
+    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < (FACES ? params.frame.support + params.frame.face_depth : params.frame.band);
+    s.shape = vec3(warped ? 1.0 : -1.0, depths);
     if (ANTIALIAS == 1u) {
         LowPass f = p.filtered;
-        // Weights belong to the warped kernel.
-        float matter = (warped ? matter_of_voxel(e.d, e.d2) : 1.0) / (WEIGHTED == 1u ? traits.y : 1.0);
+        float matter = warped ? matter_of_voxel(e.d, e.d2) : 1.0;
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
         if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;

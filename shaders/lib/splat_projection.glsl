@@ -25,8 +25,6 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-uint support_cell(float d) { return min(uint(abs(d) / params.frame.band * float(SUPPORT_STEPS)), SUPPORT_STEPS - 1u); }
-
 Bending bending_of(uint number) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
     return Bending(unpack_bending(code.x), unpack_bending(code.y));
@@ -34,36 +32,7 @@ Bending bending_of(uint number) {
 
 FaceCut cut_of(Edge e, Bending h) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
-    return face_cut(e.d, dot(e.n, bent(h, e.n)), bending_norm(h), thickness);
-}
-
-// Centre (along n) and radius of a sphere that holds what is warped around a face.
-vec2 face_support(float d) {
-    vec2 s = params.frame.support_table[support_cell(d)];
-    return vec2(d < 0.0 ? -s.x : s.x, s.y);
-}
-
-// The same of the splat's kernel, docs/method.md, pass 3. Between two faces no point is moved further than either alone would move it.
-vec2 splat_support(Edge e) {
-    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return vec2(0.0, params.frame.support);
-    vec2 first = face_support(e.d), second = face_support(e.d2);
-    float both = max(params.frame.support, max(abs(first.x) + first.y, abs(second.x) + second.y));
-    return e.d2 < params.frame.band ? vec2(0.0, both) : first;
-}
-
-// A spheroid about n that holds the splat's kernel: its centre's shift along n, half-axes along n and across.
-vec3 splat_spheroid(Edge e) {
-    if (FOOTPRINTS == 0u || e.state < EDGE_LOWER) return vec3(0.0, vec2(params.frame.support));
-    vec3 first = params.frame.spheroids[support_cell(e.d)].xyz;
-    if (e.d2 >= params.frame.band) return vec3(e.d < 0.0 ? -first.x : first.x, first.yz);
-    // What the faces let in lies within the supports of either alone and of the plain kernel. One that holds all three reaches
-    // from the first to the last of them along n, and is wider by what they are off its middle.
-    vec3 second = params.frame.spheroids[support_cell(e.d2)].xyz;
-    vec3 shifts = vec3(e.d < 0.0 ? -first.x : first.x, -second.x, 0.0), halves = vec3(first.y, second.y, params.frame.support);
-    vec3 low = shifts - halves, high = shifts + halves;
-    float begin = min(low.x, min(low.y, low.z)), end = max(high.x, max(high.y, high.z)), along = 0.5 * (end - begin);
-    vec3 across = vec3(first.z, second.z, params.frame.support) * inversesqrt(1.0 - abs(shifts - 0.5 * (begin + end)) / along);
-    return vec3(0.5 * (begin + end), along, max(across.x, max(across.y, across.z)));
+    return face_cut(e.d, dot(e.n, bent(h, e.n)), bending_norm(h), thickness, params.frame.face_depth);
 }
 
 // Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from
@@ -116,8 +85,9 @@ Projection place_splat(uint number, uint voxel, Edge e) {
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
     p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
     p.view = view_position(p.position);
-    vec2 support = FACES ? vec2(0.0, params.frame.support) : splat_support(e);
-    for (uint run = FACES && e.state >= EDGE_LOWER ? 1u : 0u; run > 0u; --run) {
+    bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
+    vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
+    for (uint run = FACES && cut_or_warped ? 1u : 0u; run > 0u; --run) {
         FaceCut cut = cut_of(e, bending_of(number));
         support = vec2(cut.shift, cut.radius);
     }

@@ -1,15 +1,11 @@
 // One splat at one pixel: the optical depth of its kernel along the pixel's own ray, and that times its colour.
 // docs/method.md, pass 5; design (8). The including shader declares the uniform block `params.frame`, the constants of the
-// draw, `table`, and what shaders/lib/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
+// draw, and what shaders/lib/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
 #include "shaders/lib/footprint.glsl"
 #include "shaders/lib/face_form.glsl"
 #include "shaders/lib/face.glsl"
-// The including shader may have it from elsewhere.
-#ifndef FACE_BAND
-#define FACE_BAND(d, d2, faces) face_band(d, d2, faces, params.frame.footprint)
-#endif
 #define CLIP_PARAMS params.frame
 #include "shaders/lib/clip.glsl"
 #include "shaders/lib/clip_ray.glsl"
@@ -17,32 +13,10 @@
 
 float footprint(float rho2, float pn, float un, Slice slice) {
     if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2, slice);
-    float d = normal_distance.w, d2 = shape.x;
-    if (WARP == PAPER) {
-        float warped = FOOTPRINTS == WARP2D ? footprint_paper_warp2d(rho2, pn, un, d, slice, params.frame.footprint)
-                                            : footprint_paper_procedural(rho2, pn, un, d, slice, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
-    }
-    if (FOOTPRINTS == WARP2D) {
-        float warped = footprint_warp2d(rho2, pn, un, d, slice, params.frame.footprint);
-        return d2 < 0.0 ? footprint_isotropic(rho2, slice) : warped;
-    }
-    int faces = d2 < 0.0 ? 0 : footprint_faces(d, d2, params.frame.footprint);
-    // Walls are plane.
-    float curved = 0.0;
-    int bent = CURVED == 1u && faces == 1 ? 1 : 0;
-    for (int run = bent; run > 0; --run)
-        curved = footprint_curved(rho2, pn, un, d, shape.y, slice, params.frame.footprint);
-    if (CURVED == 1u) faces = faces == 1 ? 0 : faces;
-    // The table knows one plane face and no slices; everything else is integrated. Without faces the loop is empty and the
-    // result is the plain footprint: lavapipe runs both sides of a branch, but no loop that is empty in every lane.
-    bool integrate = FOOTPRINTS == PROCEDURAL || SLICED == 1u || CURVED == 1u;
-    int integrated = integrate || faces == 2 ? faces : 0;
-    float warped = footprint_of_faces(rho2, pn, un, d, d2, integrated, FACE_BAND(d, d2, integrated), slice);
-    if (CURVED == 1u) warped = bent == 1 ? curved : warped;
-    if (integrate || faces != 1) return warped;
-    return FOOTPRINTS == TABLE ? footprint_table_nearest(table, rho2, pn, un, d, params.frame.footprint)
-                               : footprint_table_lerp(table, rho2, pn, un, d, params.frame.footprint);
+    float d = normal_distance.w;
+    float warped = FOOTPRINTS == WARP2D ? footprint_paper_warp2d(rho2, pn, un, d, slice, params.frame.footprint)
+                                        : footprint_paper_procedural(rho2, pn, un, d, slice, params.frame.footprint);
+    return shape.x < 0.0 ? footprint_isotropic(rho2, slice) : warped;
 }
 
 // |x|^2 of the widened kernel where the ray passes it.
@@ -91,8 +65,29 @@ FaceSight face_sight(vec3 p, vec3 u) {
     return FaceSight(ray, slope, hu);
 }
 
-// What the surface shows where the ray meets it, z from p. `ahead`: of the eye's way to p.
-vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead) {
+// The pixel's ray in the volume, whose border cuts kernels as a face does: from the eye along u, and the border's normal
+// where it enters (world, unit). Whoever draws sets it where kernels are cut at faces.
+struct VolumePiece {
+    float low;
+    float high;
+    vec3 normal;
+};
+VolumePiece volume_piece;
+
+VolumePiece piece_in_volume(vec3 u) {
+    vec3 way = mix(u, vec3(1e-8), lessThan(abs(u), vec3(1e-8)));
+    vec3 from = params.frame.anchor + params.frame.eye;
+    vec3 a = (vec3(-0.5) - from) / way, b = (vec3(params.frame.dims) - 0.5 - from) / way;
+    bvec3 flat_axis = equal(params.frame.dims, ivec3(1));
+    vec3 near = mix(min(a, b), vec3(-1e9), flat_axis), far = mix(max(a, b), vec3(1e9), flat_axis);
+    float low = max(near.x, max(near.y, near.z));
+    bool x = near.x >= low, y = !x && near.y >= low;
+    vec3 out_of = -sign(way) * vec3(x, y, !x && !y);
+    return VolumePiece(low, min(far.x, min(far.y, far.z)), normalize(params.frame.normal_to_world * out_of));
+}
+
+// What the surface shows where the ray meets it, z from p; `at_border`: it enters the volume there. `ahead`: of the eye's way to p.
+vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead, bool at_border) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
     vec3 slope = sight.slope + z * sight.turn;
     // Both faces of a layer between two iso-values face the lower values.
@@ -102,26 +97,32 @@ vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead) {
     upward = upward != ((number_material.y & IS_MIXED) != 0u && is_other);
     vec3 outward = (upward ? -side : side) * slope;
     vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
+    if (at_border) world_normal = volume_piece.normal;
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
     vec3 way = params.frame.index_to_world * u;
-    float depth = (ahead + z) * dot(params.frame.view_z, u);
+    // What the eye is in is seen right before it.
+    float away = max(ahead + z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal, world_normal, side < 0.0,
-                         (ahead + z) * way, -normalize(way), depth));
+    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal, side < 0.0,
+                         away * way, -normalize(way), depth));
 }
 
 // (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
 vec4 face_value(FaceSight sight, vec3 u, float ahead, float z, Slice slice) {
     bool plain = face_form.cut.depth < 0.0;
-    FaceFootprint f = footprint_face(sight.ray, face_form.cut, slice);
+    float border = volume_piece.low - ahead;
+    Slice inside = Slice(max(slice.low, border), min(slice.high, volume_piece.high - ahead));
+    FaceFootprint f = footprint_face(sight.ray, face_form.cut, inside);
     f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
     f.entry = plain ? 0.0 : f.entry;
     f.side = plain ? 1.0 : f.side;
+    bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry;
+    f.entry = at_border ? border : f.entry;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;
     }
-    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, u, ahead);
+    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, u, ahead, at_border);
     return f.integral * vec4(payload, 1.0);
 }
 
@@ -134,8 +135,6 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
     // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
     float far = ANTIALIAS == 1u ? 8.0 + abs(z) : 8.0;
-    int faces = footprint_faces(normal_distance.w, shape.x, params.frame.footprint);
-    faces = FOOTPRINTS == WARP2D ? 1 : faces;
     vec4 sum = vec4(0.0);
     bool some = kept.before.low < kept.before.high && kept.before.low < far && kept.before.high > -far;
     bool more = CLIP_REMOVE > 0u && kept.behind.low < kept.behind.high && kept.behind.low < far && kept.behind.high > -far;
@@ -147,8 +146,7 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
         float matter2 = rho2 + piece.low * piece.low;
         if (ANTIALIAS == 1u && filtered.x >= 1.0) matter2 = filtered_rho2(rho2) + (piece.low - z) * (piece.low - z);
         bool cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 &&
-                   is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC ? -1.0 : shape.x,
-                                CURVED == 1u && faces == 1 ? shape.y : 0.0, WARP == PAPER, faces, params.frame.footprint);
+                   is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC || shape.x < 0.0, params.frame.footprint);
         if (FACES) {
             bool plain = face_form.cut.depth < 0.0;
             bool inside = footprint_face(sight.ray, face_form.cut, Slice(piece.low, piece.low + 1e-3)).integral > 0.0;
@@ -177,7 +175,7 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     float in_front = 1.0;
     if (SLICED == 1u) {
         float depth_along = dot(params.frame.view_z, u);
-        vec2 z = (shape.zw - dot(params.frame.view_z, p)) / depth_along;
+        vec2 z = (shape.yz - dot(params.frame.view_z, p)) / depth_along;
         slice = Slice(z.x, z.y);
     } else if (CLIP_KEEP + CLIP_REMOVE == 0u) {
         // Only the part of the kernel in front of the eye counts.

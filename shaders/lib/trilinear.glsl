@@ -12,8 +12,9 @@ float within_cell(ivec3 c, ivec3 e, vec3 t) {
     return y.x + t.z * (y.y - y.x);
 }
 
-float trilinear(vec3 p) {
-    p = clamp(p, vec3(0.0), vec3(dims - 1));
-    ivec3 c = clamp(ivec3(floor(p)), ivec3(0), max(dims - 2, ivec3(0)));
-    return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
+// At p from voxel `origin`: near voxels, so that no digits depend on where in the volume that is.
+float trilinear(ivec3 origin, vec3 p) {
+    p = clamp(p, vec3(-origin), vec3(dims - 1 - origin));
+    ivec3 c = clamp(ivec3(floor(p)), -origin, max(dims - 2, ivec3(0)) - origin);
+    return within_cell(origin + c, min(origin + c + 1, dims - 1), p - vec3(c));
 }

@@ -34,13 +34,13 @@ vec4 bspline_slopes(float t) {
     return vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t);
 }
 
-// (gradient, value) of the spline.
-vec4 bspline_slope(vec3 p) {
-    p = clamp(p, vec3(0.0), vec3(dims - 1));
+// (gradient, value) of the spline, at p from voxel `origin`.
+vec4 bspline_slope(ivec3 origin, vec3 p) {
+    p = clamp(p, vec3(-origin), vec3(dims - 1 - origin));
     vec3 c = floor(p), t = p - c;
     vec4 wx = bspline_weights(t.x), wy = bspline_weights(t.y), wz = bspline_weights(t.z);
     vec4 sx = bspline_slopes(t.x), sy = bspline_slopes(t.y), sz = bspline_slopes(t.z);
-    ivec4 x = mirrored(int(c.x), dims.x), y = mirrored(int(c.y), dims.y), z = mirrored(int(c.z), dims.z);
+    ivec4 x = mirrored(origin.x + int(c.x), dims.x), y = mirrored(origin.y + int(c.y), dims.y), z = mirrored(origin.z + int(c.z), dims.z);
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {

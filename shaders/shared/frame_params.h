@@ -43,26 +43,22 @@ struct FrameParams {
     vec3 background;        // linear light; of two colours: in the bottom row
     float ambient;
     vec3 background_top;    // linear light: in the top row
-    uint background_pad;
     vec4 light_at[4];       // w = 0: world unit vector towards it; w = 1: its place relative to the eye, mm
     vec4 light_color[4];    // rgb times intensity
     vec4 materials[16];      // rgb, extinction per mm
     vec4 responses[16];      // factors on ambient, diffuse and specular light, shininess
     vec4 fog;                // rgb, density per mm
     vec4 silhouette;         // rgb, strength
-    vec2 support_table[64];  // by |D| / (R + a): shift of a covering sphere along n, its radius; voxels
-    vec4 spheroids[64];      // by |D| as above: shift of a covering spheroid along n, its half-axes along n and across; voxels
     ivec3 dims;
     uint splat_count;
     ivec2 size;  // pixels
     uint sheet_count;
     uint sheets_per_group;
     uint group_count;
-    float band;          // R + a
+    float band;          // an edge further away does not matter, voxels
     float saturation;    // alpha at which a pixel takes no more
     float near_depth;    // mm: depth of the plane that rays of full-screen splats are described in
     float sheet_zero;    // mm: depth of sheet 0's near plane relative to the anchor
-    float curvature_unit;  // the largest curvature that is drawn, 1/voxel
     float fog_start;       // mm
     float silhouette_sharpness;
     vec2 pixel;            // slopes from one sample of the picture to the next; with antialias only
@@ -77,7 +73,7 @@ struct FrameParams {
     Address draws;          // (group_count) DrawCommand
     Address drawn;          // (3) uint: splats drawn; footprints evaluated, and those of open pixels
     Address output_pixels;  // (size.y, size.x) vec4
-    Address traits;         // (splat_count) uint: curvature and weight (edge_record.glsl); edges curved or kernels normalised
+    Address traits;         // (splat_count) uvec2: second derivatives of its face (face_record.glsl); with faces only
     Address splat_shadows;    // (splat_count) uint: unorm16 of what reaches the splat of either light with shadows
     Address splat_occlusion;  // (splat_count) uint: unorm16 of the ambient light that reaches either face
     Address light_layers;     // (sheet_count, size.y, size.x) float, of a light's picture: optical depth so far
@@ -101,7 +97,7 @@ struct FrameParams {
     uint sort_segment;      // slots of a block that are sorted at once
     Address batches;        // (slot_count / SPLAT_BATCH) uvec2: first splat and how many; where bricks are culled
     uint slot_count;        // splats that may show: all, or SPLAT_BATCH for each batch
-    uint slot_pad;
+    float face_depth;       // no deeper under a face kernels are sampled, voxels
 };
 
 EDGESPLAT_SHARED_END
@@ -110,9 +106,9 @@ EDGESPLAT_SHARED_END
 static_assert(sizeof(edgesplat::shader::SheetGroup) == 32);
 static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
-static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 360);
-static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 2440);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 3040);
+static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
+static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1464);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -5,7 +5,7 @@
 EDGESPLAT_SHARED_BEGIN
 
 EDGESPLAT_CONSTANT float KERNEL_RADIUS = 1.6f;  // R of kernel K7, voxels
-EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;     // how far an edge is searched, voxels; beyond, planes are adopted
+EDGESPLAT_CONSTANT float EDGE_REACH = 3.0f;     // how far an edge is searched, voxels
 EDGESPLAT_CONSTANT float GRADIENT_MIN = 1e-3f;  // value range per voxel; flatter data has no trustworthy direction
 EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 of D / 4: steps of 1.2e-4 voxel
 EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
@@ -22,20 +22,18 @@ EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
 EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
 EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
-EDGESPLAT_CONSTANT float BENDING_UNIT = 2.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 2), 1/voxel
+EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 8), 1/voxel
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
 EDGESPLAT_CONSTANT uint MAX_CLIP_PLANES = 8u;        // of either kind
-// A block's border holds all that its splats depend on. From a splat outwards, voxels: kernels of its weight, edges that those
-// adopted, the march to an edge and the gradient there, or what buries a voxel.
-EDGESPLAT_CONSTANT int ADOPT_MARGIN = 5;
+// A block's border holds all that its splats depend on. From a splat outwards, voxels: the points of the surface that its face is
+// fitted to, the way to those and the gradient there, and a spline's coefficients, which what is mirrored there is not in.
 EDGESPLAT_CONSTANT int ESTIMATE_MARGIN = 7;
 EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
-EDGESPLAT_CONSTANT int BLOCK_BORDER = 18;
-EDGESPLAT_CONSTANT int CHANGE_MARGIN = 13;  // as far from a sample that changes edges may be others: BLOCK_BORDER - ADOPT_MARGIN
+EDGESPLAT_CONSTANT int BLOCK_BORDER = 24;
+EDGESPLAT_CONSTANT int CHANGE_MARGIN = 11;  // as far from a sample that changes edges may be others
 EDGESPLAT_CONSTANT uint BRICK = 8u;  // voxels along a side of a brick
 EDGESPLAT_CONSTANT uint SPLAT_BATCH = 64u;  // splats of bricks in view that 3_select_footprints goes through at once
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
-EDGESPLAT_CONSTANT uint SUPPORT_STEPS = 64u;  // cells of |D| in [0, R + a], each with a sphere that covers its supports
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
 // lavapipe ends every loop of an invocation once all of them together have gone round 65535 times, without a word. What follows
 // keeps them below.
@@ -57,9 +55,6 @@ EDGESPLAT_CONSTANT uint REFINE_STEP = 4u;
 EDGESPLAT_CONSTANT float REFINE_TOLERANCE = 1.0f / 255.0f;
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
-EDGESPLAT_CONSTANT uint EDGE_WEIGHT_STEPS = 12u;     // of a kernel's weight by its distance to the edge
-EDGESPLAT_CONSTANT float EDGE_WEIGHT_REACH = 2.4f;   // voxels, from where on it is 1
-EDGESPLAT_CONSTANT float WEIGHT_UNIT = 4.0f;  // a kernel's weight is stored as unorm16 of weight / 4
 
 // Specialization constants: ids are the same in every shader, and ascend. C++ has their names from here, too.
 #define EDGESPLAT_SPECIALIZATIONS(X) \
@@ -71,62 +66,53 @@ EDGESPLAT_CONSTANT float WEIGHT_UNIT = 4.0f;  // a kernel's weight is stored as 
     X(SPEC_AXIS, 5u)          /* 0 x, 1 y, 2 z */ \
     X(SPEC_EDGES, 6u)         /* 1: the edge field exists */ \
     X(SPEC_BURIED, 7u)        /* 1: the buried mask exists */ \
-    X(SPEC_SMOOTH, 8u)        /* 1: distances are smoothed along the surface */ \
-    X(SPEC_SLICED, 9u)        /* 1: kernels are cut at the sheets' planes */ \
-    X(SPEC_CURVED, 10u)       /* 1: edges are spheres of their curvature */ \
-    X(SPEC_WEIGHTED, 11u)     /* kernels are weighted; collecting splats: how */ \
-    X(SPEC_NODES, 12u)        /* quadrature nodes of a piece of a footprint: 4, 8, 10 or 16 */ \
-    X(SPEC_GLOSS, 13u)        /* 1: some material has highlights */ \
-    X(SPEC_LIT_EDGES, 14u)    /* 1: splats without an edge count as without normal */ \
-    X(SPEC_FOG, 15u)          /* 1: fog */ \
-    X(SPEC_SILHOUETTE, 16u)   /* 1: silhouettes */ \
-    X(SPEC_TRANSFER, 17u)     /* 1: colour and extinction by a transfer function */ \
-    X(SPEC_CLIP_KEEP, 18u)    /* number of planes that what is kept lies before */ \
-    X(SPEC_CLIP_REMOVE, 19u)  /* number of planes that what is removed lies before */ \
-    X(SPEC_ANTIALIAS, 20u)    /* 1: no footprint is narrower than a pixel */ \
-    X(SPEC_RESPONSE, 21u)     /* 1: materials answer to light each in its own way */ \
-    X(SPEC_OCCLUSION, 22u)    /* 1: ambient light is what reaches a splat */ \
-    X(SPEC_SHADOWS, 23u)      /* number of lights with shadows */ \
-    X(SPEC_GRADIENT, 24u)     /* 1: the background goes from one colour to another */ \
-    X(SPEC_TILES, 25u)        /* 1: sheets are summed tile by tile, not in layers */ \
-    X(SPEC_ROUNDS, 26u)       /* 1: a tile's list is drawn TILE_ROUND entries at a time */ \
-    X(SPEC_COUNT, 27u)        /* 1: footprints are counted */ \
-    X(SPEC_PREPARED, 28u)     /* 1: entries are prepared, 0: by whoever draws them */ \
-    X(SPEC_REFINED, 29u)      /* 1: pixels are those of their tile's list */ \
-    X(SPEC_GROUP, 30u)        /* invocations of a workgroup */ \
-    X(SPEC_STEP, 31u)         /* pixels between those that are there already */ \
-    X(SPEC_ISO_COUNT, 32u)    /* number of iso-values */ \
-    X(SPEC_WIDE_MARKS, 33u)   /* 1: entries are marked for 4 x 2 pixels at once, 0: for each */ \
-    X(SPEC_LIST_PARTS, 34u)   /* parts of 32 entries of a list that are marked at once */ \
-    X(SPEC_CULLED, 35u)       /* 1: splats are those of batches, of bricks in view; 0: all of the list */ \
-    X(SPEC_FACES, 36u)        /* 1: faces are found */ \
-    X(SPEC_SKIP, 37u)         /* 1: transparent bricks are leapt over */ \
-    X(SPEC_RAY_LIGHT, 38u)    /* 0 without light, else 1 + Light::Kind */ \
-    X(SPEC_RAY_FILTER, 39u)   /* RaycastFilter */ \
-    X(SPEC_PIECES, 40u)       /* of a ray in a cut kernel that count: 2, or 1 where matter is opaque */
+    X(SPEC_SLICED, 8u)        /* 1: kernels are cut at the sheets' planes */ \
+    X(SPEC_NODES, 9u)         /* quadrature nodes of a piece of a footprint: 4, 6 or 10 */ \
+    X(SPEC_GLOSS, 10u)        /* 1: some material has highlights */ \
+    X(SPEC_LIT_EDGES, 11u)    /* 1: splats without an edge count as without normal */ \
+    X(SPEC_FOG, 12u)          /* 1: fog */ \
+    X(SPEC_SILHOUETTE, 13u)   /* 1: silhouettes */ \
+    X(SPEC_TRANSFER, 14u)     /* 1: colour and extinction by a transfer function */ \
+    X(SPEC_CLIP_KEEP, 15u)    /* number of planes that what is kept lies before */ \
+    X(SPEC_CLIP_REMOVE, 16u)  /* number of planes that what is removed lies before */ \
+    X(SPEC_ANTIALIAS, 17u)    /* 1: no footprint is narrower than a pixel */ \
+    X(SPEC_RESPONSE, 18u)     /* 1: materials answer to light each in its own way */ \
+    X(SPEC_OCCLUSION, 19u)    /* 1: ambient light is what reaches a splat */ \
+    X(SPEC_SHADOWS, 20u)      /* number of lights with shadows */ \
+    X(SPEC_GRADIENT, 21u)     /* 1: the background goes from one colour to another */ \
+    X(SPEC_TILES, 22u)        /* 1: sheets are summed tile by tile, not in layers */ \
+    X(SPEC_ROUNDS, 23u)       /* 1: a tile's list is drawn TILE_ROUND entries at a time */ \
+    X(SPEC_COUNT, 24u)        /* 1: footprints are counted */ \
+    X(SPEC_PREPARED, 25u)     /* 1: entries are prepared, 0: by whoever draws them */ \
+    X(SPEC_REFINED, 26u)      /* 1: pixels are those of their tile's list */ \
+    X(SPEC_GROUP, 27u)        /* invocations of a workgroup */ \
+    X(SPEC_STEP, 28u)         /* pixels between those that are there already */ \
+    X(SPEC_ISO_COUNT, 29u)    /* number of iso-values */ \
+    X(SPEC_WIDE_MARKS, 30u)   /* 1: entries are marked for 4 x 2 pixels at once, 0: for each */ \
+    X(SPEC_LIST_PARTS, 31u)   /* parts of 32 entries of a list that are marked at once */ \
+    X(SPEC_CULLED, 32u)       /* 1: splats are those of batches, of bricks in view; 0: all of the list */ \
+    X(SPEC_FACES, 33u)        /* 1: faces are found */ \
+    X(SPEC_PIECES, 34u)       /* of a ray in a cut kernel that count: 2, or 1 where matter is opaque */ \
+    X(SPEC_SKIP, 35u)         /* 1: transparent bricks are leapt over */ \
+    X(SPEC_RAY_LIGHT, 36u)    /* 0 without light, else 1 + Light::Kind */ \
+    X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION
-EDGESPLAT_CONSTANT uint WEIGHTED_EDGE = 1u;    // by their distance to the edge
-EDGESPLAT_CONSTANT uint WEIGHTED_VOXEL = 2u;   // to a sum of one at each voxel
 
 // EdgeEstimator
 EDGESPLAT_CONSTANT uint TAYLOR = 1u;
-EDGESPLAT_CONSTANT uint QUADRATIC = 2u;
-EDGESPLAT_CONSTANT uint MARCH = 3u;
-EDGESPLAT_CONSTANT uint CUBIC = 4u;
+EDGESPLAT_CONSTANT uint MARCH = 2u;
+EDGESPLAT_CONSTANT uint CUBIC = 3u;
 
 // FootprintMode
 EDGESPLAT_CONSTANT uint ISOTROPIC = 0u;
 EDGESPLAT_CONSTANT uint WARP2D = 1u;
-EDGESPLAT_CONSTANT uint TABLE = 2u;
-EDGESPLAT_CONSTANT uint TABLE_LERP = 3u;
-EDGESPLAT_CONSTANT uint PROCEDURAL = 4u;
+EDGESPLAT_CONSTANT uint PROCEDURAL = 2u;
 
 // WarpFamily
-EDGESPLAT_CONSTANT uint EDGE = 0u;
-EDGESPLAT_CONSTANT uint PAPER = 1u;
-EDGESPLAT_CONSTANT uint FACE = 2u;
+EDGESPLAT_CONSTANT uint PAPER = 0u;  // kernels at edges are warped by the paper's curve
+EDGESPLAT_CONSTANT uint FACE = 1u;   // or cut at faces
 
 // Payload: the quantity that a frame carries in place of colour.
 EDGESPLAT_CONSTANT uint PAYLOAD_COLOR = 0u;

@@ -11,21 +11,16 @@ struct SceneParams {
     uint visible_mask;    // bit m: material m has extinction > 0
     uint opaque_mask;     // bit m: material m hides what lies bury_distance voxels behind its surface
     int bury_distance;    // voxels
-    float band;           // R + a: an edge further away does not matter, voxels
+    float band;           // an edge further away does not matter, voxels
     Address run_offsets;  // (runs) uint: splats of each run, then where it writes
     Address splats;       // (splat_count) Splat
-    Address traits;       // (splat_count) uint: curvature and weight; edges curved or kernels normalised
-    float curvature_unit;  // the largest curvature that is drawn, 1/voxel
-    uint estimate_mask;    // bit m: edges of material m are estimated
-    float half_width;      // a, voxels
-    float strength;        // k
+    Address traits;       // (splat_count) uvec2: second derivatives of its face (face_record.glsl); with faces only
+    uint estimate_mask;   // bit m: edges of material m are estimated
+    float reach;          // no kernel reaches further, voxels
     vec4 clip_keep[8];    // normal (unit) and offset, index space: above 0 is beyond; where buried voxels are found
     vec4 clip_remove[8];
     Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
     Address values;        // (splat_count) float: what each splat is classified by, scaled; likewise
-    float edge_weights[13];  // of a kernel, by its distance to the edge; EDGE_WEIGHT_STEPS to EDGE_WEIGHT_REACH
-    float weight_pad;
-    vec2 contrast[16];       // of a material with the one below and above: 1 - its extinction / the material's, 0..1
     ivec3 core_low;          // first voxel that becomes a splat
     ivec3 core_size;         // how many do, along each axis
     ivec3 block_origin;      // of the images' first voxel in the volume
@@ -47,13 +42,12 @@ EDGESPLAT_CONSTANT uint EDGE_NONE = 0u;           // neither edge nor normal
 EDGESPLAT_CONSTANT uint EDGE_NORMAL = 1u;         // a normal for light, no edge
 EDGESPLAT_CONSTANT uint EDGE_LOWER = 2u;          // edge at the lower end of the voxel's interval: the voxel is inside
 EDGESPLAT_CONSTANT uint EDGE_UPPER = 3u;          // edge at the upper end: the voxel is outside
-EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 29;   // likewise: the volume ends there
-EDGESPLAT_CONSTANT uint EDGE_ADOPTED = 1u << 28;  // in the edge field only: plane taken from a neighbour
+EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the volume ends there
 
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 652);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 460);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -59,16 +59,16 @@ Marked count_marks(RendererState& state, const PassScene& s, const glm::ivec2& s
 TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
     const glm::ivec2 size(70, 45);  // neither side is a multiple of a tile's
     std::size_t touched = 0;
-    for (const auto& [edges, footprints, shape] :
-         {std::tuple{EdgeEstimator::March, FootprintMode::Procedural, EdgeShape::Plane},
-          std::tuple{EdgeEstimator::March, FootprintMode::Procedural, EdgeShape::Curved},
-          std::tuple{EdgeEstimator::Taylor, FootprintMode::Warp2d, EdgeShape::Plane},
-          std::tuple{EdgeEstimator::Off, FootprintMode::Isotropic, EdgeShape::Plane}}) {
+    for (const auto& [edges, footprints, warp] :
+         {std::tuple{EdgeEstimator::Cubic, FootprintMode::Procedural, WarpFamily::Face},
+          std::tuple{EdgeEstimator::March, FootprintMode::Procedural, WarpFamily::Paper},
+          std::tuple{EdgeEstimator::Taylor, FootprintMode::Warp2d, WarpFamily::Paper},
+          std::tuple{EdgeEstimator::Off, FootprintMode::Isotropic, WarpFamily::Face}}) {
         for (PassScene s : pass_scenes()) {
-            SCOPED_TRACE(fmt::format("{} {} {}", s.name, name_of(footprints), name_of(shape)));
+            SCOPED_TRACE(fmt::format("{} {} {}", s.name, name_of(footprints), name_of(warp)));
             s.settings.edges = edges;
             s.settings.footprints = footprints;
-            s.settings.edge_shape = shape;
+            s.settings.warp = warp;
             s.settings.pixels = PixelChoice::Every;
             s.settings.saturation = 1;  // no tile closes
             s.settings = drawn_as(s.settings);
@@ -84,9 +84,9 @@ TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
             if (marks.touched < 1000) continue;  // a last chunk of a few splats
             const double share = static_cast<double>(marks.marked) / static_cast<double>(marks.touched);
             std::printf("%-18s %-10s %-6s marked per pixel with something: %.3f\n", s.name.c_str(),
-                        std::string(name_of(footprints)).c_str(), std::string(name_of(shape)).c_str(), share);
-            const bool spheres = footprints == FootprintMode::Warp2d || shape == EdgeShape::Curved;
-            EXPECT_LE(share, footprints == FootprintMode::Isotropic ? 1.1 : spheres ? 2.6 : 1.4);
+                        std::string(name_of(footprints)).c_str(), std::string(name_of(warp)).c_str(), share);
+            // Supports of cut and warped kernels lie in spheres, which they fill in part.
+            EXPECT_LE(share, footprints == FootprintMode::Isotropic ? 1.1 : 3.3);
         }
     }
     EXPECT_GT(touched, 400000U);
@@ -103,7 +103,7 @@ TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
         const Marked marks = count_marks(state, s, size, {4, 2});
         EXPECT_GT(marks.touched, 10000U);
         EXPECT_EQ(marks.missed, 0U);
-        EXPECT_LT(static_cast<double>(marks.marked), 1.9 * static_cast<double>(marks.touched));
+        EXPECT_LT(static_cast<double>(marks.marked), 3.8 * static_cast<double>(marks.touched));
     }
 }
 

@@ -133,7 +133,7 @@ inline RendererState& prepared(const PassScene& s) {
     state.volume_resources = {};
     state.volume = std::make_shared<Volume>(s.volume);
     upload_volume(state);
-    state.provide_footprints(s.settings);
+    state.release_unused(s.settings);
     state.collect(s.scene, s.settings, false);
     return state;
 }
@@ -150,8 +150,7 @@ inline glm::dmat3 decode_bending(const glm::uvec2& code) {
     return {glm::dvec3(xx, xy, xz), glm::dvec3(xy, yy, yz), glm::dvec3(xz, yz, zz)};
 }
 
-/// The device's splat list as the reference writes it, with curvature, weight and classification where the device has
-/// them.
+/// The device's splat list as the reference writes it, with bendings and classification where the device has them.
 inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat :
@@ -169,21 +168,10 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
             records[i].classified = transfer_at(points, static_cast<double>(values[i]));
     }
     if (!state.volume_resources.traits) return records;
-    if (state.collected->faces) {
-        const auto bendings = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
-        for (std::size_t i = 0; i < records.size(); ++i) {
-            records[i].edge.bending = decode_bending(bendings[i]);
-            records[i].edge.mixed = (bendings[i].x >> 30U & 1U) != 0;
-        }
-        return records;
-    }
-    const auto traits = download<std::uint32_t>(state, state.volume_resources.traits, records.size());
-    const auto curvature_unit = static_cast<double>(state.collected->params.curvature_unit);
+    const auto bendings = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
-        records[i].edge.curvature = std::max(static_cast<std::int16_t>(traits[i] & 0xffffU) / 32767.0, -1.0) *
-                                    curvature_unit * (state.collected->curved ? 1 : 0);
-        records[i].edge.weight =
-            state.collected->weighted ? (traits[i] >> 16U) / 65535.0 * static_cast<double>(shader::WEIGHT_UNIT) : 1;
+        records[i].edge.bending = decode_bending(bendings[i]);
+        records[i].edge.mixed = (bendings[i].x >> 30U & 1U) != 0;
     }
     return records;
 }
@@ -216,7 +204,7 @@ inline Reaches reaches_of(const PassScene& s, gpu::Buffer VolumeResources::*buff
 
 /// With sheets in layers, which can be looked at.
 inline Settings layered(Settings settings) {
-    settings.sheet_format = SheetFormat::Float;
+    settings.sheet_format = SheetFormat::Layers;
     return settings;
 }
 
@@ -239,7 +227,9 @@ struct Oracle {
         : values(scaled_field(s.volume)),
           field{s.volume.geometry.dims, values, {}},
           view(s.camera, s.volume.geometry, size.x, size.y),
-          footprints(s.settings),
+          footprints(
+              s.settings, face_depth(s.scene, s.volume.geometry),
+              one_piece_is_enough(s.settings, s.scene, s.volume.geometry) ? FacePieces::Longer : FacePieces::Both),
           selected(reference::select_footprints(records, field, view, s.settings, footprints)),
           drawer(records, selected, field, s.scene, view, s.settings, footprints) {}
     Oracle(const Oracle&) = delete;

@@ -44,7 +44,7 @@ Frame draw(const FrameRequest& request) {
     state.volume = request.volume;
     upload_volume(state);
     const Settings settings = drawn_settings(request);
-    state.provide_footprints(settings);
+    state.release_unused(settings);
     state.collect(request.scene, settings, keeps_buried(request));
     Frame frame;
     for (const PassTime& pass : state.collection_times)

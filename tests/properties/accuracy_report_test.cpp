@@ -14,7 +14,7 @@ using ::testing::StartsWith;
 
 constexpr const char* kArguments =
     "builtin:sphere:24 --size 48x48 --repeats 1 --orbit 1 --tolerance 1e-3 --knobs sheets,sheet-spacing --cameras "
-    "far --edge-strength 8 -q";
+    "far -q";
 
 class AccuracyReport : public CliTest {
   protected:
@@ -59,7 +59,7 @@ TEST_F(AccuracyReport, GoesOnAfterCtrlCAndRepeatsItsErrorsExactly) {
     for (const char* file : {"index.html", "report.json", "steps.csv"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / "r" / file)) << file;
 
-    const ProgramRun other = report("r", "--edge-shape curved");
+    const ProgramRun other = report("r", "--edges march");
     EXPECT_EQ(other.status, 1);
     EXPECT_THAT(other.err, HasSubstr("--restart"));
 

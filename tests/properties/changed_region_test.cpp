@@ -57,15 +57,12 @@ struct Change {
 
 TEST(ChangedRegion, PicturesAreThoseFromScratch) {
     Shot shot = torus_of(48);
-    for (const EdgeEstimator edges : {EdgeEstimator::March, EdgeEstimator::Taylor, EdgeEstimator::Quadratic,
-                                      EdgeEstimator::Cubic, EdgeEstimator::Off}) {
+    for (const EdgeEstimator edges :
+         {EdgeEstimator::March, EdgeEstimator::Taylor, EdgeEstimator::Cubic, EdgeEstimator::Off}) {
         Settings settings;
         settings.edges = edges;
         shot.scene.effects.occlusion.reset();
-        if (edges == EdgeEstimator::March) {
-            settings.normalisation = Normalisation::Edge;
-            shot.scene.effects.occlusion.emplace();
-        }
+        if (edges == EdgeEstimator::March) shot.scene.effects.occlusion.emplace();
         Renderer renderer = own_renderer();
         renderer.set_volume(shot.volume);
         const RenderResult first = picture(renderer, shot, settings);

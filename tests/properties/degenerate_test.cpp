@@ -94,7 +94,7 @@ TEST(Degenerate, SmallestVolumes) {
     for (const glm::ivec3& dims : {glm::ivec3(1), glm::ivec3(2), glm::ivec3(1, 9, 7), glm::ivec3(9, 1, 7),
                                    glm::ivec3(9, 7, 1), glm::ivec3(1, 1, 9)}) {
         for (const auto edges :
-             {EdgeEstimator::Off, EdgeEstimator::Quadratic, EdgeEstimator::March, EdgeEstimator::Cubic}) {
+             {EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic}) {
             Shot shot;
             shot.volume = sampled(dims, [](const glm::dvec3& x) { return x.x + x.y + x.z + 1; });
             shot.scene = two_tone(0, 3);

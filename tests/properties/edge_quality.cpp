@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kOrientations = 24;
 
-Settings with(EdgeEstimator edges, FootprintMode mode, WarpFamily family = WarpFamily::Edge) {
+Settings with(EdgeEstimator edges, FootprintMode mode, WarpFamily family = WarpFamily::Face) {
     Settings s;
     s.edges = edges;
     s.footprints = mode;
@@ -26,14 +26,19 @@ VolumePointer plane_volume(int size, const Pose& pose, const glm::dvec3& center)
     return sampled(glm::ivec3(size), [&](const glm::dvec3& x) { return blurred_step(glm::dot(pose.n, x - center)); });
 }
 
-/// Pictures of a uniform block from every pose's camera: what a pose's picture is divided by.
+/// Pictures of a uniform block from every pose's camera: what a pose's picture is divided by. Where kernels are cut at
+/// faces the grid's border is one.
 struct Strip {
     int size, width, height;  ///< voxels, pixels
     std::vector<Pose> list = poses(kOrientations);
     std::vector<Camera> cameras = {};
-    std::vector<Image> solid = {};
+    std::vector<Image> soft = {}, cut = {};
 
     glm::dvec3 center(const Pose& pose) const { return glm::dvec3((size - 1) / 2.0) + pose.shift; }
+
+    const Image& solid(const Settings& settings, std::size_t i) const {
+        return (draws_faces(settings) ? cut : soft)[i];
+    }
 
     /// `face_on`: along the plane's normal; else across it, the normal being screen +x.
     void prepare(bool face_on) {
@@ -41,8 +46,11 @@ struct Strip {
         for (const Pose& pose : list) {
             cameras.push_back(
                 camera_at(center(pose), face_on ? pose.n : pose.across, face_on ? pose.across : pose.n, height));
-            solid.push_back(render_tau({block, two_tone(0, 1), cameras.back(),
-                                        with(EdgeEstimator::Off, FootprintMode::Isotropic), width, height}));
+            const auto of = [&](const Settings& settings) {
+                return render_tau({block, two_tone(0, 1), cameras.back(), settings, width, height});
+            };
+            soft.push_back(of(with(EdgeEstimator::Off, FootprintMode::Isotropic)));
+            cut.push_back(of(Settings{}));
         }
     }
 };
@@ -141,27 +149,14 @@ struct UnityCollector {
 std::vector<Method> compared_methods() {
     using E = EdgeEstimator;
     using F = FootprintMode;
-    Settings curved;
-    curved.edge_shape = EdgeShape::Curved;
-    Settings weighted;
-    weighted.normalisation = Normalisation::Voxel;
-    Settings edge_weights;
-    edge_weights.normalisation = Normalisation::Edge;
-    return {{"default (march, procedural)", Settings{}},
+    return {{"default (cubic, faces)", Settings{}},
             {"off", with(E::Off, F::Isotropic)},
             {"draft", preset_named("draft").settings},
             {"balanced", preset_named("balanced").settings},
             {"accurate", preset_named("accurate").settings},
-            {"curved", curved},
-            {"weighted", weighted},
-            {"edge weights", edge_weights},
-            {"table", with(E::March, F::Table)},
-            {"table-lerp", with(E::March, F::TableLerp)},
-            {"warp2d", with(E::March, F::Warp2d)},
             {"taylor", with(E::Taylor, F::Procedural)},
-            {"quadratic", with(E::Quadratic, F::Procedural)},
-            {"cubic", with(E::Cubic, F::Procedural)},
-            {"paper family", with(E::March, F::Procedural, WarpFamily::Paper)},
+            {"march", with(E::March, F::Procedural)},
+            {"paper's curve", with(E::March, F::Procedural, WarpFamily::Paper)},
             {"paper's own (taylor, warp2d)", papers_own()}};
 }
 
@@ -170,10 +165,12 @@ EdgeProfiles plane_edges(const Settings& settings) {
     EdgeProfiles profiles;
     for (std::size_t i = 0; i < strip.list.size(); ++i) {
         const Pose& pose = strip.list[i];
-        const Image tau = render_tau({plane_volume(strip.size, pose, strip.center(pose)), two_tone(0, 1),
-                                      strip.cameras[i], settings, strip.width, strip.height});
+        const Image color = render({plane_volume(strip.size, pose, strip.center(pose)), two_tone(0, 1),
+                                    strip.cameras[i], settings, strip.width, strip.height})
+                                .color;
+        // Opacity: where the plane meets the grid's border matter is lost.
         for (int y = 0; y < strip.height; ++y)
-            add_profile(row_of(tau, y, &strip.solid[i]), (strip.width - 1) / 2.0, profiles);
+            add_profile(row_of(color, y, nullptr, 3), (strip.width - 1) / 2.0, profiles);
     }
     return profiles;
 }
@@ -211,7 +208,7 @@ EdgeProfiles torus_silhouettes(const Settings& settings) {
 
 Unity plane_unity(const Settings& settings, bool estimated) {
     constexpr int kSize = 22;
-    const reference::Footprints footprints(settings);
+    const reference::Footprints footprints(settings, kDeepFaceDepth);
     UnityCollector collector;
     std::mt19937 random(11);
     for (const Pose& pose : poses(kOrientations)) {
@@ -267,7 +264,9 @@ Unity picture_unity(const Settings& settings) {
         collector.begin();
         for (std::size_t p = 0; p < outer.pixels.size(); ++p) {
             const auto value = [&](const Image& image) { return static_cast<double>(image.pixels[p]); };
-            collector.add((value(outer) - value(inner)) / (value(large.solid[i]) - value(small.solid[i])) - 1);
+            collector.add((value(outer) - value(inner)) /
+                              (value(large.solid(settings, i)) - value(small.solid(settings, i))) -
+                          1);
         }
     }
     return collector.result();
@@ -275,7 +274,7 @@ Unity picture_unity(const Settings& settings) {
 
 SphereUnity sphere_unity(const Settings& settings, double radius) {
     constexpr int kSize = 22;
-    const reference::Footprints footprints(settings);
+    const reference::Footprints footprints(settings, kDeepFaceDepth);
     UnityCollector collector;
     std::mt19937 random(11);
     double raw = 0, normalised = 0;

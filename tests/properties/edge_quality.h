@@ -15,7 +15,7 @@ struct Method {
     Settings settings;
 };
 
-/// The default first; then plain splatting, the footprint modes, the `paper` family and the paper's own method.
+/// The default first; then plain splatting, the estimators, the paper's curve and the paper's own method.
 std::vector<Method> compared_methods();
 
 /// Planes seen edge-on at 24 random orientations, optical depth at 40 pixels per voxel.

@@ -51,10 +51,10 @@ void unity() {
             fmt::print("| {:<28} | {:<20} | {:7.4f} | {:11.4f} | {:7.4f} |\n", method.name, what, u.rms, u.mean_of_max,
                        u.max);
         };
-        const bool pointwise = method.name.starts_with("default") || method.name.starts_with("paper f");
+        const bool pointwise = method.name.starts_with("default") || method.name.starts_with("paper's c");
         if (pointwise) line("points, exact edges", plane_unity(method.settings, false));
         if (pointwise) line("points, estimated", plane_unity(method.settings, true));
-        const bool in_pictures = pointwise || method.name == "cubic" || method.name.starts_with("paper");
+        const bool in_pictures = pointwise || method.name.starts_with("paper");
         if (in_pictures) line("pictures", picture_unity(method.settings));
     }
     fmt::print("\nSpheres, estimated edges: sum of weights - 1, and two-tone data against the truth (rms)\n\n");
@@ -63,7 +63,7 @@ void unity() {
     fmt::print("|{:->7}:|{:-<30}|{:->8}:|{:->12}:|{:->8}:|{:->13}:|{:->11}:|\n", "", "", "", "", "", "", "");
     for (const double radius : {10.0, 5.0, 3.0}) {
         for (const Method& method : compared_methods()) {
-            if (!(method.name.starts_with("default") || method.name.starts_with("paper f") || method.name == "off"))
+            if (!(method.name.starts_with("default") || method.name.starts_with("paper's c") || method.name == "off"))
                 continue;
             const SphereUnity s = sphere_unity(method.settings, radius);
             fmt::print("| {:6} | {:<28} | {:7.4f} | {:11.4f} | {:7.4f} | {:12.4f} | {:10.4f} |\n", radius, method.name,

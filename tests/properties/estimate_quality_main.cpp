@@ -23,7 +23,7 @@ void estimates(double sd) {
         sd);
     fmt::print("\n| estimator  | shape   |  D rms |    max |  n rms |    max | without |\n");
     fmt::print("|------------|---------|-------:|-------:|-------:|-------:|--------:|\n");
-    for (const auto e : {EdgeEstimator::Taylor, EdgeEstimator::Quadratic, EdgeEstimator::March, EdgeEstimator::Cubic}) {
+    for (const auto e : {EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic}) {
         for (const double radius : {0.0, 10.0, 5.0, 3.0}) {
             double squares = 0, most = 0, angles = 0, widest = 0, count = 0, without = 0;
             for (const Pose& pose : poses(kOrientations)) {

@@ -60,8 +60,8 @@ TEST_P(MaxError, HoldsForTheLargePicture) {
 INSTANTIATE_TEST_SUITE_P(RealVolumes, MaxError,
                          testing::Values(Case{"hydrogen", "hydrogen/hydrogenatom.nhdr", 8, "oblique", 0.01, 3},
                                          Case{"nucleon", "nucleon/nucleon.nrrd", 140, "oblique", 0.005, 1},
-                                         Case{"walnut", "walnut_ct/walnut.nhdr", 8000, "oblique", 0.005, 4},
-                                         Case{"headsq", "headsq_ct/headsq.nhdr", 1150, "front", 0.004, 2}),
+                                         Case{"walnut", "walnut_ct/walnut.nhdr", 8000, "oblique", 0.01, 4},
+                                         Case{"headsq", "headsq_ct/headsq.nhdr", 1150, "front", 0.008, 2}),
                          [](const testing::TestParamInfo<Case>& parameter) {
                              return std::string(parameter.param.name);
                          });

@@ -15,7 +15,7 @@ struct Way {
 constexpr Way kWays[] = {
     {"Tiles", [](Shot&) {}},
     {"EveryPixel", [](Shot& s) { s.settings.pixels = PixelChoice::Every; }},
-    {"Layers", [](Shot& s) { s.settings.sheet_format = SheetFormat::Float; }},
+    {"Layers", [](Shot& s) { s.settings.sheet_format = SheetFormat::Layers; }},
     {"SlicedSheets", [](Shot& s) { s.settings.sheets = SheetCut::Sliced; }},
     {"Plain", [](Shot& s) { s.settings.edges = EdgeEstimator::Off; }},
     {"Shadows",
@@ -112,7 +112,7 @@ TEST(ReplayOfRays, RecordsNothingAgain) {
 
 TEST(ReplayOfCounts, AreThoseOfTheFirstTime) {
     Shot shot = torus_shot();
-    shot.settings.sheet_format = SheetFormat::Float;
+    shot.settings.sheet_format = SheetFormat::Layers;
     Renderer renderer = renderer_of(shot);
     picture(renderer, shot);
     renderer.count_fragments(true);

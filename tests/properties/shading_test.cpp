@@ -161,6 +161,7 @@ TEST(Fog, LeavesTheShareThatDepthSays) {
 
 TEST(Fog, LeavesTheBackgroundAndOpacityAsTheyAre) {
     Shot shot = torus_shot();
+    shot.settings.pixels = PixelChoice::Every;  // colours say which pixels are drawn
     shot.scene.background = {0.2, 0.5, 0.9};
     const Image clear = render(shot).color;
     shot.scene.effects.fog = Fog{{1, 1, 1}, 0.1, 5};

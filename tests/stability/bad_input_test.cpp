@@ -17,7 +17,6 @@
 #include "engine/viewer/preferences.h"
 #include "engine/volume/pack_volume.h"
 #include "engine/volume/packed_volume.h"
-#include "footprints/footprint_cache.h"
 #include "tests/unit/cli_program.h"
 #include "tests/unit/volume_test_files.h"
 
@@ -372,14 +371,8 @@ TEST_F(BadName, LyingHeadersAreRefusedUnderALimit) {
     EXPECT_THAT(result.err, AllOf(HasSubstr("8000000000"), HasSubstr("truncated"), testing::Not(HasSubstr("memory"))));
 }
 
-// Of no use is as none: these files only save time.
-TEST_F(BadInput, CachesAndPreferencesThatAreNoFiles) {
-    const edgesplat::EdgeBand band{.half_width = 1, .strength = 4};
-    const edgesplat::FootprintTableSize size{.width = 4, .height = 3, .distances = 3, .directions = 2};
-    const auto table = edgesplat::footprint_cache_file(folder_, band, size);
-    ASSERT_EQ(mkfifo(table.c_str(), 0600), 0);
-    const auto loaded = edgesplat::load_footprint_table(band, size, folder_);
-    EXPECT_FALSE(loaded.from_cache);
+// Of no use is as none.
+TEST_F(BadInput, PreferencesThatAreNoFiles) {
     for (const auto kind : {0, 1, 2}) {
         const auto path = folder_ / ("fly" + std::to_string(kind));
         if (kind == 0) std::filesystem::create_directory(path);

@@ -40,7 +40,7 @@ TEST(CompositingNumbers, TheSplatThatDrawsThemIsNamed) {
     // Past all checks of what comes in: a colour that is none.
     PassScene s = one_of_its_own();
     s.scene.materials[2].color = {1, kNaN, 1};
-    for (const SheetFormat format : {SheetFormat::Tiles, SheetFormat::Float}) {
+    for (const SheetFormat format : {SheetFormat::Tiles, SheetFormat::Layers}) {
         s.settings.sheet_format = format;
         const std::string said = said_of(s);
         EXPECT_TRUE(said.starts_with(format == SheetFormat::Tiles ? "5_draw_tiles: splat " : "5_draw_splats: splat "))

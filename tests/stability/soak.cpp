@@ -121,18 +121,14 @@ class Shots {
 
     Settings settings() {
         Settings s;
-        s.edges = one_of({EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::Quadratic, EdgeEstimator::March,
-                          EdgeEstimator::Cubic});
+        s.edges = one_of({EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic});
         s.footprints = one_of({FootprintMode::Isotropic, FootprintMode::Warp2d, FootprintMode::Procedural});
-        s.warp = one_of({WarpFamily::Edge, WarpFamily::Paper, WarpFamily::Face});
-        s.normalisation = one_of({Normalisation::Off, Normalisation::Edge, Normalisation::Voxel});
-        s.edge_shape = one_of({EdgeShape::Plane, EdgeShape::Curved});
+        s.warp = one_of({WarpFamily::Paper, WarpFamily::Face});
         s.sheets = one_of({SheetCut::Whole, SheetCut::Sliced});
-        s.sheet_format = one_of({SheetFormat::Half, SheetFormat::Float, SheetFormat::Tiles});
+        s.sheet_format = one_of({SheetFormat::Layers, SheetFormat::Tiles});
         s.sheet_spacing = one_of({0.25, 0.5, 1.0});
         s.saturation = one_of({0.99, 0.999, 1.0});
         s.cull_buried = chance(0.5);
-        if (s.edge_shape == EdgeShape::Curved) s.edge_half_width = 1;
         return s;
     }
 

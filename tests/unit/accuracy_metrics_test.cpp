@@ -174,9 +174,9 @@ TEST(AccuracyConfigurations, TheModelForgetsTheMethod) {
     a.saturation = 0.98;
     EXPECT_EQ(model_key(a), model_key(b));
     EXPECT_NE(settings_key(a), settings_key(b));
-    b.edge_strength = 4;
+    b.edges = EdgeEstimator::March;
     EXPECT_NE(model_key(a), model_key(b));
-    a.edges = b.edges = EdgeEstimator::Off;  // then strength is of no use
+    a.edges = b.edges = EdgeEstimator::Off;
     EXPECT_EQ(model_key(a), model_key(b));
 }
 
@@ -224,7 +224,6 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
     const SurfacePoints points = surface_points(analytic, 20);
     Settings plain, sharp;
     plain.edges = EdgeEstimator::Off;
-    sharp.edge_shape = EdgeShape::Curved;
     const EdgeFigures off = edge_figures({volume, scene, plain}, points.points);
     const EdgeFigures on = edge_figures({volume, scene, sharp}, points.points);
     EXPECT_EQ(off.measured, 20);

@@ -19,7 +19,7 @@ TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
     const ProgramRun plan = run("render builtin:sphere:24 --size 40x30 --explain");
     ASSERT_EQ(plan.status, 0) << plan.err;
     for (const char* text : {"5_draw_tiles", "edge field", "light: lights[0] is a headlight", "at most at once",
-                             "splat record, 12 bytes", "left out", "curved edges", "--edge-shape curved"})
+                             "splat record, 20 bytes", "left out", "sliced sheets", "--sheets sliced"})
         EXPECT_THAT(plan.out, HasSubstr(text));
     EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));
     for (const char* text : {" REFINED=1", " GROUP=16", " ISO_COUNT=1"})
@@ -66,7 +66,7 @@ TEST_F(CliExplain, APictureBeyondTheBudgetIsRefusedWithWhatWouldFit) {
 
 TEST_F(CliExplain, EffectsAreMeasured) {
     const ProgramRun done =
-        run("effects builtin:sphere:20 --size 24x24 --repeats 1 --only light,fog,'half sheets' --markdown -q");
+        run("effects builtin:sphere:20 --size 24x24 --repeats 1 --only light,fog,'sliced sheets' --markdown -q");
     ASSERT_EQ(done.status, 0) << done.err;
     EXPECT_THAT(done.out, HasSubstr("| effect"));
     EXPECT_THAT(done.out, HasSubstr("| light "));

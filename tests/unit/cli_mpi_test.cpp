@@ -236,7 +236,7 @@ TEST_F(CliMpi, RefusesWhatIsNotDivided) {
     };
     says("info builtin:torus", "info is not divided among ranks");
     says("render builtin:torus:20 -o a.exr --renderer raycast", "--renderer raycast draws no sheets");
-    says("render builtin:torus:20 -o a.exr --sheet-format float", "--sheet-format tiles");
+    says("render builtin:torus:20 -o a.exr --sheet-format layers", "--sheet-format tiles");
     EXPECT_THAT(good(2, "--version").out, HasSubstr("edgesplat"));
 }
 

@@ -55,7 +55,7 @@ TEST_F(CliReference, PicturesSayWhoMadeThem) {
         EXPECT_GT(frame["seconds"], 0);
         EXPECT_GT(frame["samples"], 1000);
         EXPECT_EQ(frame["voxels"], 24 * 24 * 24);
-        EXPECT_EQ(frame["settings"]["edges"], "march");
+        EXPECT_EQ(frame["settings"]["edges"], "cubic");
         EXPECT_FALSE(frame.contains("splats_drawn"));
     }
 }

@@ -77,7 +77,25 @@ TEST_F(CliRender, CompareIsTwoPicturesAndADivider) {
     const auto statistics = nlohmann::json::parse(text_of(folder_ / "both.json"));
     ASSERT_EQ(statistics["frames"].size(), 2U);
     EXPECT_EQ(statistics["frames"][0]["name"], "plain");
-    EXPECT_EQ(statistics["frames"][1]["settings"]["edges"], "march");
+    EXPECT_EQ(statistics["frames"][1]["settings"]["edges"], "cubic");
+}
+
+TEST_F(CliRender, CompareIsAsManyPicturesAsAreNamed) {
+    render("builtin:sphere:24 -o all.exr --size 40x32 --compare plain,raycast --raycast-filter cubic --json all.json");
+    render("builtin:sphere:24 -o rays.exr --size 40x32 --renderer raycast --raycast-filter cubic");
+    render("builtin:sphere:24 -o edges.exr --size 40x32");
+    const Image all = read_image(folder_ / "all.exr").image;
+    const Image rays = read_image(folder_ / "rays.exr").image;
+    const Image edges = read_image(folder_ / "edges.exr").image;
+    ASSERT_EQ(all.width, 124);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 40; ++x) {
+            ASSERT_EQ(all.at(42 + x, y, 0), rays.at(x, y, 0)) << x << ',' << y;
+            ASSERT_EQ(all.at(84 + x, y, 0), edges.at(x, y, 0)) << x << ',' << y;
+        }
+    const auto statistics = nlohmann::json::parse(text_of(folder_ / "all.json"));
+    ASSERT_EQ(statistics["frames"].size(), 3U);
+    EXPECT_EQ(statistics["frames"][1]["name"], "raycast");
 }
 
 TEST_F(CliRender, StatisticsAreComplete) {

@@ -115,7 +115,7 @@ INSTANTIATE_TEST_SUITE_P(Cli, CliGoodScene, testing::ValuesIn(scenes_in("good"))
 TEST_F(CliScene, ASceneSaysWhatOptionsSay) {
     const std::string options =
         "--iso 0.4,0.6 --color 1,0,0 --color 0,1,0 --extinction 0.1,5 --background 0.1,0.1,0.2 --light 1,-1,1 "
-        "--ambient 0.3 --eye 40,-50,30 --target 12,12,12 --up 0,0.1,1 --fov 35 --size 24x20 --edges quadratic "
+        "--ambient 0.3 --eye 40,-50,30 --target 12,12,12 --up 0,0.1,1 --fov 35 --size 24x20 --edges march "
         "--sheets sliced --sheet-spacing 0.5 --keep-buried --samples 1 --threshold 0.3 --box-filter";
     good("render builtin:sphere:24 -o a.exr " + options);
     write("a.toml", R"(iso_values = [0.4, 0.6]
@@ -140,7 +140,7 @@ target = [12, 12, 12]
 up = [0, 0.1, 1]
 fov = 35
 [quality]
-edges = "quadratic"
+edges = "march"
 sheets = "sliced"
 sheet_spacing = 0.5
 cull_buried = false
@@ -155,10 +155,23 @@ file = "b.exr"
         "--set volume.threshold=0.3 --set volume.box_filter=true --set materials[0].color=1,0,0 "
         "--set materials[0].extinction=0.1 --set materials[1].color=0,1,0 --set materials[1].extinction=5 "
         "--set lights[0].kind=directional --set lights[0].direction=1,-1,1 --set camera.eye=40,-50,30 "
-        "--set camera.target=12,12,12 --set camera.up=0,0.1,1 --set camera.fov=35 --set quality.edges=quadratic "
+        "--set camera.target=12,12,12 --set camera.up=0,0.1,1 --set camera.fov=35 --set quality.edges=march "
         "--set quality.sheets=sliced --set quality.sheet_spacing=0.5 --set quality.cull_buried=false "
         "--set output.size=24,20");
     EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
+}
+
+TEST_F(CliScene, OldPicturesThatNameWhatIsNoMoreAreToldWhatToWrite) {
+    const ImageMetadata metadata{{"edgesplat:scene", R"([volume]
+path = "builtin:sphere:24"
+[quality]
+warp = "edge"
+edge_strength = 16
+)"}};
+    write("old.png", encode_png(Image(4, 4, 3), metadata));
+    EXPECT_THAT(run("rerun old.png --check").err,
+                AllOf(HasSubstr("old.png (edgesplat:scene)"), HasSubstr("\"edge\" is no more; write face"),
+                      HasSubstr("quality.edge_strength: is no more")));
 }
 
 TEST_F(CliScene, OptionsOverrideTheScene) {

@@ -1,5 +1,5 @@
-// Compares with tabulated values computed independently. EDGESPLAT_MATH names the folder that holds reference.json and
-// edge_warp.json; without it these tests are skipped.
+// Compares with tabulated values computed independently. EDGESPLAT_MATH names the folder that holds reference.json;
+// without it these tests are skipped.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,14 +22,11 @@ class Reference : public testing::Test {
     void SetUp() override {
         const char* folder = std::getenv("EDGESPLAT_MATH");
         if (!folder) GTEST_SKIP() << "EDGESPLAT_MATH does not name a folder of reference values";
-        for (const char* name : {"reference.json", "edge_warp.json"}) {
-            std::ifstream in(std::filesystem::path(folder) / name);
-            ASSERT_TRUE(in) << folder << "/" << name;
-            values_[name] = json::parse(in);
-        }
+        std::ifstream in(std::filesystem::path(folder) / "reference.json");
+        ASSERT_TRUE(in) << folder;
+        values_ = json::parse(in);
     }
-    const json& reference() const { return values_["reference.json"]; }
-    const json& edge() const { return values_["edge_warp.json"]; }
+    const json& reference() const { return values_; }
     json values_;
 };
 
@@ -59,29 +56,6 @@ TEST_F(Reference, PaperProfile) {
             EXPECT_NEAR(paper_map(x[i], q), map[i], 1e-7);  // infinite slope at the knots
             EXPECT_NEAR(paper_map(x[i], smooth), rq[i], 1e-12);
         }
-    }
-}
-
-TEST_F(Reference, EdgeWarp) {
-    const Numbers s = edge()["warp"]["s"];
-    for (const json& set : edge()["warp"]["sets"]) {
-        const EdgeBand band = {set["a"], set["k"]};
-        const Numbers M = set["M"], dM = set["dM"];
-        for (std::size_t i = 0; i < s.size(); ++i) {
-            EXPECT_NEAR(edge_warp(s[i], band), M[i], 1e-11);
-            EXPECT_NEAR(edge_warp_slope(s[i], band), dM[i], 1e-11);
-        }
-    }
-}
-
-TEST_F(Reference, EdgeFootprints) {
-    const Numbers x = edge()["footprint"]["x"];
-    for (const json& item : edge()["footprint"]["items"]) {
-        const Edge e = {item["d"], {item["a"], item["k"]}};
-        const double c = std::cos(item["theta_deg"].get<double>() * 3.14159265358979324 / 180);
-        for (std::size_t i = 0; i < x.size(); ++i)
-            for (std::size_t j = 0; j < x.size(); ++j)
-                EXPECT_NEAR(exact_footprint(ray_through(x[i], x[j], c), e), item["F"][i][j].get<double>(), 2e-10);
     }
 }
 

@@ -8,11 +8,10 @@
 #include <random>
 
 #include "footprints/face.h"
-#include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
 #include "tests/unit/footprints_samples.h"
 
-// What GLSL brings: float functions, a sampler with hardware filtering, the types it needs.
+// What GLSL brings: float functions.
 namespace glsl {
 
 using edgesplat::shader::FootprintParams;
@@ -49,33 +48,6 @@ inline float acos(float v) {
     return std::acos(v);
 }
 
-struct vec3 {
-    float x, y, z;
-    template <typename X, typename Y, typename Z>
-    vec3(X a, Y b, Z c) : x(static_cast<float>(a)), y(static_cast<float>(b)), z(static_cast<float>(c)) {}
-};
-struct Texel {
-    float r;
-};
-using sampler2DArray = const edgesplat::FootprintTable*;
-
-inline Texel textureLod(sampler2DArray table, const vec3& at, double) {
-    const auto& size = table->size();
-    const float u = clamp(at.x * static_cast<float>(size.width) - 0.5f, 0, static_cast<float>(size.width - 1));
-    const float v = clamp(at.y * static_cast<float>(size.height) - 0.5f, 0, static_cast<float>(size.height - 1));
-    const int i = std::min(static_cast<int>(u), size.width - 2), j = std::min(static_cast<int>(v), size.height - 2);
-    const int layer = static_cast<int>(at.z + 0.5f);
-    EXPECT_GE(layer, 0);
-    EXPECT_LT(layer, size.distances * size.directions);
-    const auto texel = [&](int x, int y) {
-        return edgesplat::float_from_half(
-            table->texels()[static_cast<std::size_t>((layer * size.height + y) * size.width + x)]);
-    };
-    const float fu = u - static_cast<float>(i), fv = v - static_cast<float>(j);
-    return {(1 - fv) * ((1 - fu) * texel(i, j) + fu * texel(i + 1, j)) +
-            fv * ((1 - fu) * texel(i, j + 1) + fu * texel(i + 1, j + 1))};
-}
-
 // GLSL's literals are float, C++'s are double: results are rounded to float wherever they are stored.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
@@ -90,22 +62,10 @@ const uint FACE_PIECES = 2;
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
-namespace nodes8 {
-const uint NODES = 8;
-#include "shaders/lib/footprint.glsl"
-}  // namespace nodes8
-#undef EDGESPLAT_FOOTPRINT_GLSL
-#undef EDGESPLAT_KERNEL_GLSL
 namespace nodes10 {
 const uint NODES = 10;
 #include "shaders/lib/footprint.glsl"
 }  // namespace nodes10
-#undef EDGESPLAT_FOOTPRINT_GLSL
-#undef EDGESPLAT_KERNEL_GLSL
-namespace nodes16 {
-const uint NODES = 16;
-#include "shaders/lib/footprint.glsl"
-}  // namespace nodes16
 #pragma GCC diagnostic pop
 
 }  // namespace glsl
@@ -115,12 +75,9 @@ namespace {
 
 using samples::Errors;
 using samples::rays;
-namespace eight = glsl::nodes8;
 namespace ten = glsl::nodes10;
 
 const ten::Slice kWhole{-1e9F, 1e9F};
-const eight::Slice kWholeEight{-1e9F, 1e9F};
-constexpr float kNoFace = 100;  // D2 of an edge without a second face
 
 struct Float {
     float rho2, pn, un, d;
@@ -136,68 +93,9 @@ Ray turned(const Ray& ray, std::size_t i) {
     return {ray.rho2, ray.pn, i % 2 == 0 ? ray.un : -ray.un};
 }
 
-glsl::FootprintParams params_of(const FootprintTable& table, const PaperShape& shape = {}) {
-    glsl::FootprintParams p{};
-    p.half_width = static_cast<float>(table.band().half_width);
-    p.strength = static_cast<float>(table.band().strength);
-    p.table_extent = static_cast<float>(table.extent());
-    p.table_width = static_cast<float>(table.size().width);
-    p.table_height = static_cast<float>(table.size().height);
-    p.table_distances = static_cast<float>(table.size().distances);
-    p.table_directions = static_cast<float>(table.size().directions);
-    p.paper_inset = static_cast<float>(shape.inset);
-    p.paper_rise = static_cast<float>(shape.rise);
-    p.paper_smooth = shape.curve == PaperCurve::Smooth;
-    return p;
-}
-
-const FootprintTable& table() {
-    static const FootprintTable built = FootprintTable::build({1.3, 12});
-    return built;
-}
-
-TEST(FootprintShader, MirrorsTheTable) {
-    const auto params = params_of(table());
-    Errors nearest, lerp;
-    int jumps = 0;
-    for (const auto& [d, ray] : rays(20000, -3.2, 3.2, 20)) {
-        const Float f(ray, d);
-        lerp.add(static_cast<double>(ten::footprint_table_lerp(&table(), f.rho2, f.pn, f.un, f.d, params)),
-                 table().lerp(ray, d));
-        // Rounding may pick the neighbouring layer where two are equally near.
-        const double error =
-            std::abs(static_cast<double>(ten::footprint_table_nearest(&table(), f.rho2, f.pn, f.un, f.d, params)) -
-                     table().nearest(ray, d));
-        if (error > 1e-4) ++jumps;
-    }
-    EXPECT_LE(lerp.largest(), 3e-4);
-    EXPECT_LE(jumps, 5);
-}
-
-TEST(FootprintShader, MirrorsTheQuadratureAndTheShortCut) {
-    const auto params = params_of(table());
-    Errors single, wall, warp2d;
-    for (const auto& [d, ray] : rays(20000, -3.2, 3.2, 21)) {
-        const Float f(ray, d);
-        const Edge edge = {d, {1.3, 12}};
-        const int faces = ten::footprint_faces(f.d, kNoFace, params);
-        EXPECT_EQ(faces, std::abs(d) < 2.9 ? 1 : 0);
-        single.add(static_cast<double>(
-                       eight::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, faces, kWholeEight, params)),
-                   procedural_footprint(ray, edge));
-        warp2d.add(static_cast<double>(ten::footprint_warp2d(f.rho2, f.pn, f.un, f.d, kWhole, params)),
-                   warp2d_footprint(ray, edge));
-        if (d < 0 || d > 2.8) continue;
-        const float second = f.pn * f.pn + 0.2f;
-        const Edge two = wall_edge(d, static_cast<double>(second), {1.3, 12});
-        const int two_faces = ten::footprint_faces(f.d, second, params);
-        wall.add(static_cast<double>(
-                     eight::footprint_procedural(f.rho2, f.pn, f.un, f.d, second, two_faces, kWholeEight, params)),
-                 procedural_footprint(ray, two));
-    }
-    EXPECT_LE(single.largest(), 1e-4);
-    EXPECT_LE(wall.largest(), 1e-4);
-    EXPECT_LE(warp2d.largest(), 1e-4);
+glsl::FootprintParams params_of(const PaperShape& shape) {
+    return {static_cast<float>(shape.inset), static_cast<float>(shape.rise), shape.curve == PaperCurve::Smooth,
+            static_cast<float>(kPaperReach)};
 }
 
 TEST(FootprintShader, MirrorsFaces) {
@@ -223,9 +121,10 @@ TEST(FootprintShader, MirrorsFaces) {
                           glm::dot(p, slope),
                           glm::dot(p, turn)};
         const double thickness = i % 3 == 0 ? distance + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
-        const FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness);
-        const four::FaceCut got =
-            four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)), thickness < 1e8 ? f(thickness) : 1e9F);
+        const double deepest = i % 2 == 0 ? kFaceDepth : kDeepFaceDepth;
+        const FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest);
+        const four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
+                                                 thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
         EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
         EXPECT_GE(static_cast<double>(got.shift + got.radius), 1.59);
@@ -246,7 +145,7 @@ TEST(FootprintShader, MirrorsFaces) {
 TEST(FootprintShader, MirrorsThePapersWarp) {
     for (PaperCurve curve : {PaperCurve::Cosine, PaperCurve::Smooth}) {
         const PaperShape shape = {0.3, 0.05, curve};
-        const auto params = params_of(table(), shape);
+        const auto params = params_of(shape);
         Errors procedural, warp2d;
         for (const auto& [d, ray] : rays(20000, -0.5, 1.8, 22)) {
             const Float f(ray, d);
@@ -262,72 +161,37 @@ TEST(FootprintShader, MirrorsThePapersWarp) {
     }
 }
 
-TEST(FootprintShader, MirrorsCurvedEdges) {
-    const auto params = params_of(table());
-    std::mt19937 random(23);
-    std::uniform_real_distribution<> bend(-0.5, 0.5);
-    Errors curved;
-    std::size_t i = 0;
-    for (const auto& [d, plain_ray] : rays(20000, -2.9, 2.9, 23)) {
-        const Ray ray = turned(plain_ray, i++);
-        const Float f(ray, d);
-        const float c = static_cast<float>(bend(random));
-        const Edge edge = {d, {1.3, 12}, std::numeric_limits<double>::infinity(), static_cast<double>(c)};
-        curved.add(static_cast<double>(glsl::nodes16::footprint_curved(f.rho2, f.pn, f.un, f.d, c,
-                                                                       glsl::nodes16::Slice{-1e9F, 1e9F}, params)),
-                   procedural_footprint(ray, edge, 16));
-    }
-    EXPECT_LE(curved.largest(), 1e-4);
-}
-
 TEST(FootprintShader, MirrorsSlicesOfEveryFootprint) {
     namespace four = glsl::nodes4;
-    const auto params = params_of(table(), {0.3, 0.05, PaperCurve::Smooth});
+    const PaperShape shape = {0.3, 0.05, PaperCurve::Smooth};
+    const auto params = params_of(shape);
     std::mt19937 random(24);
-    std::uniform_real_distribution<> bend(-0.5, 0.5), place(-3, 2.75);
-    Errors plain, plane, wall, curved, warp2d, paper;
+    std::uniform_real_distribution<> place(-3, 2.75);
+    Errors plain, warp2d, paper;
     std::size_t i = 0;
-    for (const auto& [d, plain_ray] : rays(20000, -2.9, 2.9, 24)) {
+    for (const auto& [d, plain_ray] : rays(20000, -0.5, 1.8, 24)) {
         const Ray ray = turned(plain_ray, i++);
         const Float f(ray, d);
-        const float c = static_cast<float>(bend(random)), low = static_cast<float>(place(random));
+        const float low = static_cast<float>(place(random));
         const four::Slice s{low, low + 0.25F};
         const Slice slice = {static_cast<double>(s.low), static_cast<double>(s.high)};
-        const EdgeBand band = {1.3, 12};
-        const Edge bent = {d, band, std::numeric_limits<double>::infinity(), static_cast<double>(c)};
+        const PaperEdge edge{d, shape};
         const auto value = [](float v) { return static_cast<double>(v); };
         plain.add(value(four::footprint_isotropic(f.rho2, s)), sliced_kernel_footprint(ray.rho2, slice));
-        plane.add(value(four::footprint_procedural(f.rho2, f.pn, f.un, f.d, kNoFace, 1, s, params)),
-                  procedural_footprint(ray, Edge{d, band}, 4, slice));
-        warp2d.add(value(four::footprint_warp2d(f.rho2, f.pn, f.un, f.d, s, params)),
-                   warp2d_footprint(ray, Edge{d, band}, slice));
-        curved.add(value(four::footprint_curved(f.rho2, f.pn, f.un, f.d, c, s, params)),
-                   procedural_footprint(ray, bent, 4, slice));
-        if (d < 1.8) {
-            paper.add(value(four::footprint_paper_procedural(f.rho2, f.pn, f.un, f.d, s, params)),
-                      procedural_footprint(ray, PaperEdge{d, {0.3, 0.05, PaperCurve::Smooth}}, 4, slice));
-        }
-        if (d < 0 || d > 2.8) continue;
-        const float second = f.pn * f.pn + 0.2f;
-        wall.add(value(four::footprint_procedural(f.rho2, f.pn, f.un, f.d, second,
-                                                  four::footprint_faces(f.d, second, params), s, params)),
-                 procedural_footprint(ray, wall_edge(d, value(second), band), 4, slice));
+        warp2d.add(value(four::footprint_paper_warp2d(f.rho2, f.pn, f.un, f.d, s, params)),
+                   warp2d_footprint(ray, edge, slice));
+        paper.add(value(four::footprint_paper_procedural(f.rho2, f.pn, f.un, f.d, s, params)),
+                  procedural_footprint(ray, edge, 4, slice));
     }
-    std::printf(
-        "slices, float32 against double, %% of the peak: plain %.4f, plane %.4f, wall %.4f, curved %.4f, "
-        "warp2d %.4f, paper %.4f\n",
-        100 * plain.largest(), 100 * plane.largest(), 100 * wall.largest(), 100 * curved.largest(),
-        100 * warp2d.largest(), 100 * paper.largest());
+    std::printf("slices, float32 against double, %% of the peak: plain %.4f, warp2d %.4f, paper %.4f\n",
+                100 * plain.largest(), 100 * warp2d.largest(), 100 * paper.largest());
     EXPECT_LE(plain.largest(), 1e-5);
-    EXPECT_LE(plane.largest(), 1e-4);
-    EXPECT_LE(wall.largest(), 1e-4);
-    EXPECT_LE(curved.largest(), 1e-4);
     EXPECT_LE(warp2d.largest(), 1e-4);
     EXPECT_LE(paper.largest(), 5e-4);
 }
 
 TEST(FootprintShader, GivesNumbersForEveryInput) {
-    const auto params = params_of(table());
+    const auto params = params_of({});
     for (float rho2 : {0.0f, 1e-12f, 2.56f, 9.0f})
         for (float pn : {-3.0f, 0.0f, 1e-9f, 1.6f})  // also beyond what rho allows
             for (float un : {-1.0f, -1e-8f, 0.0f, 1.0f, 1.0000001f})
@@ -338,16 +202,7 @@ TEST(FootprintShader, GivesNumbersForEveryInput) {
                             EXPECT_TRUE(f >= 0 && f < 4) << f << " at " << rho2 << " " << pn << " " << un << " " << d
                                                          << " slice " << s.low << " " << s.high;
                         };
-                        for (float second : {0.0f, 0.6f, 1.5f, kNoFace})
-                            check(ten::footprint_procedural(rho2, pn, un, d, second,
-                                                            ten::footprint_faces(d, second, params), s, params));
-                        // -1e-5 and less is where curved edges are taken for planes; 2 / R is more than is ever drawn.
-                        for (float c : {0.0f, -0.0f, 1e-9f, 9e-6f, -9e-6f, 0.1f, -0.1f, 0.5f, -0.5f, 1.25f})
-                            check(ten::footprint_curved(rho2, pn, un, d, c, s, params));
                         check(ten::footprint_isotropic(rho2, s));
-                        check(ten::footprint_warp2d(rho2, pn, un, d, s, params));
-                        check(ten::footprint_table_nearest(&table(), rho2, pn, un, d, params));
-                        check(ten::footprint_table_lerp(&table(), rho2, pn, un, d, params));
                         check(ten::footprint_paper_warp2d(rho2, pn, un, d, s, params));
                         check(ten::footprint_paper_procedural(rho2, pn, un, d, s, params));
                     }

@@ -285,7 +285,7 @@ TEST(SceneFile, NumbersByKey) {
     d.effects.clip.keep.resize(1);
     d.iso_values = {1, 2};
     for (const char* key : {"effects.fog.density", "effects.clip.keep[0].point[1]", "iso_values[0]", "camera.fov",
-                            "ambient", "lights[0].intensity", "effects.samples", "quality.edge_strength"}) {
+                            "ambient", "lights[0].intensity", "effects.samples", "quality.sheet_spacing"}) {
         set_number(d, key, 2);
         EXPECT_EQ(number_at(d, key), 2) << key;
     }

@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
 #include <random>
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 
 #include "engine/error.h"
+#include "engine/scene/removed.h"
 #include "tests/unit/refusal.h"
 
 namespace edgesplat {
@@ -67,12 +68,8 @@ TEST(Ladder, EnumsHaveAllTheirNames) {
     expect_names("edges", edge_estimator_names());
     expect_names("footprints", footprint_mode_names());
     expect_names("warp", warp_family_names());
-    expect_names("edge-shape", edge_shape_names());
-    expect_names("normalise", normalisation_names());
-    expect_names("table-size", table_size_names());
     expect_names("sheets", sheet_cut_names());
     expect_names("sheet-format", sheet_format_names());
-    expect_names("accumulation", accumulation_names());
 }
 
 TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
@@ -89,6 +86,24 @@ TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
             EXPECT_THAT(message, HasSubstr(std::string(value))) << knob.name;
         for (const std::string_view bad : {"", " ", "Off", "WHOLE", "march "})
             EXPECT_NE(refusal([&] { knob.set(settings, bad); }), "") << knob.name << " '" << bad << "'";
+    }
+}
+
+TEST(Ladder, StepsThatAreNoMoreSayWhatToWrite) {
+    for (const auto& [knob, step, instead] : {std::tuple{"warp", "edge", "write face"},
+                                              {"edges", "quadratic", "write march"},
+                                              {"sheet-format", "half", "write layers"},
+                                              {"sheet-format", "float", "write layers"},
+                                              {"footprints", "table", "write procedural"},
+                                              {"footprints", "table-lerp", "write procedural"}}) {
+        Settings settings;
+        EXPECT_THAT(refusal([&] { knob_named(knob).set(settings, step); }),
+                    AllOf(HasSubstr(step), HasSubstr("is no more"), HasSubstr(instead)));
+    }
+    for (const Knob& knob : ladder()) {
+        EXPECT_EQ(removed_knob(knob.name), "") << knob.name;
+        for (const std::string_view value : values_of(knob))
+            EXPECT_EQ(removed_step(knob.name, value), "") << knob.name << " " << value;
     }
 }
 
@@ -178,11 +193,11 @@ TEST(Presets, AreValidOrderedAndFoundByName) {
 TEST(Difference, NamesWhatDiffersAndNothingElse) {
     EXPECT_EQ(difference({}), "");
     Settings settings;
-    settings.edges = EdgeEstimator::Cubic;
+    settings.edges = EdgeEstimator::March;
     settings.sheet_spacing = 0.5;
-    EXPECT_EQ(difference(settings), "edges=cubic sheet-spacing=0.5");
+    EXPECT_EQ(difference(settings), "edges=march sheet-spacing=0.5");
     EXPECT_EQ(difference(settings, settings), "");
-    EXPECT_EQ(difference({}, settings), "edges=march sheet-spacing=0.25");
+    EXPECT_EQ(difference({}, settings), "edges=cubic sheet-spacing=0.25");
     // What it says is enough to set it.
     std::mt19937 random(2);
     for (int i = 0; i < 200; ++i) {
@@ -207,28 +222,12 @@ TEST(DrawnAs, OnceIsEnough) {
     EXPECT_EQ(drawn_as({}), Settings{});
 }
 
-TEST(DrawnAs, TablesHoldOnlyWholeFootprintsOfPlaneEdges) {
-    for (const FootprintMode mode : {FootprintMode::Table, FootprintMode::TableLerp}) {
-        Settings settings;
-        settings.footprints = mode;
-        settings.table_size = TableSize::Fine;
-        EXPECT_EQ(drawn_as(settings), settings);
-        const auto drawn_with = [&](const std::function<void(Settings&)>& change) {
-            Settings changed = settings;
-            change(changed);
-            const Settings drawn = drawn_as(changed);
-            EXPECT_EQ(drawn.table_size, TableSize::Medium) << "a table that is not looked up has no size";
-            return drawn.footprints;
-        };
-        EXPECT_EQ(drawn_with([](Settings& s) { s.sheets = SheetCut::Sliced; }), FootprintMode::Procedural);
-        EXPECT_EQ(drawn_with([](Settings& s) { s.edge_shape = EdgeShape::Curved; }), FootprintMode::Procedural);
-        EXPECT_EQ(drawn_with([](Settings& s) { s.warp = WarpFamily::Paper; }), FootprintMode::Procedural);
-        EXPECT_EQ(drawn_with([](Settings& s) { s.edges = EdgeEstimator::Off; }), FootprintMode::Isotropic);
-    }
-    Settings flat;
-    flat.footprints = FootprintMode::Warp2d;
-    flat.sheets = SheetCut::Sliced;
-    EXPECT_EQ(drawn_as(flat), flat) << "the short cut is sliced as it is";
+TEST(DrawnAs, TheShortCutIsThePapersAlone) {
+    Settings settings = papers_own();
+    settings.sheets = SheetCut::Sliced;
+    EXPECT_EQ(drawn_as(settings), settings) << "and it is sliced as it is";
+    settings.warp = WarpFamily::Face;
+    EXPECT_EQ(drawn_as(settings).footprints, FootprintMode::Procedural);
 }
 
 TEST(DrawnAs, KnobsWithoutASayAreDropped) {
@@ -236,41 +235,18 @@ TEST(DrawnAs, KnobsWithoutASayAreDropped) {
     settings.edges = EdgeEstimator::Off;
     settings.footprints = FootprintMode::Warp2d;
     settings.warp = WarpFamily::Paper;
-    settings.edge_half_width = 0.8;
-    settings.edge_strength = 4;
-    settings.edge_shape = EdgeShape::Curved;
-    settings.normalisation = Normalisation::Voxel;
     settings.sheet_spacing = 2;
-    settings.sheet_format = SheetFormat::Float;
-    settings.accumulation = SheetFormat::Half;
+    settings.sheet_format = SheetFormat::Layers;
     Settings plain;
-    plain.sheet_format = SheetFormat::Float;
+    plain.sheet_format = SheetFormat::Layers;
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
     plain.sheet_spacing = 2;
-    plain.accumulation = SheetFormat::Half;
     EXPECT_EQ(drawn_as(settings), plain) << difference(drawn_as(settings));
     // Isotropic footprints of whatever edges are the same picture.
     settings.edges = EdgeEstimator::Cubic;
     settings.footprints = FootprintMode::Isotropic;
     EXPECT_EQ(drawn_as(settings), plain);
-    // The paper's family knows neither band nor shape.
-    settings.footprints = FootprintMode::Procedural;
-    const Settings paper = drawn_as(settings);
-    EXPECT_EQ(paper.warp, WarpFamily::Paper);
-    EXPECT_EQ(paper.edge_strength, Settings{}.edge_strength);
-    EXPECT_EQ(paper.edge_shape, EdgeShape::Plane);
-    EXPECT_EQ(paper.normalisation, Normalisation::Off);
-    // Curved kernels sum to one as they are; the short cut knows planes only, and those are weighted.
-    settings.warp = WarpFamily::Edge;
-    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Off);
-    EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Curved);
-    settings.normalisation = Normalisation::Edge;
-    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Edge);
-    settings.normalisation = Normalisation::Voxel;
-    settings.footprints = FootprintMode::Warp2d;
-    EXPECT_EQ(drawn_as(settings).normalisation, Normalisation::Voxel);
-    EXPECT_EQ(drawn_as(settings).edge_shape, EdgeShape::Plane);
 }
 
 TEST(DrawnAs, AKnobThatMattersNotChangesNothing) {

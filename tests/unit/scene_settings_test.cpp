@@ -62,12 +62,10 @@ TEST(Settings, NamesTheWrongField) {
         });
     };
     EXPECT_NO_THROW(validate(Settings{}));
-    for (const double bad : {0.0, 3.1, kNan}) {
-        EXPECT_THAT(with([&](Settings& s) { s.edge_half_width = bad; }),
-                    AllOf(HasSubstr("edge_half_width"), HasSubstr("(0, 3]")));
+    for (const double bad : {0.0, 16.1, kNan}) {
+        EXPECT_THAT(with([&](Settings& s) { s.sheet_spacing = bad; }),
+                    AllOf(HasSubstr("sheet_spacing"), HasSubstr("[0.05, 16]")));
     }
-    EXPECT_THAT(with([](Settings& s) { s.edge_strength = 0.5; }), HasSubstr("edge_strength"));
-    EXPECT_THAT(with([](Settings& s) { s.sheet_spacing = 0; }), HasSubstr("sheet_spacing"));
     EXPECT_THAT(with([](Settings& s) { s.saturation = 0; }), HasSubstr("saturation"));
     EXPECT_THAT(with([](Settings& s) { s.saturation = kNan; }), HasSubstr("saturation"));
 }
@@ -81,7 +79,7 @@ TEST(Settings, NamesGoThereAndBack) {
         EXPECT_EQ(name_of(warp_family_named(name)), name);
     for (const auto name : sheet_format_names())
         EXPECT_EQ(name_of(sheet_format_named(name)), name);
-    EXPECT_EQ(footprint_mode_named("table-lerp"), FootprintMode::TableLerp);
+    EXPECT_EQ(footprint_mode_named("warp2d"), FootprintMode::Warp2d);
     EXPECT_THAT(refusal([] { edge_estimator_named("sobel"); }), AllOf(HasSubstr("sobel"), HasSubstr("march")));
 }
 
