@@ -151,18 +151,17 @@ std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
         draft.edges = EdgeEstimator::March;
-        draft.sheets = SheetCut::Sliced;
-        draft.sheet_spacing = 0.5;
-        draft.saturation = 0.98;
+        draft.sheet_spacing = 1;
         Settings balanced;
         balanced.sheets = SheetCut::Sliced;
+        balanced.sheet_spacing = 1;
         Settings accurate = balanced;
-        accurate.sheet_spacing = 0.125;
+        accurate.sheet_spacing = 0.5;
         accurate.saturation = 0.9999;
         accurate.pixels = PixelChoice::Every;
-        return std::vector<Preset>{{"draft", "slices of half a voxel, faces by the march", draft},
-                                   {"balanced", "the default in slices of a quarter voxel", balanced},
-                                   {"accurate", "slices of an eighth voxel, every pixel", accurate}};
+        return std::vector<Preset>{{"draft", "sheets of a voxel, faces by the march", draft},
+                                   {"balanced", "the default in slices of a voxel", balanced},
+                                   {"accurate", "slices of half a voxel, every pixel", accurate}};
     }();
     return rows;
 }

@@ -238,7 +238,7 @@ TEST(SceneFile, KnobsChangeARowWhereverTheyStand) {
     const SceneDocument d =
         parse("[volume]\npath = \"builtin:sphere\"\n[quality]\nedges = \"off\"\npreset = \"draft\"\n");
     EXPECT_EQ(d.quality.settings.edges, EdgeEstimator::Off);
-    EXPECT_EQ(d.quality.settings.sheets, SheetCut::Sliced);
+    EXPECT_EQ(d.quality.settings.sheet_spacing, 1);
     EXPECT_EQ(d.quality.preset, "draft");
 }
 
