@@ -28,7 +28,7 @@ void edge_header(const char* what) {
 }
 
 void planes() {
-    edge_header("Planes seen edge-on, 24 orientations, optical depth, 40 pixels per voxel; lengths in voxels");
+    edge_header("Planes seen edge-on, 24 orientations, opacity, 40 pixels per voxel; lengths in voxels");
     for (const Method& method : compared_methods())
         print_edges(method.name, plane_edges(method.settings));
 }

@@ -26,13 +26,13 @@ TEST(Planes, SharpAndInPlaceAtEveryOrientation) {
 TEST(Silhouettes, SphereIsWhereItsProjectionIs) {
     const EdgeProfiles p = sphere_silhouettes({});
     EXPECT_EQ(p.missed, 0);
-    EXPECT_LE(mean_magnitude(p.location), 0.2);
+    EXPECT_LE(mean_magnitude(p.location), 0.02);
 }
 
 TEST(Silhouettes, TorusIsWhereItsProjectionIs) {
     const EdgeProfiles p = torus_silhouettes({});
     EXPECT_EQ(p.missed, 0);
-    EXPECT_LE(mean_magnitude(p.location), 0.2);
+    EXPECT_LE(mean_magnitude(p.location), 0.02);
 }
 
 TEST(PartitionOfUnity, ExactAtKnownPlanes) {
