@@ -28,10 +28,8 @@ constexpr std::uint32_t kMaxSheetsPerGroup = 8;
 // Each invocation of 4b_scan_sheets goes through four counters a sheet.
 constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
 // Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
-constexpr double kFewNodesSpacing = 0.3;
-// Of a piece of a kernel that a face cuts, where it hides what is behind; and where one sees through it, or of the
-// paper's profile.
-constexpr std::uint32_t kCutNodes = 6, kManyNodes = 10;
+constexpr double kThinSlice = 0.3;
+constexpr int kSliceNodes = 4;
 constexpr double kFarthestPointLight = 1e12;  // mm
 
 /// Millimetres per voxel along the axis of shortest step.
@@ -268,9 +266,10 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .warp = settings.warp,
                     .payload = payload,
                     .sliced = sliced,
-                    .nodes = sliced && settings.sheet_spacing <= kFewNodesSpacing                         ? 4U
-                             : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kCutNodes
-                                                                                                          : kManyNodes};
+                    .nodes = static_cast<std::uint32_t>(
+                        sliced && settings.sheet_spacing <= kThinSlice                               ? kSliceNodes
+                        : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kFewNodes
+                                                                                                     : kManyNodes)};
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
     plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&

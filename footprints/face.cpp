@@ -61,7 +61,6 @@ double reach2_of(double distance, double depth, double norm) {
 FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest) {
     FaceCut cut;
     cut.depth = deepest;
-    cut.bend = bend;
     cut.thickness = thickness;
     // What is bent away from both sides is as deep as the ridge, where the slope is 0.
     if (bend > 0) cut.depth = std::min(cut.depth, 0.5 / bend);

@@ -37,7 +37,6 @@ struct FaceRay {
 /// How a face cuts a kernel, whatever the ray.
 struct FaceCut {
     double depth = 0.8;                                          ///< where it is sampled at least, > 0
-    double bend = 0;                                             ///< n'Hn at the foot point: second derivative across
     double thickness = std::numeric_limits<double>::infinity();  ///< of the wall, > 0
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
 };
@@ -47,8 +46,11 @@ struct FaceCut {
 /// (.999 at least). Faces further away than R + that cut nothing.
 inline constexpr double kFaceDepth = 0.8, kDeepFaceDepth = 1.4;
 
-/// `FaceCut` of a face with that bend and thickness whose foot point lies `distance` from the voxel's centre; `norm` is
-/// the Frobenius norm of H, 1/voxel, `deepest` one of the two above.
+/// Nodes of a piece of such a kernel, likewise; one of the paper's profile has as many as the second.
+inline constexpr int kFewNodes = 6, kManyNodes = 10;
+
+/// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn
+/// there, `norm` the Frobenius norm of H, 1/voxel, `deepest` kFaceDepth or kDeepFaceDepth.
 FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth);
 
 /// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n . x

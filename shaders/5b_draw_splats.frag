@@ -30,7 +30,7 @@ layout(location = 8) flat in vec4 filtered;
 layout(location = 9) flat in vec4 face_slope;
 layout(location = 10) flat in vec4 face_diagonal;
 layout(location = 11) flat in vec4 face_mixed;
-layout(location = 12) flat in vec2 face_cut_ends;
+layout(location = 12) flat in float face_reach2;
 layout(location = 0) out vec4 sheet;
 
 #include "shaders/lib/face_form.glsl"
@@ -41,7 +41,7 @@ FaceForm face_form;
 void main() {
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
-                             FaceCut(face_diagonal.w, face_cut_ends.x, face_mixed.w, face_cut_ends.y, 0.0, 0.0));
+                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0));
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);

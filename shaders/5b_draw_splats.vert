@@ -34,7 +34,7 @@ layout(location = 8) flat out vec4 filtered;       // share, weights of distance
 layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
 layout(location = 10) flat out vec4 face_diagonal; // depth last
 layout(location = 11) flat out vec4 face_mixed;    // thickness last
-layout(location = 12) flat out vec2 face_cut_ends; // bend, reach2
+layout(location = 12) flat out float face_reach2;
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -80,7 +80,7 @@ void main() {
         face_slope = vec4(s.face.slope, s.face.value);
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
-        face_cut_ends = vec2(s.face.cut.bend, s.face.cut.reach2);
+        face_reach2 = s.face.cut.reach2;
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) matter = s.matter;
     if (CLIP_KEEP + CLIP_REMOVE > 0u || FACES) number_material = s.number_material;

@@ -53,8 +53,7 @@ std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, 
                 const std::size_t i = field.offset({x, y, z});
                 if (prepared.scaled_scene().material(static_cast<double>(field.values[i])) < 1) continue;
                 const reference::VoxelEdge& edge = prepared.edges()[i];
-                const auto support = footprints.support(edge);
-                splats.push_back({&edge, {x, y, z}, support.radius + std::abs(support.shift)});
+                splats.push_back({&edge, {x, y, z}, footprints.reach(edge)});
             }
         }
     }

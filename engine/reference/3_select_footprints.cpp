@@ -134,11 +134,10 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         Selected& s = selected[i];
         const glm::dvec3 x(field.voxel(records[i].voxel));
         s.z = view.depth(x);
-        const Support support = footprints.support(records[i].edge);
-        s.support = {x + support.shift * records[i].edge.n, support.radius};
+        s.support = {x, footprints.reach(records[i].edge)};
         SplatSupport drawn = s.support;
         s.filter = pixel_filter(view, records[i], x, footprints);
-        if (s.filter.share > 0) drawn = {x, std::max(support.radius + std::abs(support.shift), s.filter.reach)};
+        if (s.filter.share > 0) drawn.radius = std::max(drawn.radius, s.filter.reach);
         s.box = screen_box(view, drawn);
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);

@@ -38,6 +38,8 @@ struct View {
 struct VolumePiece {
     double low = 0, high = 0;
     glm::dvec3 normal{0};  ///< of the border where the ray enters, out of the volume; index space, unit
+    /// Counted from a point that the eye lies `eye` from, along the ray.
+    VolumePiece seen_from(double eye) const { return {low + eye, high + eye, normal}; }
 };
 
 /// Along the unit vector `u`, index space.

@@ -103,9 +103,9 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     // What the eye is in is seen right before it.
     const glm::dvec3 on_ray = glm::dvec3(field.voxel(record.voxel)) + p;
     const double eye = glm::dot(view.eye_index - on_ray, u);
-    if (const VolumePiece inside = piece_in_volume(view, u);
-        footprints.cuts(edge) && !plain && inside.low > 0 && eye + inside.low > z) {
-        z = eye + inside.low;
+    const VolumePiece inside = piece_in_volume(view, u).seen_from(eye);
+    if (footprints.cuts(edge) && !plain && inside.low > std::max(z, eye)) {
+        z = inside.low;
         outward = inside.normal;
         upper = false;
     }
@@ -150,10 +150,9 @@ double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec
     double own = 0;
     if (filter.share < 1 && footprints_.cuts(edge)) {
         const double eye = glm::dot(view_.eye_index - glm::dvec3(field_.voxel(records_[splat].voxel)), u);
-        const VolumePiece inside = piece_in_volume(view_, u);
+        const VolumePiece inside = piece_in_volume(view_, u).seen_from(eye);
         const Slice piece = slice.value_or(Slice{});
-        own = footprints_.along_slice(edge, p, u,
-                                      {std::max(piece.low, eye + inside.low), std::min(piece.high, eye + inside.high)});
+        own = footprints_.along_slice(edge, p, u, {std::max(piece.low, inside.low), std::min(piece.high, inside.high)});
     } else if (filter.share < 1) {
         own = slice ? footprints_.along_slice(edge, p, u, *slice) : footprints_.along_ray(edge, p, u);
     }

@@ -50,8 +50,8 @@ class RayWalker {
             Density at;
             for (std::size_t i = 0; i < active_.size(); ++i) {
                 const ModelSplat* splat = active_[i];
-                const glm::dvec3 d = p - splat->support_center;
-                if (glm::dot(d, d) >= splat->support_radius * splat->support_radius) continue;
+                const glm::dvec3 d = p - splat->center;
+                if (glm::dot(d, d) >= splat->reach * splat->reach) continue;
                 const double h = mm_per_voxel * (paths_[i] ? paths_[i]->kernel_at(glm::dot(p - splat->center, u))
                                                            : footprints_.at_point(*splat->edge, p - splat->center));
                 at.extinction += h * splat->extinction;

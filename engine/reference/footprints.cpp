@@ -48,7 +48,7 @@ double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const
     if (settings_.warp == WarpFamily::Face) return at_face(edge, p, u, slice).integral;
     const bool flat = settings_.footprints == FootprintMode::Warp2d;
     return flat ? warp2d_footprint(ray, paper_edge(edge), slice)
-                : procedural_footprint(ray, paper_edge(edge), 10, slice);
+                : procedural_footprint(ray, paper_edge(edge), kManyNodes, slice);
 }
 
 bool Footprints::cuts(const VoxelEdge& edge) const {
@@ -61,7 +61,7 @@ FacePath Footprints::face_path(const VoxelEdge& edge, const glm::dvec3& p, const
 
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                   const Slice& slice) const {
-    return face_path(edge, p, u).footprint(face_depth_ > kFaceDepth ? 10 : 6, slice);
+    return face_path(edge, p, u).footprint(face_depth_ > kFaceDepth ? kManyNodes : kFewNodes, slice);
 }
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, double z) const {
@@ -71,9 +71,9 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
     return glm::dot(p + z * u, edge.n) < edge.D && r2 < kPaperReach * kPaperReach;
 }
 
-Support Footprints::support(const VoxelEdge& edge) const {
-    if (!warped(edge)) return {0, kKernelRadius};
-    return {0, settings_.warp == WarpFamily::Face ? cut_of(edge, face_depth_).reach : kPaperReach};
+double Footprints::reach(const VoxelEdge& edge) const {
+    if (!warped(edge)) return kKernelRadius;
+    return settings_.warp == WarpFamily::Face ? cut_of(edge, face_depth_).reach : kPaperReach;
 }
 
 }  // namespace edgesplat::reference

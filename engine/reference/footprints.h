@@ -8,12 +8,6 @@
 
 namespace edgesplat::reference {
 
-/// A sphere that holds every point where a kernel is not zero. Voxels.
-struct Support {
-    double shift = 0;  ///< of its centre from the voxel's, along n
-    double radius = 0;
-};
-
 /// What the settings make of a voxel's edge. Lengths in voxels, index space; positions relative to the voxel centre.
 class Footprints {
   public:
@@ -43,8 +37,8 @@ class Footprints {
     /// voxel's own side of its edge. (With `paper` the kernel is taken as the ball that holds it.)
     bool in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, double z) const;
 
-    /// Sphere around x + shift n outside which h is 0.
-    Support support(const VoxelEdge& edge) const;
+    /// How far from the voxel h can be anything but 0, voxels.
+    double reach(const VoxelEdge& edge) const;
 
     /// How far from its voxel a kernel of these settings can be anything but 0, voxels.
     double farthest_reach() const { return kernel_reach(settings_); }

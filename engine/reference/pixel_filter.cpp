@@ -23,8 +23,7 @@ PixelFilter pixel_filter(const View& view, const SplatRecord& record, const glm:
                          const Footprints& footprints) {
     PixelFilter f;
     if (!(view.low_pass > 0)) return f;
-    const Support support = footprints.support(record.edge);
-    const double around = support.radius + std::abs(support.shift);
+    const double around = footprints.reach(record.edge);
     const glm::dvec3 steepest = glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward;
     f.depth = view.depth(x);
     if (!(f.depth >= 2 * around * glm::length(steepest))) return f;

@@ -18,11 +18,9 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
         if (!transfer.empty()) record.classified = transfer_at(transfer, prepared.classified()[at]);
         const double extinction = record.extinction(scene);
         if (!(extinction > 0)) continue;
-        const Support support = footprints.support(edge);
         ModelSplat splat;
         splat.center = glm::dvec3(field_.voxel(at));
-        splat.support_center = splat.center + support.shift * edge.n;
-        splat.support_radius = support.radius;
+        splat.reach = footprints.reach(edge);
         splat.extinction = extinction;
         splat.emission = extinction * payload_of(record, field_, scene, view, prepared.settings(), Payload::Color);
         splat.material = record.material;
@@ -30,9 +28,9 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
         splat.record = record;
         splat_of_[at] = static_cast<std::int32_t>(splats_.size());
         splats_.push_back(splat);
-        reach_ = std::max(reach_, std::abs(support.shift) + support.radius);
-        low_ = glm::min(low_, splat.support_center - support.radius);
-        high_ = glm::max(high_, splat.support_center + support.radius);
+        reach_ = std::max(reach_, splat.reach);
+        low_ = glm::min(low_, splat.center - splat.reach);
+        high_ = glm::max(high_, splat.center + splat.reach);
     }
     measure_emptiness();
 }
@@ -100,10 +98,10 @@ void SplatCloud::gather(const glm::dvec3& a, const glm::dvec3& b, std::vector<co
                 const std::int32_t id = splat_of_[row + static_cast<std::size_t>(i)];
                 if (id < 0) continue;
                 const ModelSplat& splat = splats_[static_cast<std::size_t>(id)];
-                const glm::dvec3 v = splat.support_center - a;
+                const glm::dvec3 v = splat.center - a;
                 const double t = length2 > 0 ? std::clamp(glm::dot(v, along) / length2, 0.0, 1.0) : 0.0;
                 const glm::dvec3 d = v - t * along;
-                if (glm::dot(d, d) < splat.support_radius * splat.support_radius) found.push_back(&splat);
+                if (glm::dot(d, d) < splat.reach * splat.reach) found.push_back(&splat);
             }
         }
     }

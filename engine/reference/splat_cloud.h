@@ -12,10 +12,9 @@ namespace edgesplat::reference {
 /// One visible voxel. Lengths in voxels, index space.
 struct ModelSplat {
     glm::dvec3 center{0};
-    glm::dvec3 support_center{0};
-    double support_radius = 0;  ///< from there on the kernel is 0
-    double extinction = 0;      ///< per mm
-    glm::dvec3 emission{0};     ///< extinction times lit colour
+    double reach = 0;        ///< from there on the kernel is 0
+    double extinction = 0;   ///< per mm
+    glm::dvec3 emission{0};  ///< extinction times lit colour
     std::uint32_t material = 0;
     const VoxelEdge* edge = nullptr;
     SplatRecord record;

@@ -7,7 +7,6 @@ const float FACE_NO_WALL = 1e8;  // a face without another behind it has a large
 
 struct FaceCut {
     float depth;
-    float bend;
     float thickness;
     float reach2;
     float shift;   // along the normal to the centre of a sphere that holds the kernel
@@ -32,7 +31,6 @@ FaceReach face_reach(float distance, float depth, float norm) {
 // `deepest`: kFaceDepth or kDeepFaceDepth.
 FaceCut face_cut(float distance, float bend, float norm, float thickness, float deepest) {
     FaceCut cut;
-    cut.bend = bend;
     cut.thickness = thickness;
     cut.depth = min(min(deepest, 0.5 / max(bend, 1e-3)), 0.5 * thickness);
     bool wall = thickness < FACE_NO_WALL;

@@ -57,7 +57,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(f.h.diagonal, f.cut.depth));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
-                   vec4(f.cut.bend, f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y)));
+                   vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), 0.0));
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
@@ -89,8 +89,8 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     if (FACES) {
         vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
-        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, d.x, c.w, d.y, 0.0, 0.0));
-        s.inputs.number_material = uvec2(floatBitsToUint(d.z), floatBitsToUint(d.w));
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0));
+        s.inputs.number_material = uvec2(floatBitsToUint(d.y), floatBitsToUint(d.z));
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));

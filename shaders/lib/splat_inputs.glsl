@@ -48,7 +48,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
-        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 0.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
+        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
         for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
             h = bending_of(number);
             vec3 a = abs(e.n);

@@ -40,14 +40,16 @@ struct Strip {
         return (draws_faces(settings) ? cut : soft)[i];
     }
 
-    /// `face_on`: along the plane's normal; else across it, the normal being screen +x.
-    void prepare(bool face_on) {
+    /// Across the plane's normal, which is screen +x.
+    void place() {
+        for (const Pose& pose : list)
+            cameras.push_back(camera_at(center(pose), pose.across, pose.n, height));
+    }
+    void fill() {
         const auto block = sampled(glm::ivec3(size), [](const glm::dvec3&) { return 1.0; });
-        for (const Pose& pose : list) {
-            cameras.push_back(
-                camera_at(center(pose), face_on ? pose.n : pose.across, face_on ? pose.across : pose.n, height));
+        for (const Camera& camera : cameras) {
             const auto of = [&](const Settings& settings) {
-                return render_tau({block, two_tone(0, 1), cameras.back(), settings, width, height});
+                return render_tau({block, two_tone(0, 1), camera, settings, width, height});
             };
             soft.push_back(of(with(EdgeEstimator::Off, FootprintMode::Isotropic)));
             cut.push_back(of(Settings{}));
@@ -58,7 +60,7 @@ struct Strip {
 const Strip& edge_on_strip() {
     static const Strip strip = [] {
         Strip s{.size = 18, .width = 161, .height = 24};
-        s.prepare(false);
+        s.place();
         return s;
     }();
     return strip;
@@ -246,12 +248,14 @@ Unity picture_unity(const Settings& settings) {
     // A large grid minus a small one inside it: warped kernels at the grid's border, which nothing completes, cancel.
     static const Strip small = [] {
         Strip s{.size = 18, .width = 121, .height = 5};
-        s.prepare(false);
+        s.place();
+        s.fill();
         return s;
     }();
     static const Strip large = [] {
         Strip s{.size = small.size + 16, .width = small.width, .height = small.height};
-        s.prepare(false);
+        s.place();
+        s.fill();
         return s;
     }();
     const auto tau_of = [&](const Strip& strip, std::size_t i) {
