@@ -1,8 +1,8 @@
-# edgesplat_add_shaders(target folder): compiles every folder/*.{comp,vert,frag} to SPIR-V in the build tree and embeds
+# edgesplat_add_shaders(target folder): compiles every folder/*/*.{comp,vert,frag} to SPIR-V in the build tree and embeds
 # it. C++ finds a shader by its file name: gpu::find_shader("3_select_footprints.comp").
 function(edgesplat_add_shaders target folder)
-    file(GLOB sources CONFIGURE_DEPENDS ${folder}/*.comp ${folder}/*.vert ${folder}/*.frag)
-    file(GLOB includes CONFIGURE_DEPENDS ${folder}/shared/*.h ${folder}/lib/*.glsl)
+    file(GLOB sources CONFIGURE_DEPENDS ${folder}/*/*.comp ${folder}/*/*.vert ${folder}/*/*.frag)
+    file(GLOB includes CONFIGURE_DEPENDS ${folder}/*/*.h ${folder}/*/*.glsl)
     set(out ${CMAKE_CURRENT_BINARY_DIR}/${target}_shaders)
     file(MAKE_DIRECTORY ${out})
     foreach(source ${sources})

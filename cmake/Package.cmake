@@ -12,8 +12,11 @@ install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_fold
 # The library's face; what only its own sources include stays at home.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/engine ${CMAKE_SOURCE_DIR}/footprints
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edgesplat FILES_MATCHING PATTERN "*.h"
-    PATTERN gpu EXCLUDE PATTERN passes EXCLUDE PATTERN accuracy EXCLUDE PATTERN bench EXCLUDE PATTERN "frame*.h" EXCLUDE
-    PATTERN "*_state.h" EXCLUDE PATTERN "*_internal.h" EXCLUDE PATTERN "load_itk.h" EXCLUDE PATTERN "scene_table.h" EXCLUDE)
+    PATTERN gpu EXCLUDE PATTERN passes EXCLUDE PATTERN accuracy EXCLUDE PATTERN bench EXCLUDE PATTERN renderer EXCLUDE
+    PATTERN frame EXCLUDE PATTERN plan EXCLUDE PATTERN store EXCLUDE PATTERN culling EXCLUDE PATTERN compositors EXCLUDE
+    PATTERN raycast EXCLUDE PATTERN "parts.h" EXCLUDE PATTERN "description*.h" EXCLUDE PATTERN "forecast.h" EXCLUDE
+    PATTERN "memory.h" EXCLUDE PATTERN "effect_rows.h" EXCLUDE PATTERN "*_internal.h" EXCLUDE
+    PATTERN "load_itk.h" EXCLUDE PATTERN "scene_table.h" EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md
     DESTINATION ${CMAKE_INSTALL_DOCDIR})
 

@@ -4,9 +4,9 @@
 #include <chrono>
 
 #include "engine/error.h"
-#include "engine/overlays.h"
-#include "engine/renderer_state.h"
-#include "engine/sample_mean.h"
+#include "engine/image/sample_mean.h"
+#include "engine/overlays/overlays.h"
+#include "engine/renderer/state.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
 #include "footprints/paper_warp.h"

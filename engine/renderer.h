@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "engine/distribute/part_exchange.h"
 #include "engine/error.h"
-#include "engine/image.h"
-#include "engine/renderer_parts.h"
+#include "engine/image/image.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/renderer_kind.h"
 #include "engine/scene/scene.h"
@@ -112,10 +112,10 @@ struct RenderResult {
     RenderStats stats;
 };
 
-struct FrameRequest;     // engine/effect_table.h
-struct FrameForecast;    // engine/frame_forecast.h
-struct PlannedResource;  // engine/frame_forecast.h
-struct FittingChange;    // engine/frame_description.h
+struct FrameRequest;     // engine/forecast/effect_table.h
+struct FrameForecast;    // engine/forecast/forecast.h
+struct PlannedResource;  // engine/forecast/forecast.h
+struct FittingChange;    // engine/forecast/description.h
 
 /// render() was told to stop (Renderer::set_interruption): there is no picture.
 class Interrupted : public Error {
@@ -129,7 +129,7 @@ class DeviceLost : public Error {
     using Error::Error;
 };
 
-/// What a Renderer owns (engine/renderer_state.h); of no use to those who embed it.
+/// What a Renderer owns (engine/renderer/state.h); of no use to those who embed it.
 struct RendererState;
 
 /// Owns the device and everything on it. Not thread-safe; one per thread. Every member throws Error. A device that is

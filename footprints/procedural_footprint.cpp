@@ -1,4 +1,4 @@
-// The rules that shaders/lib/footprint.glsl computes, in double precision: keep the two alike.
+// The rules that shaders/footprints/footprint.glsl computes, in double precision: keep the two alike.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -12,10 +12,10 @@
 #include "apps/edgesplat-fly/panels.h"
 #include "apps/edgesplat-fly/picture_view.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
-#include "engine/overlay_font.h"
+#include "engine/image/image_file.h"
+#include "engine/image/srgb.h"
+#include "engine/overlays/font.h"
 #include "engine/scene/nearest_name.h"
-#include "engine/srgb.h"
 #include "engine/viewer/keeping.h"
 
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 void FrameTimes::add(const edgesplat::viewer::DrawnPicture& picture) {
     if (picture.number != number_) spent_ = 0;

@@ -8,7 +8,7 @@
 
 #include "apps/edgesplat-fly/clip_handles.h"
 #include "apps/edgesplat-fly/pen.h"
-#include "engine/overlays.h"
+#include "engine/overlays/overlays.h"
 #include "engine/viewer/screen.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/srgb.h"
+#include "engine/image/srgb.h"
 
 namespace {
 

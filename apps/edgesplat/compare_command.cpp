@@ -8,8 +8,8 @@
 #include <string>
 
 #include "apps/edgesplat/option_values.h"
-#include "engine/image_compare.h"
-#include "engine/image_file.h"
+#include "engine/image/image_compare.h"
+#include "engine/image/image_file.h"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "engine/frame_description.h"
+#include "engine/forecast/description.h"
 
 struct ExplainOption {
     bool explain = false;

@@ -6,7 +6,7 @@
 #include <future>
 #include <vector>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 /// Encodes frames on threads of their own and writes them on the caller's.
 class FrameWriter {

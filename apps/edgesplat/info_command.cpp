@@ -10,7 +10,7 @@
 
 #include "apps/edgesplat/volume_options.h"
 #include "engine/accuracy/json_text.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 

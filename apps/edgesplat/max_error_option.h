@@ -7,7 +7,7 @@
 
 #include "apps/edgesplat/document_edits.h"
 #include "engine/accuracy/choose_settings.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 /// Adds --max-error.
 void add_max_error_option(CLI::App& command, DocumentEdits& edits);

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "engine/error.h"
-#include "engine/memory_file.h"
+#include "engine/files/memory_file.h"
 
 namespace fs = std::filesystem;
 using edgesplat::fail;

@@ -3,7 +3,7 @@
 
 #include <mpi.h>
 
-#include "engine/renderer_parts.h"
+#include "engine/distribute/part_exchange.h"
 
 namespace ranks {
 

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "engine/renderer_parts.h"
+#include "engine/distribute/part_exchange.h"
 
 namespace ranks {
 

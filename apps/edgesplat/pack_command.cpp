@@ -12,7 +12,7 @@
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/accuracy/work_list.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/volume/pack_volume.h"
 
 namespace {

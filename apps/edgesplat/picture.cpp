@@ -13,7 +13,7 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
-#include "engine/overlays.h"
+#include "engine/overlays/overlays.h"
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/packed_volume.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "apps/edgesplat/mpi_report.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/renderer.h"
 
 /// One picture of the run: `--compare` makes two or three.

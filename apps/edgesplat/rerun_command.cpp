@@ -10,7 +10,7 @@
 
 #include "apps/edgesplat/picture.h"
 #include "engine/error.h"
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 #include "engine/scene/scene_file.h"
 
 namespace {

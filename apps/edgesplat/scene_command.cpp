@@ -9,7 +9,7 @@
 
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"

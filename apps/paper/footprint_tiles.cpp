@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/gnuplot.h"
+#include "engine/image/gnuplot.h"
 #include "footprints/footprint_integral.h"
 #include "footprints/kernel.h"
 #include "footprints/plane_face.h"

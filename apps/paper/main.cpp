@@ -10,7 +10,7 @@
 #include "apps/paper/curve_sections.h"
 #include "apps/paper/picture_sections.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace {
 

@@ -7,7 +7,7 @@
 
 #include "apps/paper/cube_measuring.h"
 #include "apps/paper/sharpness.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/scene/views.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/load_volume.h"

@@ -1,7 +1,7 @@
 // How sharp a picture is, measured without knowing what it should show.
 #pragma once
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat {
 

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "engine/gnuplot.h"
+#include "engine/image/gnuplot.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {

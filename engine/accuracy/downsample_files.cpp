@@ -9,7 +9,7 @@
 #include "engine/accuracy/report_json.h"
 #include "engine/accuracy/svg_plot.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace edgesplat::accuracy {
 namespace {

@@ -4,7 +4,7 @@
 #include <glm/glm.hpp>
 #include <string>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::accuracy {
 

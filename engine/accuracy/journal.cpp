@@ -14,7 +14,7 @@
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
 #include "engine/fnv1a.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "footprints/temporary_file.h"
 
 namespace edgesplat::accuracy {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::accuracy {
 

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "engine/accuracy/svg_plot.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace edgesplat::accuracy {
 namespace {

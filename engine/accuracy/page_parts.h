@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::accuracy {
 

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace edgesplat::accuracy {
 namespace {

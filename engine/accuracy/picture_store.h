@@ -6,7 +6,7 @@
 #include <string>
 
 #include "engine/accuracy/journal.h"
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::accuracy {
 

@@ -7,7 +7,7 @@
 #include "engine/accuracy/report_page.h"
 #include "engine/accuracy/report_text.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace edgesplat::accuracy {
 

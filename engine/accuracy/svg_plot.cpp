@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "engine/error.h"
-#include "engine/gnuplot.h"
+#include "engine/image/gnuplot.h"
 
 namespace edgesplat::accuracy {
 namespace {

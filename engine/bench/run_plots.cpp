@@ -7,7 +7,7 @@
 #include "engine/accuracy/svg_plot.h"
 #include "engine/bench/run_output.h"
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 namespace edgesplat::bench {
 namespace {

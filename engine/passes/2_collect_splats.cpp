@@ -1,6 +1,6 @@
 #include "engine/passes/2_collect_splats.h"
 
-#include "engine/brick_runs.h"
+#include "engine/culling/brick_runs.h"
 
 namespace edgesplat::passes {
 namespace {

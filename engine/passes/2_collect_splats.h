@@ -20,7 +20,7 @@ struct CollectSplats {
 gpu::Specialization collect_constants(const CollectSplats& in);
 gpu::Specialization finish_constants(const CollectSplats& in);
 
-/// Invocations of the counting and of the writing dispatch, one per slice of a brick (engine/brick_runs.h).
+/// Invocations of the counting and of the writing dispatch, one per slice of a brick (engine/culling/brick_runs.h).
 std::uint64_t collect_runs(const glm::ivec3& core_size);
 
 /// Writes how many splats each run holds to SceneParams::run_offsets.

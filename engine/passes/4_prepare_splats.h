@@ -11,7 +11,7 @@ namespace edgesplat::passes {
 /// the image at BIND_PREPARED, which has at least as many slots.
 void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count);
 
-/// Texels of a record: PREPARED_STRIDE of shaders/lib/prepared_splat.glsl.
+/// Texels of a record: PREPARED_STRIDE of shaders/splats/prepared_splat.glsl.
 std::uint32_t prepared_stride(const DrawVariant& variant);
 
 /// The image that holds so many.

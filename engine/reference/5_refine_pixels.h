@@ -3,7 +3,7 @@
 
 #include <cstddef>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::reference {
 

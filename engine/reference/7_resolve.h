@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::reference {
 

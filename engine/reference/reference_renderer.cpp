@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "engine/image/sample_mean.h"
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/pixel_rows.h"
-#include "engine/sample_mean.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 

@@ -1,7 +1,7 @@
 // The whole frame in double precision, passes 1 to 7: the oracle the GPU is compared with.
 #pragma once
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 #include "engine/reference/4_sort_sheets.h"
 #include "engine/reference/5_draw_splats.h"
 

@@ -1,4 +1,4 @@
-// Where light arrives at a splat (method.md, Light that arrives). Mirrors shaders/lib/surface_point.glsl.
+// Where light arrives at a splat (method.md, Light that arrives). Mirrors shaders/light/surface_point.glsl.
 #pragma once
 
 #include "engine/reference/2_collect_splats.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "engine/error.h"
-#include "engine/srgb.h"
+#include "engine/image/srgb.h"
 
 namespace edgesplat::viewer {
 namespace {

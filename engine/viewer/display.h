@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 
 namespace edgesplat::viewer {
 

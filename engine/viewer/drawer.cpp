@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/frame_plan.h"
+#include "engine/plan/plan.h"
 #include "engine/scene/ladder.h"
 #include "engine/viewer/display.h"
 #include "engine/volume/packed_volume.h"

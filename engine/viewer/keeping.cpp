@@ -3,7 +3,7 @@
 #include <array>
 
 #include "engine/error.h"
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
 

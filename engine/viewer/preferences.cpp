@@ -6,7 +6,7 @@
 #include <exception>
 #include <sstream>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/scene/text_file.h"
 #include "engine/volume/analytic_volumes.h"

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <system_error>
 
-#include "engine/memory_file.h"
+#include "engine/files/memory_file.h"
 #include "engine/volume/hdf5_internal.h"
 
 namespace edgesplat::detail {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <span>
 
-#include "engine/picture_library_internal.h"
+#include "engine/files/picture_library_internal.h"
 #include "engine/volume/load_internal.h"
 
 namespace edgesplat::detail {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "engine/error.h"
+#include "engine/files/sample_type_internal.h"
 #include "engine/volume/load_volume.h"
-#include "engine/volume/sample_type_internal.h"
 
 namespace edgesplat::detail {
 

@@ -3,7 +3,7 @@
 #include <exception>
 #include <memory>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/renderer.h"
 #include "engine/scene/views.h"
 #include "engine/volume/load_volume.h"

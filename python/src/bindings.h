@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/image.h"
+#include "engine/image/image.h"
 #include "engine/scene/scene_document.h"
 #include "engine/volume/volume.h"
 

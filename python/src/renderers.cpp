@@ -8,7 +8,7 @@
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/renderer_option.h"
 #include "engine/error.h"
-#include "engine/overlays.h"
+#include "engine/overlays/overlays.h"
 #include "engine/reference/pixel_rows.h"
 #include "engine/volume/packed_volume.h"
 #include "python/src/pictures.h"

@@ -9,7 +9,7 @@ EDGESPLAT_CONSTANT uint BIND_VOLUME = 0u;        // r32f (z, y, x), samples scal
 EDGESPLAT_CONSTANT uint BIND_COEFFICIENTS = 1u;  // r32f, cubic B-spline coefficients (estimator `cubic` only)
 EDGESPLAT_CONSTANT uint BIND_EDGES = 2u;         // rg32ui, edge field (shared/edge.h)
 EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = every voxel around is opaque
-EDGESPLAT_CONSTANT uint BIND_PREPARED = 4u;      // rgba32f, records of a chunk's splats (lib/prepared_splat.glsl)
+EDGESPLAT_CONSTANT uint BIND_PREPARED = 4u;      // rgba32f, records of a chunk's splats (splats/prepared_splat.glsl)
 EDGESPLAT_CONSTANT uint BIND_SHEETS = 5u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
 EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 6u;   // rgba32f, premultiplied colour and alpha so far
 EDGESPLAT_CONSTANT uint BIND_SCENE = 7u;         // SceneParams

@@ -1,4 +1,4 @@
-// What shaders/lib/footprint.glsl needs to know besides the ray and the edge: one struct for C++ and GLSL, only 4-byte
+// What shaders/footprints/footprint.glsl needs to know besides the ray and the edge: one struct for C++ and GLSL, only 4-byte
 // scalars, so that every buffer layout (std140, std430, scalar) is the same 16 bytes.
 #ifndef EDGESPLAT_FOOTPRINT_PARAMS_H
 #define EDGESPLAT_FOOTPRINT_PARAMS_H

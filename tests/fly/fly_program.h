@@ -3,8 +3,8 @@
 
 #include <gmock/gmock.h>
 
-#include "engine/image_compare.h"
-#include "engine/image_file.h"
+#include "engine/image/image_compare.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

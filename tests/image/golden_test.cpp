@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "engine/effect_table.h"
-#include "engine/image_file.h"
+#include "engine/forecast/effect_table.h"
+#include "engine/image/image_file.h"
 #include "tests/image/image_cases.h"
 
 namespace edgesplat::test {

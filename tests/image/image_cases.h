@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 #include "engine/reference/reference_renderer.h"
 #include "tests/properties/scenes.h"
 

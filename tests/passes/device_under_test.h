@@ -7,7 +7,7 @@
 #include <memory>
 #include <string_view>
 
-#include "engine/renderer_state.h"
+#include "engine/renderer/state.h"
 
 namespace edgesplat::test {
 

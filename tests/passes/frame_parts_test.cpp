@@ -1,5 +1,5 @@
 // Pictures whose sheets are divided: the arithmetic on the host, and several renderers against one.
-#include "engine/frame_parts.h"
+#include "engine/distribute/parts.h"
 
 #include <algorithm>
 #include <barrier>
@@ -10,7 +10,7 @@
 #include <random>
 #include <thread>
 
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {

@@ -2,7 +2,7 @@
 #include <gmock/gmock.h>
 
 #include "engine/error.h"
-#include "engine/frame_memory.h"
+#include "engine/forecast/memory.h"
 #include "engine/gpu/kept_commands.h"
 #include "tests/passes/device_under_test.h"
 

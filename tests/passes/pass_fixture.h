@@ -11,7 +11,7 @@
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/5_draw_splats.h"
-#include "engine/renderer_state.h"
+#include "engine/renderer/state.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
@@ -138,7 +138,7 @@ inline RendererState& prepared(const PassScene& s) {
     return state;
 }
 
-/// A face's second derivatives from their two stored words (shaders/lib/face_record.glsl).
+/// A face's second derivatives from their two stored words (shaders/footprints/face_record.glsl).
 inline glm::dmat3 decode_bending(const glm::uvec2& code) {
     const auto part = [](std::uint32_t word, int k) {
         const int bits = static_cast<int>(word << (22 - 10 * k)) >> 22;

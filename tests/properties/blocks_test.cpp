@@ -9,10 +9,10 @@
 #include <functional>
 #include <limits>
 
-#include "engine/effect_table.h"
 #include "engine/error.h"
-#include "engine/frame_blocks.h"
-#include "engine/frame_forecast.h"
+#include "engine/forecast/effect_table.h"
+#include "engine/forecast/forecast.h"
+#include "engine/store/blocks.h"
 #include "engine/volume/load_volume.h"
 #include "engine/volume/pack_volume.h"
 #include "tests/properties/scenes.h"

@@ -9,7 +9,7 @@
 #include <thread>
 
 #include "engine/error.h"
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 #include "engine/scene/ladder.h"
 #include "engine/viewer/display.h"
 #include "engine/volume/filters.h"

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <set>
 
-#include "engine/effect_table.h"
 #include "engine/error.h"
+#include "engine/forecast/effect_table.h"
 #include "tests/properties/scenes.h"
 
 namespace edgesplat::test {

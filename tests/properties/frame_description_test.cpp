@@ -5,7 +5,7 @@
 #include <map>
 
 #include "engine/error.h"
-#include "engine/frame_description.h"
+#include "engine/forecast/description.h"
 #include "engine/scene/ladder.h"
 #include "tests/properties/scenes.h"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 #include "engine/volume/analytic_volumes.h"
 #include "tests/properties/measuring.h"
 

@@ -1,7 +1,7 @@
 // What the program says when it is used wrongly, with which status, and that it leaves nothing behind.
 #include <gmock/gmock.h>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

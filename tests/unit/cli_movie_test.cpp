@@ -7,7 +7,7 @@
 #include <map>
 #include <thread>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

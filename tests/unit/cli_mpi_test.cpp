@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "engine/image_compare.h"
-#include "engine/image_file.h"
+#include "engine/image/image_compare.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

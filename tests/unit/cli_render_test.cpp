@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "tests/unit/cli_program.h"
 
 namespace edgesplat {

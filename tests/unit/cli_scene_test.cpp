@@ -6,7 +6,7 @@
 #include <sstream>
 #include <tuple>
 
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "tests/unit/cli_program.h"

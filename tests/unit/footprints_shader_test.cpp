@@ -1,4 +1,4 @@
-// Runs shaders/lib/footprint.glsl as C++ and compares it with the double-precision functions it mirrors.
+// Runs shaders/footprints/footprint.glsl as C++ and compares it with the double-precision functions it mirrors.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,17 +54,17 @@ inline float acos(float v) {
 // The including shader says how many nodes a piece of a footprint gets: one copy each.
 namespace nodes4 {
 const uint NODES = 4;
-#include "shaders/lib/footprint.glsl"
+#include "shaders/footprints/footprint.glsl"
 
 // After what it needs.
 const uint FACE_PIECES = 2;
-#include "shaders/lib/face.glsl"
+#include "shaders/footprints/face.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
 namespace nodes10 {
 const uint NODES = 10;
-#include "shaders/lib/footprint.glsl"
+#include "shaders/footprints/footprint.glsl"
 }  // namespace nodes10
 #pragma GCC diagnostic pop
 

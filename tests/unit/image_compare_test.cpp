@@ -1,5 +1,5 @@
 // Metrics of picture differences against values worked out by hand.
-#include "engine/image_compare.h"
+#include "engine/image/image_compare.h"
 
 #include <gmock/gmock.h>
 

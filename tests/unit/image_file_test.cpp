@@ -1,5 +1,5 @@
 // PNG and EXR there and back, metadata, and what is left behind when a write fails.
-#include "engine/image_file.h"
+#include "engine/image/image_file.h"
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>

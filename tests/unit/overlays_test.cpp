@@ -1,5 +1,5 @@
 // Overlays say what is true, where they should, and touch nothing else.
-#include "engine/overlays.h"
+#include "engine/overlays/overlays.h"
 
 #include <gmock/gmock.h>
 

@@ -1,0 +1,136 @@
+#include "engine/compositors/tiles/hiding.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+namespace {
+
+// Of splats that touch more tiles each, drawing is what takes time, and pixels may be refined (worth_refining).
+constexpr double kMostTiles = 2.6;
+// Bricks are divided from bricks: where more than this share of the splats is on either side, all at once is quicker.
+constexpr double kMostTwice = 0.3;
+
+/// Half extents of a box and its middle relative to the anchor, voxels; widened by the kernels' reach.
+struct WideBox {
+    glm::dvec3 middle, half;
+    WideBox(const FramePlan& plan, const VoxelBox& box)
+        : middle(0.5 * glm::dvec3(box.low + box.high) - glm::dvec3(plan.params.anchor)),
+          half(0.5 * glm::dvec3(box.high - box.low) + plan.reach) {}
+};
+
+/// Least and largest depth in a box, mm from the eye.
+glm::dvec2 depths_of(const FramePlan& plan, const WideBox& box) {
+    const glm::dvec3 z(plan.params.view_z);
+    const double middle = glm::dot(z, box.middle) + static_cast<double>(plan.params.anchor_z);
+    const double half = glm::dot(glm::abs(z), box.half);
+    return {middle - half, middle + half};
+}
+
+/// Sheets numbered from the eye on, half open; one more on either side, for what the device rounds.
+glm::ivec2 sheets_of(const FramePlan& plan, const glm::dvec2& depths) {
+    const glm::dvec2 sheets =
+        glm::clamp(glm::floor(depths / static_cast<double>(plan.params.sheet_thickness)), 0.0, 1e9);
+    return {std::max(static_cast<int>(sheets.x) - 1, 0), static_cast<int>(sheets.y) + 2};
+}
+
+/// Tiles x0, y0, x1, y1, half open, that a box may show in; nothing where it reaches the eye's plane.
+std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
+    const auto& p = plan.params;
+    const glm::dvec2 size(p.size), tan_half(p.tan_half_x, p.tan_half_y);
+    glm::dvec2 low(size), high(0);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::bvec3 far((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+        const glm::dvec3 at = box.middle + glm::mix(-box.half, box.half, far);
+        const double depth = glm::dot(glm::dvec3(p.view_z), at) + static_cast<double>(p.anchor_z);
+        if (!(depth > 0)) return std::nullopt;
+        const glm::dvec2 view(glm::dot(glm::dvec3(p.view_x), at) + static_cast<double>(p.anchor_x),
+                              glm::dot(glm::dvec3(p.view_y), at) + static_cast<double>(p.anchor_y));
+        const glm::dvec2 pixel = (view / depth / tan_half * 0.5 + 0.5) * size;
+        low = glm::min(low, pixel - 1.0);
+        high = glm::max(high, pixel + 1.0);
+    }
+    constexpr double kTile = shader::TILE;
+    low = glm::clamp(glm::floor(low), glm::dvec2(0), size);
+    high = glm::clamp(glm::ceil(high), low, size);
+    return glm::ivec4(glm::floor(low / kTile), glm::ceil(high / kTile));
+}
+
+/// Tiles that a splat of the middle of a box touches.
+double tiles_of_splat(const FramePlan& plan, double depth) {
+    const auto& p = plan.params;
+    const glm::dmat3 to_world(p.index_to_world);
+    const double voxel = std::max({glm::length(to_world[0]), glm::length(to_world[1]), glm::length(to_world[2])});
+    const double pixels =
+        2 * kKernelRadius * voxel / std::max(depth, 1e-6) * p.size.y / (2 * static_cast<double>(p.tan_half_y));
+    const double across = 1 + pixels / shader::TILE;
+    return across * across;
+}
+
+}  // namespace
+
+std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least) {
+    const auto& p = plan.params;
+    if (plan.variant.sliced || plan.variant.antialias || p.saturation > 1 || plan.looked_at < least ||
+        plan.bricks.empty())
+        return std::nullopt;
+    struct Place {
+        double depth;
+        std::uint32_t splats;
+    };
+    std::vector<Place> places;
+    double tiles = 0, splats = 0;
+    for (const std::uint32_t number : plan.bricks) {
+        const SplatBrick& brick = bricks.bricks()[number];
+        const glm::dvec2 depths = depths_of(plan, WideBox(plan, brick.box));
+        places.push_back({0.5 * (depths.x + depths.y), brick.count});
+        tiles += brick.count * tiles_of_splat(plan, places.back().depth);
+        splats += brick.count;
+    }
+    if (tiles > kMostTiles * splats) return std::nullopt;
+    std::ranges::sort(places, {}, &Place::depth);
+    double before = 0;
+    const auto half =
+        std::ranges::find_if(places, [&](const Place& place) { return (before += place.splats) >= 0.5 * splats; });
+    double twice = 0;
+    FrontAndRest out;
+    out.sheet = sheets_of(plan, glm::dvec2(half->depth)).x;
+    for (const std::uint32_t number : plan.bricks) {
+        const glm::ivec2 sheets = sheets_of(plan, depths_of(plan, WideBox(plan, bricks.bricks()[number].box)));
+        const bool in_front = sheets.x<out.sheet, behind = sheets.y> out.sheet;
+        if (in_front) out.front.push_back(number);
+        if (behind) out.rest.push_back(number);
+        if (in_front && behind) twice += bricks.bricks()[number].count;
+    }
+    if (twice > kMostTwice * splats) return std::nullopt;
+    return out;
+}
+
+OpenTiles::OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> closed) : plan_(&plan) {
+    constexpr int kTile = static_cast<int>(shader::TILE);
+    const glm::ivec2 tiles = plan.params.tiles;
+    open_.resize((static_cast<std::size_t>(tiles.x) + 1) * (static_cast<std::size_t>(tiles.y) + 1));
+    std::size_t tile = 0;
+    for (int y = 0; y < tiles.y; ++y)
+        for (int x = 0; x < tiles.x; ++x, ++tile) {
+            const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), plan.params.size - kTile * glm::ivec2(x, y));
+            const bool takes_more = closed[tile] != static_cast<std::uint32_t>(pixels.x * pixels.y);
+            open_[corner(x + 1, y + 1)] =
+                open_[corner(x, y + 1)] + open_[corner(x + 1, y)] - open_[corner(x, y)] + (takes_more ? 1U : 0U);
+        }
+}
+
+bool OpenTiles::may_show(const VoxelBox& box) const {
+    const auto tiles = tiles_of(*plan_, WideBox(*plan_, box));
+    return !tiles || open_[corner(tiles->z, tiles->w)] + open_[corner(tiles->x, tiles->y)] !=
+                         open_[corner(tiles->x, tiles->w)] + open_[corner(tiles->z, tiles->y)];
+}
+
+std::size_t OpenTiles::corner(int x, int y) const {
+    return static_cast<std::size_t>(y) * (static_cast<std::size_t>(plan_->params.tiles.x) + 1) +
+           static_cast<std::size_t>(x);
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,79 @@
+// The frame whose sheets are summed tile by tile: selection and sort, then chunks of sheets one after another.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "engine/distribute/parts.h"
+#include "engine/passes/5_draw_tiles.h"
+#include "engine/plan/plan.h"
+#include "engine/plan/resources.h"
+
+namespace edgesplat {
+
+/// Pairs of a splat and a tile that a chunk of sheets may have. Small chunks close tiles early for those behind; each
+/// costs four dispatches.
+std::uint64_t chunk_pairs(const glm::ivec2& tiles);
+
+/// Room that lists of so many pairs take, each from a multiple of MARKED_AT_ONCE on.
+std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles);
+
+std::uint64_t tile_count(const FramePlan& plan);
+
+/// What FrameParams::tile_order holds at most.
+std::uint64_t tile_order_items(const FramePlan& plan);
+/// Pairs that FrameParams::tile_entries has room for. Of a refined picture, the lists of several chunks are kept.
+std::uint64_t tile_entry_pairs(const FramePlan& plan);
+
+/// Words that mark for which pixels lists of so many pairs are.
+std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs);
+
+/// Consecutive sheets that are drawn at once.
+struct Chunks {
+    std::vector<glm::uvec2> parts;  ///< of the sorted order, half open; empty ones are left out
+    std::uint64_t most_pairs = 0;   ///< of any chunk
+    glm::uvec2 sheets{0};           ///< the sheets that are drawn, half open
+    std::uint64_t pairs = 0;        ///< of all chunks
+    std::uint64_t entries = 0;      ///< of the order, in all of them
+};
+
+/// `pairs` per sheet that is drawn; `starts`: where each sheet begins in the order, and where the last one ends. A
+/// sheet is never divided: one with more than `limit` pairs, or `entries` of the order, is a chunk of its own.
+Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::uint32_t> starts, std::uint64_t limit,
+                   std::uint64_t entries = ~std::uint64_t{0});
+
+/// At least as many pairs as any column of a chunk has: those of all sheets that reach into it. `part` of the order,
+/// divided into so many columns of equal length; `pairs` and `starts` of all sheets.
+std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, std::span<const std::uint32_t> pairs,
+                                std::span<const std::uint32_t> starts);
+
+/// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn of the part. Milliseconds are left in
+/// `commands`.
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                  const Division& division = {});
+
+/// Whether drawing some pixels first (FramePlan::refined) saves time: splats are some pixels wide.
+bool worth_refining(const Chunks& chunks);
+
+/// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
+/// With rounds, each chunk is waited for, and each round where `between` is to be called after it (it may throw). Of a
+/// part (`TileDraw::part`) pass 7 is left out.
+std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                 std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between = {});
+
+/// One step of `draw_frame`, without what finishes it: of a refined picture the pixels of `step`, REFINE_STEP first,
+/// then those that refine_frame lists; of any other all, step 1.
+std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                std::uint32_t chunks, passes::TileDraw how, std::uint32_t step);
+
+/// Of a refined picture whose pixels of a step are drawn: those between them, or their lists.
+std::vector<PassTime> refine_frame(gpu::Commands& commands, const FramePlan& plan, std::uint32_t step);
+
+/// The first of a picture's steps; each is half of the one before, the last is 1.
+std::uint32_t first_step(const FramePlan& plan);
+
+/// Pass 7 alone.
+std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan);
+
+}  // namespace edgesplat

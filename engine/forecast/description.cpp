@@ -1,0 +1,226 @@
+#include "engine/forecast/description.h"
+
+#include <algorithm>
+#include <array>
+#include <map>
+
+#include "engine/error.h"
+#include "engine/forecast/description_passes.h"
+
+namespace edgesplat {
+namespace {
+
+/// Every effect that the request calls for, with why.
+std::vector<std::pair<const Effect*, std::string>> called_for(const FrameRequest& request) {
+    std::vector<std::pair<const Effect*, std::string>> found;
+    for (const Effect& effect : effect_table()) {
+        std::string reason = effect.reason(request);
+        if (!reason.empty()) found.emplace_back(&effect, std::move(reason));
+    }
+    return found;
+}
+
+/// The reasons of those effects of which `list` holds `name`.
+std::string reason_for(const std::vector<std::pair<const Effect*, std::string>>& effects, std::string_view name,
+                       std::vector<std::string_view> Effect::*list) {
+    std::string text;
+    for (const auto& [effect, reason] : effects) {
+        const auto& names = effect->*list;
+        if (std::ranges::find(names, name) == names.end()) continue;
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", effect->name, reason);
+    }
+    return text.empty() ? "every picture" : text;
+}
+
+std::string format_name(vk::Format format) {
+    switch (format) {
+        case vk::Format::eR8Uint:
+            return "r8ui";
+        case vk::Format::eD16Unorm:
+            return "d16";
+        case vk::Format::eR16Sfloat:
+            return "r16f";
+        case vk::Format::eR32Sfloat:
+            return "r32f";
+        case vk::Format::eR32G32Uint:
+            return "rg32ui";
+        case vk::Format::eR16G16B16A16Sfloat:
+            return "rgba16f";
+        case vk::Format::eR32G32B32A32Sfloat:
+            return "rgba32f";
+        default:
+            return vk::to_string(format);
+    }
+}
+
+std::string shape_of(const PlannedResource& resource) {
+    if (!resource.image) return "";
+    const auto& [format, size, layers, volume, array, usage] = *resource.image;
+    if (volume) return fmt::format("{} x {} x {}", size.x, size.y, size.z);
+    return layers > 1 ? fmt::format("{} x {} x {}", size.x, size.y, layers) : fmt::format("{} x {}", size.x, size.y);
+}
+
+const char* name_of(Held held) {
+    switch (held) {
+        case Held::Uploading:
+            return "while uploading";
+        case Held::Occluding:
+            return "while occluding";
+        case Held::Sweeping:
+            return "while sweeping";
+        case Held::Drawing:
+            return "while drawing";
+        case Held::Always:
+            break;
+    }
+    return "always";
+}
+
+/// Of times and bytes: what is held always and the most of the rest.
+template <typename Rows, typename Time, typename Bytes>
+std::uint64_t most_at_once(const Rows& rows, const Time& time, const Bytes& bytes) {
+    std::map<std::string, std::uint64_t> sums;
+    for (const auto& row : rows)
+        sums[time(row)] += bytes(row);
+    const std::uint64_t always = sums["always"];
+    sums["always"] = 0;
+    return always + std::ranges::max_element(sums, {}, [](const auto& s) { return s.second; })->second;
+}
+
+std::uint64_t sum_of(const std::vector<PlannedResource>& resources) {
+    return most_at_once(
+        resources, [](const PlannedResource& r) { return std::string(name_of(r.held)); },
+        [](const PlannedResource& r) { return r.bytes; });
+}
+
+/// What every effect that is off would add.
+std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast,
+                              const std::vector<std::pair<const Effect*, std::string>>& on) {
+    std::vector<LeftOut> rows;
+    for (const Effect& effect : effect_table()) {
+        if (std::ranges::any_of(on, [&](const auto& entry) { return entry.first == &effect; })) continue;
+        LeftOut row{std::string(effect.name), std::string(effect.call), {}, 0, {}};
+        FrameRequest with = request;
+        try {
+            effect.turn_on(with);
+            validate(with.scene);
+            if (effect.reason(with).empty()) {
+                row.obstacle = "it has no say beside what is called for";
+            } else {
+                const double reach = kernel_reach(drawn_settings(with));
+                const CollectionPlan collection = planned_collection(with);
+                const SplatCount splats =
+                    collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
+                const FrameForecast other = forecast_frame(with, collection, splats, reach);
+                row.bytes = static_cast<std::int64_t>(sum_of(other.resources)) -
+                            static_cast<std::int64_t>(sum_of(forecast.resources));
+                for (const std::string_view pass : effect.passes)
+                    if (reason_for(on, pass, &Effect::passes) == "every picture") row.passes.emplace_back(pass);
+            }
+        } catch (const Error& error) {
+            row.obstacle = error.what();
+        }
+        rows.push_back(std::move(row));
+    }
+    return rows;
+}
+
+FrameDescription describe(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device) {
+    const auto effects = called_for(request);
+    const glm::ivec3 dims = request.volume->geometry.dims;
+    const FramePlan& plan = forecast.draws.front().plan;
+    FrameDescription out;
+    out.volume = fmt::format("{}, {} x {} x {} voxels", request.volume->name, dims.x, dims.y, dims.z);
+    if (device != nullptr) out.device = device->name;
+    out.size = request.size;
+    out.voxels = request.volume->geometry.voxel_count();
+    out.splats = forecast.splats.splats;
+    out.splats_from = forecast.splats.from == SplatCount::From::Frame ? "as collected" : "counted on the host";
+    out.sheets = plan.params.sheet_count;
+    out.sheet_groups = plan.params.group_count;
+    out.passes = described_passes(request, forecast, device == nullptr || device->type == "Cpu");
+    for (PassDescription& pass : out.passes)
+        pass.reason = reason_for(effects, pass.name, &Effect::passes);
+    out.estimate = estimate_basis(device == nullptr || device->type == "Cpu");
+    for (const PlannedResource& resource : forecast.resources) {
+        const auto same = std::ranges::find_if(out.resources, [&](const ResourceDescription& r) {
+            return r.name == resource.name && r.held == name_of(resource.held);
+        });
+        if (same != out.resources.end()) {
+            same->bytes += resource.bytes;  // placeholders
+            continue;
+        }
+        ResourceDescription row{resource.name,
+                                shape_of(resource),
+                                resource.image ? format_name(resource.image->format) : "buffer",
+                                resource.contents,
+                                resource.written,
+                                resource.read,
+                                reason_for(effects, resource.name, &Effect::resources),
+                                resource.bytes,
+                                {},
+                                {},
+                                name_of(resource.held)};
+        out.resources.push_back(std::move(row));
+    }
+    out.record = {
+        {"voxel", "every picture", 4}, {"normal", "every picture", 4}, {"edge, material", "every picture", 4}};
+    for (const auto& [effect, reason] : effects) {
+        for (const RecordField& field : effect->record)
+            out.record.push_back({std::string(field.name), fmt::format("{}: {}", effect->name, reason), field.bytes});
+        out.called_for.emplace_back(std::string(effect->name), reason);
+    }
+    out.left_out = left_out(request, forecast, effects);
+    return out;
+}
+
+void check(const FrameRequest& request) {
+    if (!request.volume) fail("description: no volume");
+    validate(request.scene);
+    validate(request.settings);
+}
+
+}  // namespace
+
+std::uint64_t FrameDescription::total_bytes() const {
+    return most_at_once(
+        resources, [](const ResourceDescription& r) { return r.held; },
+        [](const ResourceDescription& r) { return r.allocated_bytes.value_or(r.device_bytes.value_or(r.bytes)); });
+}
+
+FrameDescription describe_frame(const FrameRequest& request) {
+    check(request);
+    const CollectionPlan collection = planned_collection(request);
+    const SplatCount splats = count_splats(*request.volume, collection);
+    return describe(request, forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request))),
+                    nullptr);
+}
+
+FrameDescription describe_frame(const FrameRequest& request, Renderer& renderer, const RenderStats* measured) {
+    check(request);
+    const FrameForecast forecast = renderer.forecast(request);
+    FrameDescription out = describe(request, forecast, &renderer.device());
+    std::map<std::pair<std::string, std::string>, std::uint64_t> required;
+    for (const PlannedResource& resource : forecast.resources)
+        required[{resource.name, name_of(resource.held)}] += renderer.required_bytes(resource);
+    for (ResourceDescription& resource : out.resources)
+        resource.device_bytes = required.at({resource.name, resource.held});
+    if (measured == nullptr) return out;
+    for (const MemoryUse& use : measured->memory) {
+        // Of a name that is held at several times the largest was counted.
+        ResourceDescription* counted = nullptr;
+        for (ResourceDescription& r : out.resources)
+            if (r.name == use.name && (counted == nullptr || *r.device_bytes > *counted->device_bytes)) counted = &r;
+        if (counted != nullptr) counted->allocated_bytes = use.bytes;
+    }
+    for (PassDescription& pass : out.passes) {
+        const bool extra = pass.draw != "setup" && pass.draw != "colour";
+        const auto found =
+            std::ranges::find(measured->passes, extra ? pass.draw + ": " + pass.name : pass.name, &PassTime::name);
+        if (found != measured->passes.end()) pass.measured_milliseconds = found->milliseconds;
+    }
+    std::erase_if(out.passes, [](const PassDescription& pass) { return pass.depends && !pass.measured_milliseconds; });
+    return out;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,205 @@
+#include "engine/forecast/description_passes.h"
+
+#include <algorithm>
+#include <array>
+
+#include "engine/error.h"
+#include "engine/frame/frame.h"
+#include "engine/passes/1_estimate_edges.h"
+#include "engine/passes/2_collect_splats.h"
+#include "engine/passes/2b_occlude_ambient.h"
+#include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_mark_pixels.h"
+#include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/5_draw_tiles.h"
+#include "engine/passes/5_refine_pixels.h"
+#include "engine/passes/7_resolve.h"
+
+namespace edgesplat {
+namespace {
+
+/// Nanoseconds of a pass per thing that it goes over: fits to frames of the builtin scenes.
+struct Rates {
+    double bury_voxel, normal_voxel, edge_voxel, spline_voxel, collect_voxel, collect_splat, occlude_splat;
+    double select_splat, sort_entry, sort_sheet, draw_entry, fragment, warped_fragment, composite_pixel, resolve_pixel;
+};
+
+// Round numbers of the order that two processor cores take under lavapipe; not fitted to measurements.
+constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4};
+// No GPU was measured: how much faster one may be.
+constexpr double kGpuFactor = 200;
+
+struct Constant {
+    std::uint32_t id;
+    std::string_view name;
+};
+constexpr std::array kConstants{
+#define EDGESPLAT_SPECIALIZATION(name, id) Constant{id, #name},
+    EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
+#undef EDGESPLAT_SPECIALIZATION
+};
+constexpr std::string_view kPrefix = "SPEC_";
+// Their ids are their places: no name is missing, none stands twice.
+static_assert(std::ranges::all_of(kConstants, [](const Constant& c) { return &kConstants.at(c.id) == &c; }));
+
+std::string variant(const char* shader, const gpu::Specialization& constants) {
+    std::string text = shader;
+    for (const auto& [id, value] : constants)
+        text += fmt::format(" {}={}", kConstants.at(id).name.substr(kPrefix.size()), value);
+    return text;
+}
+
+/// Fragments that a draw shades: every splat's square on the screen, clipped by the picture.
+double fragments(const FrameRequest& request, const FramePlan& plan) {
+    const auto& geometry = request.volume->geometry;
+    const CameraFrame view = camera_frame(request.camera);
+    const glm::dvec3 centre = geometry.center();
+    const glm::dvec3 spacing = geometry.spacing();
+    const double depth = std::max(glm::dot(view.forward, centre - view.eye), spacing.x);
+    const double pixels_per_mm = request.size.y / (2 * view.tan_half_y * depth);
+    const double across = 3.2 * geometry.mean_spacing() * pixels_per_mm + 1;
+    const double pixels = static_cast<double>(request.size.x) * request.size.y;
+    // Each splat has its own part of every sheet that it is in; what is saturated is not shaded.
+    const double slices = 1 + 0.5 * (plan.sheets_per_splat - 1);
+    return plan.params.splat_count * std::min(across * across, pixels) * slices / 2;
+}
+
+class Passes {
+  public:
+    explicit Passes(bool software) : milliseconds_per_(software ? 1e-6 : 1e-6 / kGpuFactor), software_(software) {}
+
+    void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
+        out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
+    }
+
+    void add_setup(const FrameForecast& f) {
+        const CollectionPlan& plan = f.collection;
+        const glm::dvec3 dims(plan.dims);
+        const double voxels = dims.x * dims.y * dims.z, splats = static_cast<double>(f.splats.splats);
+        if (plan.buried) {
+            std::vector<std::string> axes;
+            for (std::uint32_t axis = 0; axis < 3; ++axis)
+                axes.push_back(
+                    variant("1a_mark_buried.comp", passes::mark_constants(axis, plan.params.iso_count, plan.clip)));
+            add("setup", "1a_mark_buried", kRates.bury_voxel * voxels, axes);
+        }
+        if (plan.edge_field) {
+            const double rate = plan.estimator == EdgeEstimator::Off     ? kRates.normal_voxel
+                                : plan.estimator == EdgeEstimator::Cubic ? kRates.spline_voxel
+                                                                         : kRates.edge_voxel;
+            add("setup", "1_estimate_edges", kRates.normal_voxel * voxels + rate * 3 * splats,
+                {variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))});
+        }
+        const passes::CollectSplats collect = collect_inputs(plan);
+        std::vector<std::string> shaders{variant("2_collect_splats.comp", passes::collect_constants(collect))};
+        if (collect.edges) shaders.push_back(variant("2a_finish_splats.comp", passes::finish_constants(collect)));
+        add("setup", "2_collect_splats", kRates.collect_voxel * voxels + kRates.collect_splat * splats, shaders);
+    }
+
+    void add_reach(const FrameRequest& request, const FrameForecast& f) {
+        const double splats = static_cast<double>(f.splats.splats);
+        const Clip& clip = request.scene.effects.clip;
+        if (f.occluded) {
+            add("setup", "2b_occlude_ambient", kRates.occlude_splat * splats,
+                {variant("2b_occlude_ambient.comp",
+                         passes::occlude_constants({.iso_count = f.collection.params.iso_count,
+                                                    .clip = {static_cast<std::uint32_t>(clip.keep.size()),
+                                                             static_cast<std::uint32_t>(clip.remove.size())},
+                                                    .transfer = !request.scene.transfer.empty()}))});
+        }
+        if (f.light_frames.empty()) return;
+        double sweep = 0;
+        for (const FramePlan& light : f.light_frames) {
+            const double pixels = static_cast<double>(light.params.size.x) * light.params.size.y;
+            sweep += kRates.draw_entry * splats * light.sheets_per_splat +
+                     kRates.composite_pixel * pixels * light.params.sheet_count * 2;
+        }
+        add("setup", "2c_sweep_light", sweep,
+            {variant("5b_draw_splats.vert, 5b_draw_splats.frag",
+                     passes::draw_constants(f.light_frames.front().variant)),
+             "2c_sweep_light.comp"});
+        add("setup", "2d_shadow_splats", kRates.select_splat * splats * static_cast<double>(f.light_frames.size()),
+            {variant("2d_shadow_splats.comp",
+                     {{shader::SPEC_CLIP_KEEP, f.light_frames.front().variant.clip.keep},
+                      {shader::SPEC_CLIP_REMOVE, f.light_frames.front().variant.clip.remove}})});
+    }
+
+    void add_draw(const FrameRequest& request, const ForecastDraw& draw) {
+        const FramePlan& plan = draw.plan;
+        const auto& p = plan.params;
+        const double splats = p.splat_count, pixels = static_cast<double>(p.size.x) * p.size.y;
+        const double entries = splats * (plan.variant.sliced ? 0.6 * plan.sheets_per_splat : 1);
+        const char* name = draw.name.c_str();
+        const int samples = plan.variant.payload == shader::PAYLOAD_COLOR ? request.scene.effects.samples : 1;
+        again_ = samples * samples;
+        const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
+        const double drawing = kRates.draw_entry * entries +
+                               (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan);
+        add(name, "3_select_footprints", kRates.select_splat * splats,
+            {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
+        add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
+            {variant("4a_count_sheets.comp", passes::count_constants(plan.variant)),
+             variant("4b_scan_sheets.comp", passes::scan_constants(plan.variant)),
+             variant("4c_scatter_splats.comp", passes::scatter_constants(plan.variant))});
+        if (plan.variant.tiles) {
+            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
+                {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});
+            add(name, "4_prepare_splats", kRates.draw_entry * entries,
+                {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
+            add(name, "4_mark_pixels", kRates.draw_entry * entries,
+                {variant(
+                    "4h_mark_pixels.comp",
+                    passes::mark_pixels_constants(
+                        plan.variant, {.rounds = software_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
+            add(name, "5_draw_tiles", drawing,
+                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_,
+                                                                                    .refined = plan.refined,
+                                                                                    .wide_marks = plan.wide_marks}))});
+            // A picture whose splats turn out to be small is drawn without.
+            if (plan.refined) {
+                std::vector<std::string> steps;
+                for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
+                    steps.push_back(variant("5_refine_pixels.comp", passes::refine_constants(step)));
+                add(name, "5_refine_pixels", kRates.composite_pixel * pixels, steps);
+                out_.back().depends = true;
+            }
+        } else {
+            add(name, "5_draw_splats", drawing,
+                {"group_rect.vert, 5a_clear_sheets.frag",
+                 variant("5b_draw_splats.vert, 5b_draw_splats.frag", passes::draw_constants(plan.variant))});
+            add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
+                {variant("group_rect.vert, 6_composite_sheet.frag", {{shader::SPEC_PAYLOAD, plan.variant.payload}})});
+        }
+        add(name, "7_resolve", kRates.resolve_pixel * pixels,
+            {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
+    }
+
+    std::vector<PassDescription> take() { return std::move(out_); }
+
+  private:
+    double milliseconds_per_;
+    bool software_;
+    int again_ = 1;  ///< how often a pass runs
+    std::vector<PassDescription> out_;
+};
+
+}  // namespace
+
+std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
+                                              bool software) {
+    Passes passes(software);
+    passes.add_setup(forecast);
+    passes.add_reach(request, forecast);
+    for (const ForecastDraw& draw : forecast.draws)
+        passes.add_draw(request, draw);
+    return passes.take();
+}
+
+std::string estimate_basis(bool software) {
+    std::string text =
+        "estimates: round numbers of nanoseconds per voxel, splat, sheet entry, fragment and pixel for two processor "
+        "cores; they rank passes and may be several times off";
+    return software ? text : text + fmt::format("; divided by {:g} for a GPU, which is a guess", kGpuFactor);
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,218 @@
+// Effects of light and colour that a scene calls for.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/forecast/effect_rows.h"
+#include "engine/plan/plan.h"
+#include "engine/store/light.h"
+#include "shaders/shared/limits.h"
+
+namespace edgesplat {
+namespace {
+
+std::string_view kind_name(Light::Kind kind) {
+    switch (kind) {
+        case Light::Kind::Directional:
+            return "directional";
+        case Light::Kind::Point:
+            return "a point";
+        case Light::Kind::Headlight:
+            break;
+    }
+    return "a headlight";
+}
+
+/// Lists the numbers of those for which `is` holds: "0, 2".
+template <typename Things, typename Is>
+std::string numbers(const Things& things, const Is& is) {
+    std::string text;
+    for (std::size_t i = 0; i < things.size(); ++i)
+        if (is(things[i])) text += fmt::format("{}{}", text.empty() ? "" : ", ", i);
+    return text;
+}
+
+void light(FrameRequest& request) {
+    request.scene.lights = {directional_light({-1, -1, 1})};
+}
+
+std::string shadow_reason(const FrameRequest& r) {
+    const auto numbers = shadow_lights(r.scene);
+    if (numbers.empty()) return "";
+    const ShadowQuality& quality = r.scene.effects.shadows;
+    return fmt::format("lights[{}]{} cast{} shadows, seen by {} x {} pixels and at most {} layers", numbers[0],
+                       numbers.size() > 1 ? fmt::format(" and lights[{}]", numbers[1]) : "",
+                       numbers.size() > 1 ? "" : "s", quality.resolution, quality.resolution, quality.layers);
+}
+
+std::string occlusion_reason(const FrameRequest& r) {
+    if (!occludes_ambient(r.scene)) return "";
+    return fmt::format("occlusion within {:g} mm, {:g} of it shown", r.scene.effects.occlusion->radius,
+                       r.scene.effects.occlusion->strength);
+}
+
+/// What the materials are, as a transfer function that rises from nothing to the uppermost.
+constexpr double kFaintest = 1e-3;  ///< of the ramp, in shares of its end
+
+void ramp(FrameRequest& request) {
+    const auto low = static_cast<double>(request.volume->min_value);
+    const auto high = static_cast<double>(request.volume->max_value);
+    const Material& material = request.scene.materials.back();
+    request.scene.transfer = {{low, material.color, kFaintest * material.extinction},
+                              {high, material.color, material.extinction}};
+}
+
+/// Every voxel absorbs, as with the ramp.
+void faint(FrameRequest& request) {
+    const double least = kFaintest * request.scene.materials.back().extinction;
+    for (Material& material : request.scene.materials)
+        material.extinction = std::max(material.extinction, least);
+}
+
+}  // namespace
+
+std::vector<Effect> light_effects() {
+    std::vector<Effect> rows;
+    rows.push_back({.name = "light",
+                    .help = "surfaces are shaded by their normals",
+                    .call = "lights[0]; --light headlight or X,Y,Z (a headlight by default)",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (r.scene.lights.empty()) return "";
+                        return fmt::format("lights[0] is {}", kind_name(r.scene.lights.front().kind));
+                    },
+                    .turn_on = light,
+                    .passes = {"1_estimate_edges"},
+                    .resources = {"edge field"},
+                    .constants = {{shader::SPEC_LIGHT, "SPEC_LIGHT"}, {shader::SPEC_EDGES, "SPEC_EDGES"}},
+                    .frame_fields = {"light_at", "light_color", "ambient"}});
+    rows.push_back({.name = "shadows",
+                    .help = "what stands in a light's way darkens what lies behind it",
+                    .call = "lights[].shadows",
+                    .reason = shadow_reason,
+                    .turn_on = [](FrameRequest& r) { light(r), r.scene.lights[0].shadows = true; },
+                    .base = light,
+                    .passes = {"2c_sweep_light", "2d_shadow_splats"},
+                    .resources = {"splat shadows"},
+                    .record = {{"light that reaches the splat", 4}},
+                    .constants = {{shader::SPEC_SHADOWS, "SPEC_SHADOWS"}},
+                    .frame_fields = {"splat_shadows", "shadow_channels"}});
+    rows.push_back({.name = "ambient occlusion",
+                    .help = "light from everywhere reaches hollows less",
+                    .call = "effects.occlusion",
+                    .reason = occlusion_reason,
+                    .turn_on = [](FrameRequest& r) { light(r), r.scene.effects.occlusion = AmbientOcclusion{}; },
+                    .base = light,
+                    .passes = {"2b_occlude_ambient"},
+                    .resources = {"splat occlusion"},
+                    .record = {{"ambient light that reaches the splat", 4}},
+                    .constants = {{shader::SPEC_OCCLUSION, "SPEC_OCCLUSION"}},
+                    .frame_fields = {"splat_occlusion", "occlusion_strength"}});
+    rows.push_back({.name = "several lights",
+                    .help = "up to four lights of three kinds, each of its own colour",
+                    .call = "lights[1], lights[2], lights[3]; --light, repeated",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const std::size_t count = r.scene.lights.size();
+                        return count > 1 ? fmt::format("there are {} lights", count) : "";
+                    },
+                    .turn_on =
+                        [](FrameRequest& r) {
+                            Light second;
+                            second.kind = Light::Kind::Point;
+                            second.position = r.camera.eye;
+                            second.color = {1, 0.6, 0.4};
+                            if (r.scene.lights.empty()) light(r);
+                            r.scene.lights.push_back(second);
+                        },
+                    .base = light,
+                    .constants = {{shader::SPEC_LIGHT, "SPEC_LIGHT", 1}}});
+    rows.push_back({.name = "response to light",
+                    .help = "materials take ambient, diffuse and specular light in shares of their own",
+                    .call = "materials[i].response",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (r.scene.lights.empty()) return "";
+                        const std::string which = numbers(r.scene.materials, [&](const Material& m) {
+                            const LightResponse usual;
+                            const LightResponse& own = m.response;
+                            return (m.extinction > 0 || !r.scene.transfer.empty()) &&
+                                   (own.ambient != usual.ambient || own.diffuse != usual.diffuse ||
+                                    own.specular != usual.specular);
+                        });
+                        return which.empty() ? "" : fmt::format("materials {} have their own response", which);
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.materials.back().response.diffuse = 0.7; },
+                    .base = light,
+                    .constants = {{shader::SPEC_RESPONSE, "SPEC_RESPONSE"}},
+                    .frame_fields = {"responses"}});
+    rows.push_back({.name = "gloss",
+                    .help = "highlights (Blinn and Phong) on materials that shine",
+                    .call = "materials[i].response.specular > 0",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (r.scene.lights.empty()) return "";
+                        const std::string which = numbers(r.scene.materials, [&](const Material& m) {
+                            return (m.extinction > 0 || !r.scene.transfer.empty()) && m.response.specular > 0;
+                        });
+                        return which.empty() ? "" : fmt::format("materials {} have a specular response", which);
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.materials.back().response.specular = 0.5; },
+                    .base =
+                        [](FrameRequest& r) {
+                            light(r);
+                            r.scene.materials.back().response.diffuse = 0.7;
+                        },
+                    .constants = {{shader::SPEC_GLOSS, "SPEC_GLOSS"}}});
+    rows.push_back({.name = "light on edges only",
+                    .help = "splats away from edges are not shaded by their gradient",
+                    .call = "lit = \"edges\"",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const bool on = wants_normals(r.scene) && only_edges_lit(r.scene, draws_warped(r.settings));
+                        return on ? "lit is `edges`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.lit = Lit::Edges; },
+                    .base =
+                        [](FrameRequest& r) {
+                            light(r);
+                            r.settings.edges = EdgeEstimator::March;
+                            r.settings.footprints = FootprintMode::Procedural;
+                        },
+                    .constants = {{shader::SPEC_LIT_EDGES, "SPEC_LIT_EDGES"}}});
+    rows.push_back({.name = "silhouettes",
+                    .help = "surfaces darken, or take a colour, where they turn away from the eye",
+                    .call = "effects.silhouette; --silhouette",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const auto& silhouette = r.scene.effects.silhouette;
+                        return silhouette ? fmt::format("effects.silhouette has strength {}", silhouette->strength)
+                                          : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.silhouette = Silhouette{}; },
+                    .passes = {"1_estimate_edges"},
+                    .resources = {"edge field"},
+                    .constants = {{shader::SPEC_SILHOUETTE, "SPEC_SILHOUETTE"}, {shader::SPEC_EDGES, "SPEC_EDGES"}},
+                    .frame_fields = {"silhouette", "silhouette_sharpness"}});
+    rows.push_back({.name = "fog",
+                    .help = "what is further away goes towards the fog's colour",
+                    .call = "effects.fog; --fog DENSITY",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const auto& fog = r.scene.effects.fog;
+                        return fog ? fmt::format("effects.fog has density {} per mm", fog->density) : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.fog = Fog{}; },
+                    .constants = {{shader::SPEC_FOG, "SPEC_FOG"}},
+                    .frame_fields = {"fog", "fog_start"}});
+    rows.push_back({.name = "transfer function",
+                    .help = "colour and extinction by piecewise-linear functions of the value",
+                    .call = "transfer, a list of points",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (r.scene.transfer.empty()) return "";
+                        return fmt::format("transfer has {} points", r.scene.transfer.size());
+                    },
+                    .turn_on = ramp,
+                    .base = faint,
+                    .resources = {"transfer function", "classified values"},
+                    .record = {{"classified value", 4}},
+                    .constants = {{shader::SPEC_TRANSFER, "SPEC_TRANSFER"}},
+                    .frame_fields = {"transfer", "values"},
+                    .scene_fields = {"transfer", "values"}});
+    return rows;
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,117 @@
+// Effects that the settings call for.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "engine/forecast/effect_rows.h"
+#include "engine/forecast/forecast.h"
+#include "shaders/shared/limits.h"
+
+namespace edgesplat {
+namespace {
+
+void cut_at_faces(FrameRequest& request) {
+    request.settings.edges = EdgeEstimator::March;
+    request.settings.footprints = FootprintMode::Procedural;
+    request.settings.warp = WarpFamily::Face;
+}
+
+}  // namespace
+
+void make_opaque(FrameRequest& request) {
+    const glm::dvec3 spacing = request.volume->geometry.spacing();
+    request.scene.materials.back().extinction = 2 / std::min({spacing.x, spacing.y, spacing.z});
+}
+
+std::vector<Effect> settings_effects() {
+    std::vector<Effect> rows;
+    rows.push_back(
+        {.name = "edge preservation",
+         .help =
+             "kernels are cut at the surface, a quadric that is found once, and lit where rays meet it: it stays sharp "
+             "however near it is looked at",
+         .call = "settings.edges, warp and footprints; --edges, --warp, --footprints (on by default)",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const Settings s = drawn_settings(r);
+             if (!draws_warped(s)) return "";
+             return draws_faces(s) ? fmt::format("edges are found ({}) and kernels cut at faces", name_of(s.edges))
+                                   : fmt::format("edges are found ({}) and kernels warped by the paper's curve ({})",
+                                                 name_of(s.edges), name_of(s.footprints));
+         },
+         .turn_on = cut_at_faces,
+         .passes = {"1_estimate_edges"},
+         .resources = {"edge field", "splat traits"},
+         .resized = {"prepared splats", "tile entries", "tile marks"},
+         .record = {{"bending", 8}},
+         .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR"},
+                       {shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS"},
+                       {shader::SPEC_EDGES, "SPEC_EDGES"},
+                       {shader::SPEC_FACES, "SPEC_FACES"}},
+         .frame_fields = {"footprint", "traits"},
+         .scene_fields = {"traits"}});
+    rows.push_back({.name = "spline edges",
+                    .help = "edges are found on the cubic B-spline through the samples",
+                    .call = "settings.edges = \"cubic\"; --edges cubic",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const Settings s = drawn_settings(r);
+                        return draws_warped(s) && s.edges == EdgeEstimator::Cubic ? "edges are estimated by `cubic`"
+                                                                                  : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.edges = EdgeEstimator::Cubic; },
+                    .base = cut_at_faces,
+                    .resources = {"B-spline coefficients"},
+                    .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 2}}});
+    rows.push_back({.name = "sliced sheets",
+                    .help = "kernels are cut at the planes between sheets, so that nothing pops as the eye moves",
+                    .call = "settings.sheets = \"sliced\"; --sheets sliced",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (drawn_settings(r).sheets != SheetCut::Sliced) return "";
+                        return fmt::format("sheets are `sliced`, {} voxel apart", r.settings.sheet_spacing);
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.sheets = SheetCut::Sliced; },
+                    .resized = {"splat order", "sort counters", "pairs of sheets", "sheet starts", "chunks of sheets",
+                                "prepared splats"},
+                    .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 6}}});
+    rows.push_back({.name = "refined pixels",
+                    .help = "where the picture is smooth one pixel of four or sixteen is drawn, and the others follow",
+                    .call = "settings.pixels = \"refined\"; --pixels refined (on by default)",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const Settings s = drawn_settings(r);
+                        const bool refined = s.pixels == PixelChoice::Refined && s.sheet_format == SheetFormat::Tiles;
+                        return refined ? "pixels are `refined`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.pixels = PixelChoice::Refined; },
+                    .base =
+                        [](FrameRequest& r) {
+                            // Near enough that splats are many pixels wide.
+                            r.settings.pixels = PixelChoice::Every;
+                            r.camera.fov_y *= 0.6;
+                            r.size *= 4;
+                        },
+                    .passes = {"5_refine_pixels"},
+                    .resources = {"lists of pixels", "closed pixels, seen", "finest splats of tiles"},
+                    .resized = {"tile order", "tile entries"},
+                    .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}, {shader::SPEC_GROUP, "SPEC_GROUP", 256}},
+                    .frame_fields = {"tile_finest"}});
+    rows.push_back(
+        {.name = "buried voxels",
+         .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
+         .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const bool keep = r.outputs.tau || eye_in_opaque(*r.volume, r.scene, r.camera);
+             const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keep);
+             if (!plan.buried) return "";
+             return fmt::format("what lies {} voxels behind an opaque surface cannot be seen",
+                                plan.params.bury_distance);
+         },
+         .turn_on = [](FrameRequest& r) { r.settings.cull_buried = true; },
+         .base = make_opaque,
+         .passes = {"1a_mark_buried"},
+         .resources = {"buried mask"},
+         .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "prepared splats"},
+         .constants = {{shader::SPEC_BURIED, "SPEC_BURIED"}},
+         .scene_fields = {"opaque_mask", "bury_distance"}});
+    return rows;
+}
+
+}  // namespace edgesplat

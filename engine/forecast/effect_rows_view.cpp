@@ -1,0 +1,87 @@
+// Effects of what is cut away, of sampling, and of what is drawn behind and over the volume.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "engine/forecast/effect_rows.h"
+#include "shaders/shared/limits.h"
+
+namespace edgesplat {
+
+std::vector<Effect> view_effects() {
+    std::vector<Effect> rows;
+    rows.push_back(
+        {.name = "clip",
+         .help = "what lies beyond planes, or within a box, is cut away sharply; the cut is lit by its own normal",
+         .call = "effects.clip.keep, remove; --clip",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const Clip& clip = r.scene.effects.clip;
+             if (clip.empty()) return "";
+             return fmt::format("effects.clip has {} planes to keep within, {} to remove within", clip.keep.size(),
+                                clip.remove.size());
+         },
+         .turn_on =
+             [](FrameRequest& r) {
+                 const VolumeGeometry& g = r.volume->geometry;
+                 const glm::dvec3 middle = g.center();
+                 r.scene.effects.clip.keep = {{middle, r.camera.eye - middle + glm::dvec3(0, 0, 1e-3)}};
+                 r.scene.effects.clip.remove = {{middle, middle - r.camera.eye + glm::dvec3(0, 1e-3, 0)},
+                                                {g.to_world(glm::dvec3(g.dims - 1) * 0.25), glm::dvec3(-1, 0, 0)}};
+             },
+         .base =
+             [](FrameRequest& r) {
+                 make_opaque(r);
+                 r.settings.cull_buried = true;
+             },
+         .resized = {"splat list", "batches of splats", "sheets of splats", "splat order", "sort counters",
+                     "tiles of splats", "pairs of sheets", "sheet starts", "chunks of sheets", "prepared splats"},
+         .constants = {{shader::SPEC_CLIP_KEEP, "SPEC_CLIP_KEEP"}, {shader::SPEC_CLIP_REMOVE, "SPEC_CLIP_REMOVE"}},
+         .frame_fields = {"clip_keep", "clip_remove"},
+         .scene_fields = {"clip_keep", "clip_remove"}});
+    rows.push_back({.name = "antialias",
+                    .help = "no footprint is narrower than a pixel, and what it holds is kept",
+                    .call = "effects.antialias; --antialias",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return r.scene.effects.antialias ? "effects.antialias is true" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.antialias = true; },
+                    .resized = {"prepared splats"},
+                    .constants = {{shader::SPEC_ANTIALIAS, "SPEC_ANTIALIAS"}},
+                    .frame_fields = {"pixel"}});
+    rows.push_back({.name = "samples",
+                    .help = "a pixel is the mean of n x n rays, each a picture of its own",
+                    .call = "effects.samples; --samples",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const int n = r.scene.effects.samples;
+                        return n > 1 ? fmt::format("effects.samples is {}: {} pictures", n, n * n) : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.samples = 2; }});
+    rows.push_back({.name = "background of two colours",
+                    .help = "the background goes from one colour at the bottom to another at the top",
+                    .call = "effects.background_top",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const auto& top = r.scene.effects.background_top;
+                        return top ? fmt::format("effects.background_top is {}, {}, {}", top->x, top->y, top->z) : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.background_top = glm::dvec3(0.3, 0.4, 0.6); },
+                    .constants = {{shader::SPEC_GRADIENT, "SPEC_GRADIENT"}},
+                    .frame_fields = {"background_top"}});
+    rows.push_back(
+        {.name = "overlays",
+         .help = "axes, scale bar and legend, drawn over the picture by the host",
+         .call = "effects.overlays.orientation, scale_bar, legend; --overlay",
+         .reason = [](const FrameRequest& r) -> std::string {
+             const Overlays& o = r.scene.effects.overlays;
+             std::vector<std::string_view> on;
+             for (const auto& [shown, name] :
+                  {std::pair{o.orientation, "orientation"}, {o.scale_bar, "scale_bar"}, {o.legend, "legend"}})
+                 if (shown) on.emplace_back(name);
+             return on.empty() ? "" : fmt::format("effects.overlays: {}", fmt::join(on, ", "));
+         },
+         .turn_on =
+             [](FrameRequest& r) {
+                 r.scene.effects.overlays = {true, true, true};
+             }});
+    return rows;
+}
+
+}  // namespace edgesplat

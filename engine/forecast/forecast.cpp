@@ -1,0 +1,150 @@
+#include "engine/forecast/forecast.h"
+
+#include <algorithm>
+
+#include "engine/passes/2_collect_splats.h"
+#include "engine/store/light.h"
+#include "engine/volume/filters.h"
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+namespace {
+
+/// 1 where the cube [-reach, reach]^3 lies in the volume and is opaque: windows along one axis at a time, as pass 1a.
+std::vector<std::uint8_t> buried_voxels(std::vector<std::uint8_t> opaque, const glm::ivec3& dims, int reach) {
+    const std::size_t strides[3] = {1, static_cast<std::size_t>(dims.x),
+                                    static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
+    std::vector<std::uint8_t> line;
+    for (int axis = 0; axis < 3; ++axis) {
+        const int count = dims[axis], a = (axis + 1) % 3, b = (axis + 2) % 3;
+        line.resize(static_cast<std::size_t>(count));
+        for (int i = 0; i < dims[a]; ++i) {
+            for (int j = 0; j < dims[b]; ++j) {
+                std::uint8_t* first =
+                    &opaque[static_cast<std::size_t>(i) * strides[a] + static_cast<std::size_t>(j) * strides[b]];
+                for (int k = 0; k < count; ++k)
+                    line[static_cast<std::size_t>(k)] = first[static_cast<std::size_t>(k) * strides[axis]];
+                int run = 0;
+                for (int k = 0; k < count; ++k) {
+                    run = line[static_cast<std::size_t>(k)] != 0 ? run + 1 : 0;
+                    if (k >= reach) {
+                        first[static_cast<std::size_t>(k - reach) * strides[axis]] = run > 2 * reach ? 1 : 0;
+                    }
+                }
+                for (int k = std::max(count - reach, 0); k < count; ++k)
+                    first[static_cast<std::size_t>(k) * strides[axis]] = 0;
+            }
+        }
+    }
+    return opaque;
+}
+
+/// is_cut_away() of shaders/common/clip.glsl, in its precision.
+bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& clip, const glm::vec3& at, float radius) {
+    bool beyond = false, within = clip.remove > 0;
+    for (std::uint32_t i = 0; i < clip.keep; ++i)
+        beyond = beyond || glm::dot(params.clip_keep[i], glm::vec4(at, 1)) > radius;
+    for (std::uint32_t i = 0; i < clip.remove; ++i)
+        within = within && glm::dot(params.clip_remove[i], glm::vec4(at, 1)) < -radius;
+    return beyond || within;
+}
+
+}  // namespace
+
+SplatCount most_splats(const VolumeGeometry& geometry) {
+    return {SplatCount::From::Voxels, geometry.voxel_count(), glm::ivec3(0), geometry.dims - 1};
+}
+
+SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
+    const auto& params = plan.params;
+    const glm::ivec3 dims = plan.dims;
+    const auto voxels = static_cast<std::uint64_t>(volume.values.size());
+    const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
+    std::vector<std::uint8_t> visible(voxels), opaque(plan.buried ? voxels : 0);
+    for (std::uint64_t i = 0; i < voxels; ++i) {
+        const auto scaled = static_cast<float>(scaled_value(volume, static_cast<double>(volume.values[i])));
+        std::uint32_t material = 0;
+        for (std::uint32_t j = 0; j < params.iso_count; ++j)
+            material += params.iso[j] <= scaled ? 1U : 0U;
+        visible[i] = params.visible_mask >> material & 1U;
+        if (plan.buried) opaque[i] = params.opaque_mask >> material & 1U;
+        if (!plan.clip.any()) continue;
+        const glm::ivec3 at(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny));
+        if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
+        if (is_cut_away(params, plan.clip, at, params.reach)) visible[i] = 0;
+    }
+    if (plan.buried) {
+        const auto buried = buried_voxels(std::move(opaque), dims, params.bury_distance);
+        for (std::uint64_t i = 0; i < voxels; ++i)
+            visible[i] &= buried[i] == 0 ? 1U : 0U;
+    }
+    SplatCount out{SplatCount::From::Materials};
+    VoxelBox box;
+    BrickRuns(dims).each_brick([&](const VoxelBox& brick, std::uint64_t, std::uint64_t) {
+        for (int z = brick.low.z; z <= brick.high.z; ++z) {
+            std::uint64_t count = 0;
+            for (int y = brick.low.y; y <= brick.high.y; ++y) {
+                const std::uint64_t row = (static_cast<std::uint64_t>(z) * ny + static_cast<std::uint64_t>(y)) * nx;
+                const auto at = visible.begin() + static_cast<std::ptrdiff_t>(row);
+                count +=
+                    static_cast<std::uint64_t>(std::count(at + brick.low.x, at + brick.high.x + 1, std::uint8_t{1}));
+            }
+            out.splats += count;
+            if (count > 0) box.add(brick.slice(z));
+        }
+    });
+    out.box_low = box.empty() ? glm::ivec3(0) : box.low;
+    out.box_high = box.empty() ? dims - 1 : box.high;
+    return out;
+}
+
+Settings drawn_settings(const FrameRequest& request) {
+    return drawn_as(request.settings, request.scene);
+}
+
+std::vector<std::uint32_t> payloads_of(const AovRequest& outputs) {
+    std::vector<std::uint32_t> payloads{shader::PAYLOAD_COLOR};
+    if (outputs.tau) payloads.push_back(shader::PAYLOAD_TAU);
+    if (outputs.depth || outputs.distance) payloads.push_back(shader::PAYLOAD_DEPTH_DISTANCE);
+    if (outputs.normal) payloads.push_back(shader::PAYLOAD_NORMAL);
+    return payloads;
+}
+
+CollectionPlan planned_collection(const FrameRequest& request) {
+    return plan_collection(*request.volume, request.scene, drawn_settings(request), keeps_buried(request));
+}
+
+bool keeps_buried(const FrameRequest& request) {
+    return request.outputs.tau || eye_in_opaque(*request.volume, request.scene, request.camera);
+}
+
+FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
+                             double reach) {
+    FrameForecast out;
+    out.settings = drawn_settings(request);
+    out.collection = collection;
+    out.splats = splats;
+    for (const std::uint32_t payload : payloads_of(request.outputs)) {
+        const char* names[] = {"colour", "tau", "depth, distance", "normal"};
+        out.draws.push_back(
+            {names[payload], plan_frame(*request.volume, request.scene, request.camera, out.settings, request.size,
+                                        payload, splats.splats, splats.box_low, splats.box_high, reach)});
+    }
+    if (!shadow_lights(request.scene).empty()) {
+        const ShadowPlan shadows = plan_shadows(request.scene, out.settings);
+        VolumeResources places;
+        places.splat_count = splats.splats;
+        places.box_low = splats.box_low;
+        places.box_high = splats.box_high;
+        for (const Light& light : shadows.lights)
+            for (const Camera& view : light_views(light, request.volume->geometry, splats.box_low, splats.box_high,
+                                                  reach, shadows.quality.resolution))
+                out.light_frames.push_back(
+                    plan_light_frame(*request.volume, request.scene, shadows, view, places, reach));
+    }
+    out.occluded = occludes_ambient(request.scene);
+    out.resources = planned_resources(out);
+    return out;
+}
+
+}  // namespace edgesplat

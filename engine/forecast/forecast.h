@@ -1,0 +1,80 @@
+// What a request will run and hold, found before anything is allocated and without a device.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/forecast/effect_table.h"
+#include "engine/gpu/image.h"
+#include "engine/plan/plan.h"
+
+namespace edgesplat {
+
+/// How many splats there are, and the voxels that hold them.
+struct SplatCount {
+    enum class From { Voxels, Materials, Frame };
+    From from = From::Voxels;  ///< every voxel; those that can be seen, found on the host; as collected
+    std::uint64_t splats = 0;
+    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive, whole rows (VolumeResources)
+};
+
+/// As if every voxel were a splat.
+SplatCount most_splats(const VolumeGeometry& geometry);
+
+/// The voxels that pass 2 keeps, counted on the host, pass 1a included: about 10 ns per voxel.
+SplatCount count_splats(const Volume& volume, const CollectionPlan& plan);
+
+/// When something is held. Only one of the last four at a time; what a picture is drawn with stays until the next.
+enum class Held { Always, Uploading, Occluding, Sweeping, Drawing };
+
+/// An image or a buffer that a frame holds.
+struct PlannedResource {
+    std::string name;                      ///< as it is allocated
+    std::optional<gpu::ImageShape> image;  ///< else a buffer
+    std::uint64_t bytes = 0;               ///< of its texels or elements; the device may round up
+    vk::Format texels{};                   ///< of a buffer that shaders have as texels
+    std::string contents;                  ///< "(splats) uint"
+    std::string written, read;             ///< stems of passes, or "host"
+    bool host = false;                     ///< in memory that the host reads or writes
+    bool grows = false;                    ///< a larger one of an earlier frame is kept
+    Held held = Held::Always;
+};
+
+/// One draw of the splats: the picture first, then the extra outputs.
+struct ForecastDraw {
+    std::string name;  ///< "colour", "tau", "depth, distance" or "normal"
+    FramePlan plan;
+};
+
+struct FrameForecast {
+    Settings settings;  ///< as drawn: drawn_as()
+    CollectionPlan collection;
+    SplatCount splats;
+    std::vector<ForecastDraw> draws;
+    std::vector<FramePlan> light_frames;     ///< pictures that the lights with shadows take
+    bool occluded = false;                   ///< ambient light is
+    std::vector<PlannedResource> resources;  ///< everything a Renderer holds at some time of this frame
+};
+
+/// The request's settings as they are drawn: drawn_as().
+Settings drawn_settings(const FrameRequest& request);
+
+/// The payloads that a request draws, colour first: shader::PAYLOAD_*.
+std::vector<std::uint32_t> payloads_of(const AovRequest& outputs);
+
+/// Whether nothing may be dropped for being buried.
+bool keeps_buried(const FrameRequest& request);
+
+/// The resources of `forecast`, from its plans.
+std::vector<PlannedResource> planned_resources(const FrameForecast& forecast);
+
+/// What the request's passes 1 and 2 do.
+CollectionPlan planned_collection(const FrameRequest& request);
+
+/// `collection` is planned_collection(request), `reach` kernel_reach(drawn_settings(request)). Throws Error as
+/// plan_frame does.
+FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
+                             double reach);
+
+}  // namespace edgesplat

@@ -1,0 +1,373 @@
+#include "engine/plan/plan.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+#include "engine/error.h"
+#include "engine/scene/clip_planes.h"
+#include "engine/scene/transfer_function.h"
+#include "engine/store/light.h"
+#include "engine/volume/filters.h"
+#include "engine/volume/packed_volume.h"
+#include "footprints/face.h"
+#include "footprints/kernel.h"
+#include "footprints/paper_warp.h"
+
+namespace edgesplat {
+
+namespace {
+
+// An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
+constexpr double kOpaquePerVoxel = 0.75;
+// Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4
+// to 8.
+constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
+constexpr std::uint32_t kMaxSheetsPerGroup = 8;
+// Each invocation of 4b_scan_sheets goes through four counters a sheet.
+constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
+// Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
+constexpr double kThinSlice = 0.3;
+constexpr int kSliceNodes = 4;
+constexpr double kFarthestPointLight = 1e12;  // mm
+
+/// Millimetres per voxel along the axis of shortest step.
+double shortest_step(const VolumeGeometry& geometry) {
+    const auto spacing = geometry.spacing();
+    return std::min({spacing.x, spacing.y, spacing.z});
+}
+
+bool is_opaque(double extinction, const VolumeGeometry& geometry) {
+    return extinction * shortest_step(geometry) >= kOpaquePerVoxel;
+}
+
+/// What the device is given: so much that nothing is seen behind a voxel of it, and so little that the sums and means
+/// over a picture's splats stay within a float.
+double bounded(double extinction, const VolumeGeometry& geometry) {
+    constexpr double kMostAVoxel = 1e20;
+    const glm::dvec3 s = geometry.spacing();
+    return std::min(extinction, kMostAVoxel / std::max({s.x, s.y, s.z}));
+}
+
+std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume& volume) {
+    std::vector<shader::TransferRow> rows;
+    for (const TransferPoint& point : scaled_transfer(scene, volume))
+        rows.push_back(
+            {static_cast<float>(point.value), glm::dvec4(point.color, bounded(point.extinction, volume.geometry))});
+    if (!rows.empty()) rows.resize(shader::TRANSFER_ROWS + 1, {3e38F, rows.back().matter});
+    return rows;
+}
+
+/// Voxels behind a surface of this extinction per voxel where 1/256 of the light is left, beyond the kernel's radius.
+int bury_distance(double extinction_per_voxel) {
+    return static_cast<int>(std::ceil(kKernelRadius + std::log(256.0) / extinction_per_voxel));
+}
+
+glm::vec3 to_float(const glm::dvec3& v) {
+    return {v};
+}
+
+bool same_row(const shader::TransferRow& a, const shader::TransferRow& b) {
+    return a.value == b.value && a.matter == b.matter;
+}
+
+/// As FrameParams::light_at.
+glm::vec4 place_of(const Light& light, const glm::dvec3& eye) {
+    switch (light.kind) {
+        case Light::Kind::Headlight:
+            break;
+        case Light::Kind::Directional:
+            return {to_float(unit(light.direction)), 0};
+        case Light::Kind::Point: {
+            const glm::dvec3 place = light.position - eye;
+            // From further away its rays are parallel, and float32 holds no squares of such lengths.
+            const bool far = !(glm::length(place) < kFarthestPointLight);
+            return far ? glm::vec4(to_float(unit(place)), 0) : glm::vec4(to_float(place), 1);
+        }
+    }
+    return {0, 0, 0, 1};
+}
+
+bool answers_in_its_own_way(const Material& material) {
+    const LightResponse usual;
+    const LightResponse& r = material.response;
+    return r.ambient != usual.ambient || r.diffuse != usual.diffuse || r.specular != usual.specular;
+}
+
+/// What the picture's colours take beside those of the materials.
+void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3& eye, FramePlan& plan) {
+    auto& variant = plan.variant;
+    auto& p = plan.params;
+    variant.lights = static_cast<std::uint32_t>(scene.lights.size());
+    p.ambient = static_cast<float>(scene.ambient);
+    for (std::size_t l = 0; l < scene.lights.size(); ++l) {
+        const Light& light = scene.lights[l];
+        p.light_at[l] = place_of(light, eye);
+        p.light_color[l] = glm::vec4(to_float(light.color * light.intensity), 0);
+    }
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const Material& material = scene.materials[m];
+        const LightResponse& r = material.response;
+        p.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
+        if (scene.lights.empty() || !(extinctions_of(scene, m).most > 0)) continue;
+        variant.response = variant.response || answers_in_its_own_way(material);
+        variant.gloss = variant.gloss || r.specular > 0;
+    }
+    if (const auto& silhouette = scene.effects.silhouette) {
+        variant.silhouette = true;
+        p.silhouette = glm::dvec4(silhouette->color, silhouette->strength);
+        p.silhouette_sharpness = static_cast<float>(silhouette->sharpness);
+    }
+    if (const auto& fog = scene.effects.fog) {
+        variant.fog = true;
+        p.fog = glm::dvec4(fog->color, fog->density);
+        p.fog_start = static_cast<float>(fog->start);
+    }
+    if (occludes_ambient(scene)) {
+        variant.occlusion = true;
+        p.occlusion_strength = static_cast<float>(scene.effects.occlusion->strength);
+    }
+    variant.shadows = static_cast<std::uint32_t>(shadow_lights(scene).size());
+    p.shadow_channels = shadow_channels(scene);
+    variant.lit_edges = wants_normals(scene) && only_edges_lit(scene, draws_warped(settings));
+}
+
+void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shader::MAX_CLIP_PLANES]) {
+    for (std::size_t i = 0; i < planes.size(); ++i)
+        params[i] = glm::vec4(to_float(planes[i].normal), static_cast<float>(planes[i].offset));
+}
+
+template <typename Enum>
+constexpr bool is(Enum value, std::uint32_t constant) {
+    return static_cast<std::uint32_t>(value) == constant;
+}
+static_assert(is(EdgeEstimator::Taylor, shader::TAYLOR) && is(EdgeEstimator::March, shader::MARCH));
+static_assert(is(EdgeEstimator::Cubic, shader::CUBIC) && is(FootprintMode::Isotropic, shader::ISOTROPIC));
+static_assert(is(FootprintMode::Warp2d, shader::WARP2D) && is(FootprintMode::Procedural, shader::PROCEDURAL));
+static_assert(is(WarpFamily::Paper, shader::PAPER) && is(WarpFamily::Face, shader::FACE));
+
+}  // namespace
+
+passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
+                             glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]) {
+    const IndexClip planes = index_clip(clip, geometry, origin);
+    copy_planes(planes.keep, keep);
+    copy_planes(planes.remove, remove);
+    return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
+}
+
+std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks) {
+    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    return (count + shader::COLUMN_STATE) * blocks * sizeof(std::uint32_t);
+}
+
+std::uint32_t tile_blocks(const glm::ivec2& tiles) {
+    constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
+    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
+    // Of very large pictures, whose lists begin in very many places, fewer pairs at once.
+    const std::uint64_t most = count > kManyTiles ? 8 : 64;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, most));
+}
+
+std::uint32_t light_code(const Scene& scene) {
+    return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
+}
+
+bool wants_normals(const Scene& scene) {
+    return !scene.lights.empty() || scene.effects.silhouette;
+}
+
+bool CollectionPlan::operator==(const CollectionPlan& other) const {
+    const auto& a = params;
+    const auto& b = other.params;
+    return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
+           edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
+           faces == other.faces && std::ranges::equal(transfer, other.transfer, same_row) &&
+           a.estimate_mask == b.estimate_mask && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
+           a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
+           a.band == b.band && a.reach == b.reach && clip == other.clip &&
+           std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
+}
+
+CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
+    CollectionPlan plan;
+    plan.dims = volume.geometry.dims;
+    plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
+    plan.edge_field = plan.estimator != EdgeEstimator::Off || wants_normals(scene);
+
+    auto& params = plan.params;
+    params.dims = plan.dims;
+    params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
+    std::fill(std::begin(params.iso), std::end(params.iso), 3e38F);
+    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
+        params.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+    plan.transfer = transfer_rows(scene, volume);
+    int farthest = 0;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const auto [least, most] = extinctions_of(scene, m);
+        if (most > 0) params.visible_mask |= 1U << m;
+        if (!is_opaque(least, volume.geometry)) continue;
+        params.opaque_mask |= 1U << m;
+        farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry)));
+    }
+    plan.buried =
+        settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= shader::MAX_BURY_DISTANCE;
+    plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
+    params.bury_distance = plan.buried ? farthest : 0;
+    if (!plan.buried) params.opaque_mask = 0;
+    if (plan.buried)
+        plan.clip =
+            place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
+    params.band = static_cast<float>(edge_reach(settings));
+    plan.faces = draws_faces(settings);
+    params.reach = static_cast<float>(kernel_reach(settings));
+    // Faces are of both sides of a surface, drawn or not.
+    params.estimate_mask = plan.faces ? ~0U : params.visible_mask;
+    return plan;
+}
+
+bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera) {
+    if (index_clip(scene.effects.clip, volume.geometry).cuts_away(volume.geometry.to_index(camera.eye))) return false;
+    const auto index = glm::round(volume.geometry.to_index(camera.eye));
+    const glm::dvec3 last(volume.geometry.dims - 1);
+    if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
+        return false;
+    const glm::ivec3 voxel(index);
+    const auto value = static_cast<double>(value_at(volume, voxel));
+    const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
+    const auto material = static_cast<std::size_t>(above - scene.iso_values.begin());
+    return is_opaque(extinctions_of(scene, material).least, volume.geometry);
+}
+
+double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, const Settings& settings) {
+    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
+    return settings.sheet_spacing / glm::length(to_index * camera_frame(camera).forward);
+}
+
+FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
+                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
+                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach) {
+    const auto& geometry = volume.geometry;
+    const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
+    const CameraFrame view = camera_frame(camera);
+    const glm::dvec3 down = -view.up;
+    const glm::dvec3 anchor = 0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high));
+    const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
+    const double voxel_along_view = 1.0 / glm::length(to_index * view.forward);
+    const double thickness = sheet_thickness(geometry, camera, settings);
+
+    FramePlan plan;
+    // Several samples are of the picture alone; a light's picture is the scene without effects.
+    const int samples = payload == shader::PAYLOAD_COLOR ? scene.effects.samples : 1;
+    // Optical depth is a plain sum: sheets would change nothing.
+    const bool sliced = settings.sheets == SheetCut::Sliced && payload != shader::PAYLOAD_TAU;
+    plan.variant = {.footprints = settings.footprints,
+                    .warp = settings.warp,
+                    .payload = payload,
+                    .sliced = sliced,
+                    .nodes = static_cast<std::uint32_t>(
+                        sliced && settings.sheet_spacing <= kThinSlice                               ? kSliceNodes
+                        : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kFewNodes
+                                                                                                     : kManyNodes)};
+    plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
+    plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
+    plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
+                   std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
+    plan.may_refine = plan.refined;
+    plan.variant.transfer = !scene.transfer.empty();
+    if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
+    if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
+
+    auto& p = plan.params;
+    plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
+    p.anchor = to_float(anchor);
+    p.support = static_cast<float>(kKernelRadius);
+    const PaperShape paper;
+    p.footprint = {.paper_inset = static_cast<float>(paper.inset),
+                   .paper_rise = static_cast<float>(paper.rise),
+                   .paper_smooth = 0,
+                   .paper_reach = static_cast<float>(kPaperReach)};
+    p.view_x = to_float(glm::transpose(to_world) * view.right);
+    p.view_y = to_float(glm::transpose(to_world) * down);
+    p.view_z = to_float(glm::transpose(to_world) * view.forward);
+    p.anchor_x = static_cast<float>(glm::dot(view.right, anchor_view));
+    p.anchor_y = static_cast<float>(glm::dot(down, anchor_view));
+    p.anchor_z = static_cast<float>(glm::dot(view.forward, anchor_view));
+    p.eye = to_float(to_index * -anchor_view);
+    p.tan_half_x = static_cast<float>(view.tan_half_y * size.x / size.y);
+    p.tan_half_y = static_cast<float>(view.tan_half_y);
+    p.ray_x = to_float(to_index * view.right);
+    p.ray_y = to_float(to_index * down);
+    p.ray_z = to_float(to_index * view.forward);
+    p.sheet_thickness = static_cast<float>(thickness);
+    p.near_depth = static_cast<float>(voxel_along_view);
+    p.index_to_world = glm::mat3(to_world);
+    p.normal_to_world = glm::mat3(glm::transpose(to_index));
+    p.background = to_float(scene.background);
+    plan.gradient = payload == shader::PAYLOAD_COLOR && scene.effects.background_top.has_value();
+    if (plan.gradient) p.background_top = to_float(*scene.effects.background_top);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        p.materials[m] = glm::vec4(to_float(scene.materials[m].color),
+                                   static_cast<float>(bounded(scene.materials[m].extinction, volume.geometry)));
+    }
+
+    p.band = static_cast<float>(edge_reach(settings));
+    p.face_depth = static_cast<float>(face_depth(scene, geometry));
+    plan.variant.antialias = scene.effects.antialias;
+    plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
+    if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
+
+    double nearest = std::numeric_limits<double>::max(), farthest = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::bvec3 high((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
+        const glm::dvec3 at = glm::mix(glm::dvec3(box_low), glm::dvec3(box_high), high);
+        const double z = glm::dot(view.forward, geometry.to_world(at) - view.eye);
+        nearest = std::min(nearest, z);
+        farthest = std::max(farthest, z);
+    }
+    const double reach = glm::length(glm::transpose(to_world) * view.forward) * farthest_reach;
+    if (sliced) {
+        nearest -= reach;
+        farthest += reach;
+        plan.sheets_per_splat = static_cast<std::uint32_t>(std::min(std::floor(2 * reach / thickness), 32766.0)) + 2;
+    }
+    const double base = std::floor(std::max(nearest, 0.0) / thickness);
+    const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
+    if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
+        fail(
+            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; {:.0f} are possible: choose a larger "
+            "--sheet-spacing",
+            sheets, thickness, base, kMaxSheets);
+    }
+    const std::uint64_t layer_bytes = 16 * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+    p.sheet_base = static_cast<int>(base);
+    p.sheet_zero = static_cast<float>(base * thickness - glm::dot(view.forward, anchor_view));
+    p.sheet_count = static_cast<std::uint32_t>(sheets);
+    p.sheets_per_group = static_cast<std::uint32_t>(
+        std::clamp<std::uint64_t>(kSheetBudget / layer_bytes, 1, std::min(kMaxSheetsPerGroup, p.sheet_count)));
+    p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
+    p.dims = geometry.dims;
+    p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
+    p.tile_blocks = tile_blocks(p.tiles);
+    draw_first(plan, static_cast<std::uint32_t>(splat_count));
+    plan.reach = farthest_reach;
+    p.size = size;
+    // Optical depth is wanted whole, and what accumulates then is no opacity.
+    p.saturation =
+        payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
+    return plan;
+}
+
+void shift_rays(FramePlan& plan, const glm::dvec2& offset) {
+    // A sheared view: slopes as drawn are those of the rays less those of the offset.
+    auto& p = plan.params;
+    const glm::vec2 slopes = glm::vec2(offset) * 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(p.size);
+    p.view_x -= slopes.x * p.view_z;
+    p.view_y -= slopes.y * p.view_z;
+    p.anchor_x -= slopes.x * p.anchor_z;
+    p.anchor_y -= slopes.y * p.anchor_z;
+    p.ray_z += slopes.x * p.ray_x + slopes.y * p.ray_y;
+}
+
+}  // namespace edgesplat

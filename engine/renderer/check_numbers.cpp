@@ -1,0 +1,68 @@
+// DeviceChoice::check_numbers: the first pass and splat that come to something which is no finite number.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/error.h"
+#include "engine/gpu/read_back.h"
+#include "engine/renderer/state.h"
+
+namespace edgesplat {
+namespace {
+
+/// "splat 17 of 230 (voxel 3, 4, 5; material 1)".
+std::string named(RendererState& state, std::uint32_t number) {
+    const auto splat =
+        gpu::read_back<shader::Splat>(state.device, state.commands, state.volume_resources.splats, number, 1).front();
+    const glm::uvec3 dims(state.volume->geometry.dims);
+    return fmt::format("splat {} of {} (voxel {}, {}, {}; material {})", number, state.volume_resources.splat_count,
+                       splat.voxel % dims.x, splat.voxel / dims.x % dims.y, splat.voxel / dims.x / dims.y,
+                       splat.edge >> 28U);
+}
+
+/// The first number of the picture that is none; its size where all are.
+std::size_t first_bad(std::span<const float> pixels) {
+    const auto bad = std::ranges::find_if(pixels, [](float v) { return !std::isfinite(v); });
+    return static_cast<std::size_t>(bad - pixels.begin());
+}
+
+}  // namespace
+
+void RendererState::check_splats() {
+    const std::size_t count = volume_resources.splat_count;
+    if (!volume_resources.values || count == 0) return;
+    const auto values = gpu::read_back<float>(device, commands, volume_resources.values, 0, count);
+    const std::size_t bad = first_bad(values);
+    if (bad == values.size()) return;
+    fail("2_collect_splats: {}: it is classified by {}, expected a finite number",
+         named(*this, static_cast<std::uint32_t>(bad)), values[bad]);
+}
+
+void RendererState::check_picture() {
+    const auto pixels = [&] {
+        return std::span<const float>(targets.output.mapped<float>(static_cast<std::size_t>(plan.params.size.x) *
+                                                                   static_cast<std::size_t>(plan.params.size.y) * 4));
+    };
+    const std::size_t bad = first_bad(pixels());
+    if (bad == pixels().size()) return;
+    const std::size_t pixel = bad / 4, width = static_cast<std::size_t>(plan.params.size.x);
+    const std::string where = fmt::format("pixel {}, {}, channel {} is {}, expected a finite number", pixel % width,
+                                          pixel / width, bad % 4, pixels()[bad]);
+
+    // The picture of the first n splats is sound and that of one more is not: by halves.
+    const std::uint32_t all = plan.params.splat_count;
+    const auto sound = [&](std::uint32_t splats) {
+        draw_first(plan, splats);
+        draw_planned();
+        return first_bad(pixels()) == pixels().size();
+    };
+    if (!sound(0)) fail("7_resolve: {}, without any splat", where);
+    std::uint32_t good = 0, not_good = all;
+    while (not_good - good > 1) {
+        const std::uint32_t middle = good + (not_good - good) / 2;
+        (sound(middle) ? good : not_good) = middle;
+    }
+    draw_first(plan, all);
+    fail("{}: {}: {}", plan.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*this, good), where);
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,180 @@
+// Renderer::divide_sheets: a picture of which this renderer draws some of the sheets.
+#include "engine/distribute/part_exchange.h"
+
+#include <algorithm>
+#include <bit>
+#include <chrono>
+#include <ctime>
+#include <functional>
+
+#include "engine/distribute/parts.h"
+#include "engine/error.h"
+#include "engine/gpu/read_back.h"
+#include "engine/renderer/state.h"
+
+namespace edgesplat {
+namespace {
+
+/// Adds the time between its making and its end to a sum, and the processor's to another.
+class AddedTime {
+  public:
+    explicit AddedTime(double& milliseconds, double* processor = nullptr)
+        : sum_(&milliseconds), processor_(processor) {}
+    ~AddedTime() {
+        *sum_ += milliseconds_since(start_);
+        if (processor_) *processor_ += 1e3 * static_cast<double>(std::clock() - ticks_) / CLOCKS_PER_SEC;
+    }
+    AddedTime(const AddedTime&) = delete;
+    AddedTime& operator=(const AddedTime&) = delete;
+
+  private:
+    double *sum_, *processor_;
+    Clock::time_point start_ = Clock::now();
+    std::clock_t ticks_ = std::clock();
+};
+
+/// Writes `values` to the beginning of a buffer on the device.
+void write(gpu::Commands& commands, const gpu::Buffer& buffer, std::span<const std::uint32_t> values) {
+    constexpr std::size_t kMostWords = 65536 / sizeof(std::uint32_t);  // what one vkCmdUpdateBuffer may bring
+    commands.run([&] {
+        for (std::size_t done = 0; done < values.size(); done += kMostWords) {
+            const auto piece = values.subspan(done, std::min(kMostWords, values.size() - done));
+            commands.update(buffer, done * sizeof(std::uint32_t), piece);
+        }
+        commands.barrier();
+    });
+}
+
+/// Tiles of which what is in front leaves some of the first pixels open.
+void mark_reached(const FramePlan& plan, std::span<const float> in_front, std::vector<bool>& reached) {
+    constexpr std::size_t kStep = shader::REFINE_STEP, kTile = shader::TILE;
+    const glm::u64vec2 size(plan.params.size), tiles(plan.params.tiles);
+    for (std::size_t y = 0; y < size.y; y += kStep)
+        for (std::size_t x = 0; x < size.x; x += kStep)
+            if (1.0F - in_front[y * size.x + x] < plan.params.saturation)
+                reached[y / kTile * tiles.x + x / kTile] = true;
+}
+
+}  // namespace
+
+void Renderer::divide_sheets(PartExchange* exchange) {
+    state_->exchange = exchange;
+}
+
+bool RendererState::parts_refine(const Chunks& own) {
+    if (!plan.refined) return false;
+    std::vector<glm::vec4> sum{{static_cast<float>(own.pairs), static_cast<float>(own.entries), 0, 0}};
+    exchange->add(sum);
+    std::vector<std::uint32_t> said{0};
+    if (exchange->part().index == 0) {
+        Chunks all;
+        all.pairs = static_cast<std::uint64_t>(sum[0].x);
+        all.entries = static_cast<std::uint64_t>(sum[0].y);
+        said[0] = worth_refining(all) ? 1 : 0;
+    }
+    exchange->share(said);
+    return said[0] == 1;
+}
+
+void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole) {
+    const std::size_t tiles = tile_count(plan), of_tile = std::size_t{shader::TILE} * shader::TILE;
+    const auto todo = targets.tile_todo.mapped<std::uint32_t>(tiles);
+    const bool first = exchange->part().index == 0;
+    std::vector<std::uint32_t> lists(tiles * of_tile), counts(tiles);
+    const auto finest = gpu::read_back<std::uint32_t>(device, commands, targets.tile_finest, 0, tiles);
+    std::vector<glm::vec4> too_fine(tiles);
+    for (std::size_t tile = 0; tile < tiles; ++tile)
+        too_fine[tile].x = reached[tile] && std::bit_cast<float>(finest[tile]) < static_cast<float>(step) ? 1 : 0;
+    exchange->add(too_fine);
+    if (first) {
+        std::vector<std::uint32_t> of_all = finest;
+        for (std::size_t tile = 0; tile < tiles; ++tile)
+            if (too_fine[tile].x > 0) of_all[tile] = 0;
+        write(commands, targets.tile_finest, of_all);
+        const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
+        std::ranges::copy(whole, pixels.begin());
+        add_times(draw_times, refine_frame(commands, plan, step));
+        std::ranges::copy(pixels, whole.begin());
+        lists = gpu::read_back<std::uint32_t>(device, commands, targets.tile_pixels, 0, lists.size());
+        std::ranges::copy(todo, counts.begin());
+        write(commands, targets.tile_finest, finest);
+    }
+    exchange->share(counts);
+    exchange->share(lists);
+    if (!first) {
+        std::ranges::copy(counts, todo.begin());
+        write(commands, targets.tile_pixels, lists);
+    }
+    write(commands, targets.tile_closed, std::vector<std::uint32_t>(tiles));
+    std::ranges::fill(targets.output.mapped<glm::vec4>(whole.size()), glm::vec4(0));
+}
+
+void RendererState::draw_part(passes::TileDraw how) {
+    std::uint32_t chunks = 0;
+    {
+        const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
+        const Chunks planned = sort_frame(commands, plan, targets, {exchange->part(), slab});
+        draw_times = commands.span_times();
+        share.first_sheet = planned.sheets.x;
+        share.end_sheet = planned.sheets.y;
+        share.splats = plan.params.splat_count;
+        share.pairs += planned.pairs;
+        provide_chunks(planned);
+        chunks = static_cast<std::uint32_t>(planned.parts.size());
+        plan.refined = parts_refine(planned);
+    }
+    std::vector<glm::vec4> whole(static_cast<std::size_t>(plan.params.size.x) *
+                                 static_cast<std::size_t>(plan.params.size.y));
+    std::vector<bool> reached(tile_count(plan), exchange->part().index == 0);
+    for (std::uint32_t step = first_step(plan); step > 0; step /= 2) {
+        const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step, reached);
+        std::ranges::transform(whole, drawn, whole.begin(), std::plus{});
+        if (step > 1) share_pixels(step, reached, whole);
+    }
+    if (exchange->part().index > 0) return;
+    std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
+    add_times(draw_times, resolve_frame(commands, plan));
+}
+
+std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
+                                                     std::vector<bool>& reached) {
+    const bool sums = plan.variant.payload == shader::PAYLOAD_TAU;
+    const auto& size = plan.params.size;
+    const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
+    const auto pixels = targets.output.mapped<glm::vec4>(count);
+    {
+        const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
+        add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
+    }
+    const auto wait = [&] {
+        const AddedTime time(share.wait_milliseconds);
+        exchange->wait();
+    };
+    wait();
+    std::vector<glm::vec4> part(pixels.begin(), pixels.end());
+    if (!sums) {
+        std::vector<float> in_front(count);
+        {
+            const AddedTime time(share.composite_milliseconds);
+            std::ranges::transform(part, in_front.begin(), [](const glm::vec4& p) { return 1.0F - p.a; });
+            exchange->pass_back(in_front);
+        }
+        if (exchange->part().index > 0) {
+            const AddedTime time(share.redraw_milliseconds, &share.processor_milliseconds);
+            if (step == shader::REFINE_STEP) mark_reached(plan, in_front, reached);
+            const PixelsBehind behind(in_front, plan.params.saturation, part, pixels);
+            if (behind.any()) {
+                const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));
+                write(commands, targets.tile_closed, behind.closed_pixels(size, plan.params.tiles, todo));
+                add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
+                behind.take(in_front, pixels, part);
+            }
+        }
+        wait();
+    }
+    const AddedTime time(share.composite_milliseconds);
+    sums ? exchange->add(part) : exchange->fold(part);
+    return part;
+}
+
+}  // namespace edgesplat

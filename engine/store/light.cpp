@@ -1,0 +1,242 @@
+#include "engine/store/light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "engine/error.h"
+#include "engine/passes/2b_occlude_ambient.h"
+#include "engine/passes/2c_sweep_light.h"
+#include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/6_composite_sheet.h"
+
+namespace edgesplat {
+namespace {
+
+// A directional light is a point light this many radii of the box away: rays part by less than 1/50 voxel in 1000.
+constexpr double kFarLight = 1e5;
+// A point light sees the box in one picture up to this slope from its axis (50 degrees), else in a cube of six.
+constexpr double kWidestSlope = 1.2;
+// Optical depth at which a light's pixel takes no more: 6e-6 of the light, less than a unorm16 shows.
+constexpr float kDark = 12.0F;
+// Quadrature nodes of a piece of a footprint: with slices of a voxel 10 would be exact to 1e-5, 4 are to 1e-3 of the
+// peak.
+constexpr std::uint32_t kNodes = 4;
+// Layers closer than this, in voxels, show nothing that kernels of radius 1.6 do not blur.
+constexpr double kThinnestLayer = 1.0;
+
+/// Corners of the voxel box, grown by the reach of the kernels; world.
+std::array<glm::dvec3, 8> corners_of(const VolumeGeometry& geometry, const glm::ivec3& low, const glm::ivec3& high,
+                                     double reach) {
+    std::array<glm::dvec3, 8> corners;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const glm::bvec3 top((i & 1U) != 0, (i & 2U) != 0, (i & 4U) != 0);
+        corners.at(i) = geometry.to_world(glm::mix(glm::dvec3(low) - reach, glm::dvec3(high) + reach, top));
+    }
+    return corners;
+}
+
+double degrees_of_slope(double slope) {
+    return glm::degrees(2 * std::atan(slope));
+}
+
+/// Largest slope of a corner from the view's axis along either side of the picture; infinite behind the eye.
+double widest_slope(const std::array<glm::dvec3, 8>& corners, const Camera& camera) {
+    const CameraFrame frame = camera_frame(camera);
+    double widest = 0;
+    for (const glm::dvec3& corner : corners) {
+        const glm::dvec3 v = corner - frame.eye;
+        const double z = glm::dot(v, frame.forward);
+        if (!(z > 0)) return INFINITY;
+        widest = std::max({widest, std::abs(glm::dot(v, frame.right)) / z, std::abs(glm::dot(v, frame.up)) / z});
+    }
+    return widest;
+}
+
+/// Whether all corners lie beyond one side of the picture, or behind the eye.
+bool misses(const std::array<glm::dvec3, 8>& corners, const Camera& camera) {
+    const CameraFrame frame = camera_frame(camera);
+    const double s = frame.tan_half_y;
+    const std::array sides{frame.forward, s * frame.forward - frame.right, s * frame.forward + frame.right,
+                           s * frame.forward - frame.up, s * frame.forward + frame.up};
+    return std::ranges::any_of(sides, [&](const glm::dvec3& side) {
+        return std::ranges::none_of(corners, [&](const glm::dvec3& c) { return glm::dot(c - frame.eye, side) > 0; });
+    });
+}
+
+/// The scene without what a light does not see.
+Scene only_matter(const Scene& scene) {
+    Scene dark = scene;
+    dark.lights.clear();
+    dark.effects = {};
+    dark.effects.clip = scene.effects.clip;
+    return dark;
+}
+
+}  // namespace
+
+bool occludes_ambient(const Scene& scene) {
+    return scene.effects.occlusion.has_value() && !scene.lights.empty();
+}
+
+std::vector<std::size_t> shadow_lights(const Scene& scene) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (scene.lights[i].shadows) numbers.push_back(i);
+    return numbers;
+}
+
+std::uint32_t shadow_channels(const Scene& scene) {
+    std::uint32_t channels = 0, next = 1;
+    for (const std::size_t light : shadow_lights(scene))
+        channels |= next++ << 4 * light;
+    return channels;
+}
+
+Matter::Matter(const Scene& scene) : transfer(scene.transfer), clip(scene.effects.clip) {
+    for (const Material& material : scene.materials)
+        extinction.push_back(material.extinction);
+    for (TransferPoint& point : transfer)
+        point.color = {};
+}
+
+OcclusionPlan plan_occlusion(const Scene& scene) {
+    return {Matter(scene), scene.effects.occlusion->radius};
+}
+
+ShadowPlan plan_shadows(const Scene& scene, const Settings& settings) {
+    ShadowPlan plan{Matter(scene), {}, scene.effects.shadows, settings};
+    for (const std::size_t i : shadow_lights(scene)) {
+        const Light& light = scene.lights[i];
+        const bool far = light.kind == Light::Kind::Directional;
+        plan.lights.push_back({.kind = light.kind,
+                               .direction = far ? light.direction : Light{}.direction,
+                               .position = far ? Light{}.position : light.position});
+    }
+    // Slices make the depth at every layer exact, whatever the kernel's size.
+    plan.settings.sheets = SheetCut::Sliced;
+    plan.settings.sheet_spacing = std::max(plan.settings.sheet_spacing, kThinnestLayer);
+    plan.settings.sheet_format = SheetFormat::Layers;
+    plan.settings = drawn_as(plan.settings, scene);
+    plan.settings.saturation = Settings{}.saturation;
+    return plan;
+}
+
+std::vector<Camera> light_views(const Light& light, const VolumeGeometry& geometry, const glm::ivec3& box_low,
+                                const glm::ivec3& box_high, double reach, int resolution) {
+    const auto corners = corners_of(geometry, box_low, box_high, reach);
+    const glm::dvec3 middle = geometry.to_world(0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high)));
+    // Two pixels to spare, so that no splat's place is looked up across the border.
+    const double spare = resolution / (resolution - 2.0);
+    Camera camera;
+    if (light.kind == Light::Kind::Directional) {
+        double farthest = 0;
+        for (const glm::dvec3& corner : corners)
+            farthest = std::max(farthest, glm::length(corner - middle));
+        camera.direction = -glm::normalize(light.direction);
+        camera.eye = middle - kFarLight * farthest * camera.direction;
+    } else {
+        camera.eye = light.position;
+        camera.direction = middle - light.position;
+    }
+    if (camera.direction != glm::dvec3(0)) {
+        const double slope = widest_slope(corners, camera);
+        if (slope <= kWidestSlope) {
+            camera.fov_y = degrees_of_slope(slope * spare);
+            return {camera};
+        }
+    }
+    std::vector<Camera> cube;
+    for (int side = 0; side < 6; ++side) {
+        camera.direction = glm::dvec3(0);
+        camera.direction[side / 2] = side % 2 == 0 ? 1 : -1;
+        camera.up = glm::dvec3(0);
+        camera.up[(side / 2 + 1) % 3] = 1;
+        camera.fov_y = degrees_of_slope(spare);
+        if (!misses(corners, camera)) cube.push_back(camera);
+    }
+    return cube;
+}
+
+FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const ShadowPlan& shadows, const Camera& view,
+                           const VolumeResources& resources, double reach) {
+    const auto& geometry = volume.geometry;
+    const CameraFrame frame = camera_frame(view);
+    const glm::dmat3& axes = geometry.index_to_world_axes;
+    const double voxel = 1.0 / glm::length(glm::inverse(axes) * frame.forward);
+    const double around = reach * glm::length(glm::transpose(axes) * frame.forward);
+    double nearest = INFINITY, farthest = 0;
+    for (const glm::dvec3& corner : corners_of(geometry, resources.box_low, resources.box_high, 0)) {
+        const double z = glm::dot(frame.forward, corner - frame.eye);
+        nearest = std::min(nearest, z - around);
+        farthest = std::max(farthest, z + around);
+    }
+    // So many sheets of this thickness that, wherever the first begins, there are no more than layers.
+    Settings settings = shadows.settings;
+    const double thickness = (farthest - std::max(nearest, 0.0)) / (shadows.quality.layers - 1);
+    settings.sheet_spacing = std::max(settings.sheet_spacing, thickness / voxel);
+
+    FramePlan plan =
+        plan_frame(volume, only_matter(scene), view, settings, glm::ivec2(shadows.quality.resolution),
+                   shader::PAYLOAD_COLOR, resources.splat_count, resources.box_low, resources.box_high, reach);
+    plan.variant.payload = shader::PAYLOAD_TAU;
+    plan.variant.nodes = kNodes;
+    plan.params.saturation = kDark;
+    return plan;
+}
+
+std::uint64_t light_layer_bytes(const FramePlan& plan) {
+    const auto side = static_cast<std::uint64_t>(plan.params.size.x);
+    return side * side * plan.params.sheet_count * sizeof(float);
+}
+
+std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
+                                    const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources) {
+    resources.occlusion = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t), gpu::Buffer::Place::Device,
+                                      "splat occlusion");
+    const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, "occlusion parameters");
+    auto& params = block.mapped<shader::OcclusionParams>(1)[0];
+    params = {};
+    params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(volume.geometry.index_to_world_axes)));
+    params.radius = static_cast<float>(plan.radius);
+    std::ranges::transform(plan.matter.extinction, std::begin(params.extinction),
+                           [](double extinction) { return static_cast<float>(extinction); });
+    const passes::ClipCount clip =
+        place_clip(plan.matter.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
+    params.splat_count = static_cast<std::uint32_t>(resources.splat_count);
+    params.reach = resources.occlusion.address();
+    bindings.set().put_block(shader::BIND_OCCLUSION, block);
+    commands.run([&] {
+        commands.span("2b_occlude_ambient", [&] {
+            passes::occlude_ambient(commands, {.splat_count = resources.splat_count,
+                                               .iso_count = resources.scene.mapped<shader::SceneParams>(1)[0].iso_count,
+                                               .clip = clip,
+                                               .transfer = !plan.matter.transfer.empty()});
+        });
+    });
+    return commands.span_times();
+}
+
+std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                      std::uint32_t channel) {
+    const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
+    commands.run([&] {
+        commands.span("2c_sweep_light", [&] {
+            commands.fill(targets.counters, 0);
+            passes::clear_accumulated(commands, targets.accumulated);
+            passes::select_footprints(commands, plan.params.slot_count, plan.variant);
+            passes::sort_sheets(commands, plan.variant, plan.sort_segments);
+            for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
+                passes::draw_splats(commands, draw, group);
+                passes::sweep_light(commands, plan.params.size, group);
+                passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
+            }
+        });
+        commands.span("2d_shadow_splats",
+                      [&] { passes::shadow_splats(commands, plan.params.splat_count, plan.variant.clip, channel); });
+    });
+    return commands.span_times();
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,57 @@
+// The pieces of a ray that clip planes leave. After shaders/common/clip.glsl and footprint.glsl (Slice).
+#ifndef EDGESPLAT_CLIP_RAY_GLSL
+#define EDGESPLAT_CLIP_RAY_GLSL
+
+// z counts along the ray from the point it is given. A face is the normal of the cut where the piece begins, index space,
+// towards what is cut away; 0 where the piece begins elsewhere.
+struct Kept {
+    Slice before;  // before what `remove` takes, or all of it
+    Slice behind;
+    vec3 before_face;
+    vec3 behind_face;
+};
+
+const float CLIP_PARALLEL = 1e-6;  // a ray at less than this to a plane lies on one side of it
+
+// Where the ray through `place` along u, from z = `eye` on, is kept.
+Kept kept_pieces(vec3 place, vec3 u, float eye) {
+    Kept kept = Kept(Slice(eye, 1e9), Slice(1e9, 1e9), vec3(0.0), vec3(0.0));
+    for (uint i = 0u; i < CLIP_KEEP; ++i) {
+        vec4 plane = CLIP_PARAMS.clip_keep[i];
+        float along = dot(plane.xyz, u);
+        along = along < 0.0 ? min(along, -CLIP_PARALLEL) : max(along, CLIP_PARALLEL);
+        float z = -dot(plane, vec4(place, 1.0)) / along;
+        bool entered = along < 0.0 && z > kept.before.low;
+        kept.before_face = entered ? plane.xyz : kept.before_face;
+        kept.before.low = entered ? z : kept.before.low;
+        kept.before.high = along > 0.0 ? min(kept.before.high, z) : kept.before.high;
+    }
+    if (CLIP_REMOVE > 0u) {
+        Slice gone = Slice(-1e9, 1e9);
+        vec3 face = vec3(0.0);
+        for (uint i = 0u; i < CLIP_REMOVE; ++i) {
+            vec4 plane = CLIP_PARAMS.clip_remove[i];
+            float along = dot(plane.xyz, u);
+            along = along < 0.0 ? min(along, -CLIP_PARALLEL) : max(along, CLIP_PARALLEL);
+            float z = -dot(plane, vec4(place, 1.0)) / along;
+            bool left = along > 0.0 && z < gone.high;
+            face = left ? -plane.xyz : face;
+            gone.high = left ? z : gone.high;
+            gone.low = along < 0.0 ? max(gone.low, z) : gone.low;
+        }
+        bool some = gone.low < gone.high;
+        bool later = gone.high > kept.before.low;
+        kept.behind = some ? Slice(later ? gone.high : kept.before.low, kept.before.high) : kept.behind;
+        kept.behind_face = later ? face : kept.before_face;
+        kept.before.high = some ? min(kept.before.high, gone.low) : kept.before.high;
+    }
+    return kept;
+}
+
+// Whether a point is inside a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2 and t: the
+// point's squared distance from the voxel and its coordinate along n. What a ray that enters there sees is the cut.
+bool is_in_matter(float r2, float t, float D, bool plain, FootprintParams params) {
+    float reach = plain ? KERNEL_R : params.paper_reach;
+    return r2 < reach * reach && (plain || t < D);
+}
+#endif

@@ -1,0 +1,59 @@
+// Marks voxels that opaque ones hide from every side: erosion of the opaque voxels by a cube, one axis a dispatch.
+// One invocation walks one line twice: forward it counts opaque voxels since the last other one, backward likewise;
+// a voxel stays where both runs are longer than the bury distance. Outside the volume nothing is opaque.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/scene_params.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_AXIS) const uint AXIS = 0u;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_BURIED, r8ui) uniform uimage3D buried;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+
+#include "shaders/common/material.glsl"
+#define CLIP_PARAMS params.scene
+#include "shaders/common/clip.glsl"
+
+bool opaque(ivec3 p) {
+    if (AXIS != 0u) return imageLoad(buried, p).r != 0u;
+    if (is_cut_away(vec3(p), 0.0)) return false;
+    return in_mask(params.scene.opaque_mask, material_of(imageLoad(volume, p).r));
+}
+
+void main() {
+    ivec3 dims = params.scene.dims;
+    int line = int(gl_GlobalInvocationID.x);
+    ivec3 p, step;
+    int count;
+    if (AXIS == 0u) {
+        p = ivec3(0, line % dims.y, line / dims.y);
+        step = ivec3(1, 0, 0);
+        count = line < dims.y * dims.z ? dims.x : 0;
+    } else if (AXIS == 1u) {
+        p = ivec3(line % dims.x, 0, line / dims.x);
+        step = ivec3(0, 1, 0);
+        count = line < dims.x * dims.z ? dims.y : 0;
+    } else {
+        p = ivec3(line % dims.x, line / dims.x, 0);
+        step = ivec3(0, 0, 1);
+        count = line < dims.x * dims.y ? dims.z : 0;
+    }
+    int reach = params.scene.bury_distance;
+    int run = 0;
+    for (int i = 0; i < count; ++i) {
+        run = opaque(p) ? min(run + 1, 255) : 0;
+        imageStore(buried, p, uvec4(run));
+        p += step;
+    }
+    run = 0;
+    for (int i = 0; i < count; ++i) {
+        p -= step;
+        int forward = int(imageLoad(buried, p).r);
+        run = forward > 0 ? min(run + 1, 255) : 0;
+        imageStore(buried, p, uvec4(forward > reach && run > reach ? 1u : 0u));
+    }
+}

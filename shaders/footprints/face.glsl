@@ -1,0 +1,145 @@
+// Kernels that a face cuts, along a ray: the float32 mirror of footprints/face.h (same names, same equations). After
+// shaders/footprints/footprint.glsl, in the subset of GLSL that is C++ too.
+#ifndef EDGESPLAT_FACE_GLSL
+#define EDGESPLAT_FACE_GLSL
+
+#include "shaders/footprints/face_cut.glsl"
+
+const float FACE_STRAIGHT = 1e-6;
+const float FACE_NOWHERE = 1e9;  // voxels along a ray: out of every kernel's reach
+
+// c + z (b + z a).
+struct Quadratic {
+    float c;
+    float b;
+    float a;
+};
+float quadratic_at(Quadratic q, float z) { return q.c + z * (q.b + z * q.a); }
+
+struct FaceRay {
+    float rho2;
+    Quadratic phi;
+    Quadratic slope2;
+    float across;  // p . grad phi at p
+    float turn;    // p . Hu
+};
+
+struct FaceFootprint {
+    float integral;
+    float entry;
+    float side;  // -1: the ray enters by the wall's other face, else 1
+};
+
+struct FaceRoots {
+    bool real;
+    float low;
+    float high;
+};
+
+FaceRoots face_roots(Quadratic phi, float level) {
+    float c = phi.c + level;
+    float a = abs(phi.a) < FACE_STRAIGHT ? (phi.a < 0.0 ? -FACE_STRAIGHT : FACE_STRAIGHT) : phi.a;
+    float disc = phi.b * phi.b - 4.0 * a * c;
+    float root = sqrt(max(disc, 0.0));
+    float q = -0.5 * (phi.b + (phi.b < 0.0 ? -root : root));
+    float far = q / a;
+    float near = q != 0.0 ? c / q : far;
+    FaceRoots r;
+    r.real = disc >= 0.0;
+    r.low = min(near, far);
+    r.high = max(near, far);
+    return r;
+}
+
+// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n.p, n.u, and the
+// n.x from which on x is moved along n.
+struct FacePlane {
+    float p;
+    float u;
+    float level;
+};
+
+// Of the face phi = -level; `side` -1: matter lies where phi is larger.
+FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side) {
+    float inverse = side * inversesqrt(max(quadratic_at(ray.slope2, z), 1e-8));
+    FacePlane plane;
+    plane.p = (ray.across + z * ray.turn) * inverse;
+    plane.u = (ray.phi.b + 2.0 * z * ray.phi.a) * inverse;
+    plane.level = plane.p + z * plane.u - (quadratic_at(ray.phi, z) + level) * inverse - depth;
+    return plane;
+}
+
+// |x|^2 of where a point of the ray is sampled, less rho2.
+float face_beyond(FacePlane plane, float z) {
+    float t = plane.p + z * plane.u;
+    float held = min(t, plane.level);
+    return z * z - t * t + held * held;
+}
+
+bool is_deep(FacePlane plane, float z) { return plane.p + z * plane.u <= plane.level; }
+
+// The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
+// and mapped near each by the plane that touches it there.
+float face_piece(FaceRay ray, FaceCut cut, float from, float to, bool from_behind, bool to_behind, float half_chord, Slice slice) {
+    // A ray that meets no face is nearest to it where phi turns.
+    bool meets = from > -FACE_NOWHERE || to < FACE_NOWHERE;
+    float turn = -0.5 * ray.phi.b / min(ray.phi.a, -FACE_STRAIGHT);
+    FacePlane entry = face_plane(ray, cut.depth, clamp(meets ? from : turn, -half_chord, half_chord), from_behind ? cut.thickness : 0.0,
+                                 from_behind ? -1.0 : 1.0);
+    FacePlane leave = face_plane(ray, cut.depth, clamp(meets ? to : turn, -half_chord, half_chord), to_behind ? cut.thickness : 0.0,
+                                 to_behind ? -1.0 : 1.0);
+    float plain = sqrt(max(KERNEL_R2 - ray.rho2, 0.0));
+    float core = 1.0 - ray.rho2 * KERNEL_INVERSE_R2;
+    float middle = 0.5 * (from + to);
+    // Deeper than what is moved there is nothing beyond the plain kernel's reach.
+    float begin = max(max(from, is_deep(entry, -plain) ? -plain : -half_chord), slice.low);
+    float len = max(min(min(to, is_deep(leave, plain) ? plain : half_chord), slice.high) - begin, 0.0);
+    float sum = 0.0;
+    for (int k = 0; k < FOOTPRINT_NODES; ++k) {
+        float z = begin + len * FOOTPRINT_NODE[FOOTPRINT_RULE + k];
+        bool late = z > middle;
+        FacePlane plane;
+        plane.p = late ? leave.p : entry.p;
+        plane.u = late ? leave.u : entry.u;
+        plane.level = late ? leave.level : entry.level;
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * kernel_at(core - face_beyond(plane, z) * KERNEL_INVERSE_R2);
+    }
+    return len * sum;
+}
+
+// Without a loop that depends on the splat: lavapipe would keep nothing in registers across it. The including shader declares
+// FACE_PIECES: 2, or 1 where matter is opaque; of two pieces the longer counts then.
+FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
+    float half_chord = sqrt(max(cut.reach2 - ray.rho2, 0.0));
+    bool wall = cut.thickness < FACE_NO_WALL;
+    // Along the ray phi has a least value between its zeros, or a largest.
+    bool opens = ray.phi.a >= 0.0;
+    FaceRoots face = face_roots(ray.phi, 0.0);
+    FaceRoots behind = face_roots(ray.phi, cut.thickness);
+    behind.real = behind.real && wall;
+    bool everywhere = !opens && !wall;
+    bool has_outer = everywhere || (opens ? face.real : behind.real);
+    float outer_low = everywhere ? -FACE_NOWHERE : (opens ? face.low : behind.low);
+    float outer_high = everywhere ? FACE_NOWHERE : (opens ? face.high : behind.high);
+    bool has_inner = opens ? behind.real : face.real;
+    float inner_low = has_inner ? (opens ? behind.low : face.low) : outer_high;
+    float inner_high = has_inner ? (opens ? behind.high : face.high) : outer_high;
+    float before = min(inner_low, half_chord) - max(outer_low, -half_chord);
+    float after = min(outer_high, half_chord) - max(inner_high, -half_chord);
+    bool first = !has_inner || (FACE_PIECES == 1u ? before > after : before > 0.0);
+    float from = first ? outer_low : inner_high;
+    float to = first ? inner_low : outer_high;
+    FaceFootprint result;
+    bool outer_behind = !opens && wall, from_behind = first ? outer_behind : opens;
+    bool to_behind = first && has_inner ? opens : outer_behind;
+    result.integral = face_piece(ray, cut, from, to, from_behind, to_behind, half_chord, slice);
+    if (FACE_PIECES == 2u) {
+        float other = face_piece(ray, cut, inner_high, outer_high, opens, outer_behind, half_chord, slice);
+        result.integral += first && has_inner ? other : 0.0;
+    }
+    result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
+    result.entry = clamp(from, -half_chord, half_chord);
+    result.side = from_behind && from > -half_chord ? -1.0 : 1.0;
+    return result;
+}
+#endif

@@ -1,0 +1,95 @@
+// How much light from everywhere reaches a splat: rays over the half space that its normal looks into, through the matter
+// of the nearest voxels. docs/method.md, 2b_occlude_ambient.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/occlusion_params.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // planes
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+layout(binding = BIND_OCCLUSION, scalar) uniform Occlusion { OcclusionParams at; } occlusion;
+#define CLIP_PARAMS occlusion.at
+#include "shaders/light/surface_point.glsl"
+#include "shaders/common/transfer.glsl"
+
+const float DARK = 12.0;  // optical depth from which on 16 bits hold nothing
+// Cosine and sine of the golden angle: successive points of Vogel's spiral (1979).
+const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
+
+#include "shaders/common/material.glsl"
+#include "shaders/common/clip.glsl"
+
+float extinction_at(ivec3 p) {
+    float value = imageLoad(volume, p).r;
+    float extinction = TRANSFER == 1u ? transfer_at(TransferRef(params.scene.transfer), value).a
+                                      : occlusion.at.extinction[material_of(value)];
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) extinction = is_cut_away(vec3(p), 0.0) ? 0.0 : extinction;
+    return extinction;
+}
+
+// exp of minus the optical depth over `radius` mm from `start` (index space) along `u` (index units per mm).
+float transmittance(vec3 start, vec3 u) {
+    float radius = occlusion.at.radius;
+    // A little less than a whole number of voxels is that number, to every precision.
+    int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
+    float dl = radius / float(steps);
+    // The part of the ray within the voxels' cells, in steps.
+    vec3 along = mix(u, vec3(1e-9), lessThan(abs(u), vec3(1e-9))) * dl;
+    vec3 low = (vec3(-0.5) - start) / along, high = (vec3(params.scene.dims) - 0.5 - start) / along;
+    vec3 near = min(low, high), far = max(low, high);
+    int first = max(int(ceil(clamp(max(near.x, max(near.y, near.z)) - 0.5, 0.0, 1e6))), 0);
+    int last = min(int(ceil(clamp(min(far.x, min(far.y, far.z)) - 0.5, 0.0, 1e6))), steps);
+    float tau = 0.0;
+    for (int i = first; i < last && tau < DARK; ++i) {
+        vec3 p = start + (float(i) + 0.5) * dl * u;
+        tau += dl * extinction_at(clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1));
+    }
+    return exp(-tau);
+}
+
+// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
+mat3 frame_of(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z), b = n.x * n.y * a;
+    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= occlusion.at.splat_count) return;
+    Splat splat = SplatsRef(params.scene.splats).at[i];
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);
+    uvec3 voxel = uvec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny);
+    // Neighbours look in directions that fill one another's gaps: the additive sequence of the plastic number, 3-D.
+    uint turn = voxel.x * 3518319155u + voxel.y * 2882110345u + voxel.z * 2360945575u;
+    float phase = float(turn >> 8u) * (6.28318531 / 16777216.0);
+
+    mat3 to_index = transpose(occlusion.at.normal_to_world);
+    vec2 reach = vec2(0.0);
+    int faces = is_wall(e, params.scene.band) ? 2 : 1;
+    for (int face = 0; face < faces; ++face) {
+        SurfacePoint s = surface_point(e, params.scene.band, face == 1, occlusion.at.normal_to_world);
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), occlusion.at.normal_to_world);
+        bool sphere = s.normal == vec3(0.0);
+        vec3 start = vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step;
+        mat3 frame = sphere ? mat3(1.0) : frame_of(s.normal);
+        vec2 round = vec2(cos(phase), sin(phase));
+        float sum = 0.0;
+        for (uint k = 0u; k < OCCLUSION_RAYS; ++k) {
+            // Equal shares of the cosine over the half space (a spiral on the disc below it), or of the sphere.
+            float share = (float(k) + 0.5) / float(OCCLUSION_RAYS);
+            float up = sphere ? 1.0 - 2.0 * share : sqrt(1.0 - share);
+            vec3 direction = frame * vec3(sqrt(1.0 - up * up) * round, up);
+            sum += transmittance(start, to_index * direction);
+            round = vec2(round.x * GOLDEN.x - round.y * GOLDEN.y, round.x * GOLDEN.y + round.y * GOLDEN.x);
+        }
+        if (face == 0) reach = vec2(sum / float(OCCLUSION_RAYS));
+        else reach.y = sum / float(OCCLUSION_RAYS);
+    }
+    UintsRef(occlusion.at.reach).at[i] = packUnorm2x16(reach);
+}

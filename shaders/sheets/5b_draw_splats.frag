@@ -1,0 +1,49 @@
+// One splat at one pixel: the optical depth of its kernel along the pixel's own ray, and that times its colour.
+// docs/method.md, pass 5; design (8).
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
+
+layout(early_fragment_tests) in;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
+
+layout(location = 0) in vec3 offset;
+layout(location = 1) flat in vec3 from_eye;
+layout(location = 2) flat in vec4 color_sigma;
+layout(location = 3) flat in vec4 normal_distance;
+layout(location = 4) flat in vec3 shape;
+layout(location = 5) in vec2 pixels;
+layout(location = 6) flat in vec3 matter;
+layout(location = 7) flat in uvec2 number_material;
+layout(location = 8) flat in vec4 filtered;
+layout(location = 9) flat in vec4 face_slope;
+layout(location = 10) flat in vec4 face_diagonal;
+layout(location = 11) flat in vec4 face_mixed;
+layout(location = 12) flat in float face_reach2;
+layout(location = 0) out vec4 sheet;
+
+#include "shaders/footprints/face_form.glsl"
+FaceForm face_form;
+
+#include "shaders/splats/splat_value.glsl"
+
+void main() {
+    if (FACES)
+        face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
+                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0));
+    vec3 u = normalize(from_eye + offset);
+    vec3 p = offset - dot(offset, u) * u;
+    if (FACES) volume_piece = piece_in_volume(u);
+    sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));
+}

@@ -1,0 +1,95 @@
+// One quad a splat, 64 an instance: its corners, its layer of the sheet group, its colour. docs/method.md, pass 5.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_ARB_shader_viewport_layer_array : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(push_constant) uniform Push { uint group; };
+#include "shaders/splats/splat_projection.glsl"
+#include "shaders/light/shading.glsl"
+#include "shaders/common/transfer.glsl"
+#include "shaders/splats/splat_inputs.glsl"
+
+layout(location = 0) out vec3 offset;              // a point of the pixel's ray, relative to the voxel, index space
+layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
+layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
+layout(location = 3) flat out vec4 normal_distance;  // n, D
+layout(location = 4) flat out vec3 shape;  // negative: the splat is not warped; depths of the slice (mm from the voxel)
+layout(location = 5) out vec2 pixels;              // from the voxel's centre to the fragment's; with antialias only
+layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
+layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
+layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; with antialias only
+layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
+layout(location = 10) flat out vec4 face_diagonal; // depth last
+layout(location = 11) flat out vec4 face_mixed;    // thickness last
+layout(location = 12) flat out float face_reach2;
+
+void main() {
+    SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
+    uint nth = uint(gl_InstanceIndex) * QUADS_PER_INSTANCE + uint(gl_VertexIndex) / 4u;
+    bool real = nth < sheets.count;
+    uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
+    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    Projection p = place_splat(number, splat.voxel, e);
+    uint layer = 0u;
+    vec2 depths = vec2(0.0);
+    if (SLICED == 1u) {
+        // The sort left each sheet's end in its last counter.
+        uint nth_in_all = sheets.first + min(nth, sheets.count - 1u);
+        uint first_sheet = group * params.frame.sheets_per_group;
+        for (uint s = 0u; s + 1u < params.frame.sheets_per_group; ++s) {
+            uint sheet = min(first_sheet + s, params.frame.sheet_count - 1u);
+            layer += nth_in_all >= UintsRef(params.frame.counters).at[sheet * SORT_BLOCKS + SORT_BLOCKS - 1u] ? 1u : 0u;
+        }
+        float near = params.frame.sheet_zero + float(first_sheet + layer) * params.frame.sheet_thickness -
+                     dot(params.frame.view_z, p.position);
+        depths = vec2(near, near + params.frame.sheet_thickness);
+        cut_support(p, depths);
+    } else {
+        layer = UintsRef(params.frame.sheets).at[number] - group * params.frame.sheets_per_group;
+    }
+    project_support(p);
+
+    vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
+    vec2 slope = mix(p.low, p.high, corner);
+    from_eye = p.position - params.frame.eye;
+    // A splat at the eye may lie behind the eye plane: its rays are described where every ray passes.
+    offset = p.at_eye
+        ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
+        : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    if (!p.at_eye) offset += p.centre;
+
+    SplatInputs s = splat_inputs(number, splat, e, p, depths);
+    color_sigma = s.color_sigma;
+    normal_distance = s.normal_distance;
+    shape = s.shape;
+    if (FACES) {
+        face_slope = vec4(s.face.slope, s.face.value);
+        face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
+        face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
+        face_reach2 = s.face.cut.reach2;
+    }
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) matter = s.matter;
+    if (CLIP_KEEP + CLIP_REMOVE > 0u || FACES) number_material = s.number_material;
+    if (ANTIALIAS == 1u) {
+        pixels = (p.slope + slope - p.view.xy / p.view.z) / params.frame.pixel;
+        filtered = s.filtered;
+    }
+
+    vec2 ndc = (p.slope + slope) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    gl_Position = real ? vec4(ndc, 0.5, 1.0) : vec4(2.0, 2.0, 0.5, 1.0);
+    gl_Layer = int(layer);
+}

@@ -1,0 +1,71 @@
+// Compacts the voxels that can be seen into splat records, brick by brick (engine/culling/brick_runs.h). Each invocation owns a
+// slice of a brick; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
+// 2a_finish_splats gives them their edges.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/edges/edge_record.glsl"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
+layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
+layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+layout(push_constant) uniform Push { uint write; };
+
+ivec3 dims;
+#include "shaders/common/material.glsl"
+#define CLIP_PARAMS params.scene
+#include "shaders/common/clip.glsl"
+#include "shaders/common/trilinear.glsl"
+#include "shaders/common/transfer.glsl"
+
+uint material_at(ivec3 p) { return material_of(voxel(p)); }
+#include "shaders/splats/classified_value.glsl"
+
+void main() {
+    dims = params.scene.dims;
+    // Bricks side by side, slice by slice: so do the voxels of invocations that run together lie in memory.
+    ivec3 size = params.scene.core_size;
+    uvec3 runs = uvec3(uvec2(size.xy) + BRICK - 1u, uint(size.z)) / uvec3(BRICK, BRICK, 1u);
+    uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (run >= runs.x * runs.y * runs.z) return;
+    ivec3 low = ivec3(run % runs.x * BRICK, run / runs.x % runs.y * BRICK, run / runs.x / runs.y);
+    ivec2 extent = min(size.xy - low.xy, ivec2(BRICK));
+    low += params.scene.core_low;
+    UintsRef offsets = UintsRef(params.scene.run_offsets);
+    SplatsRef splats = SplatsRef(params.scene.splats);
+
+    ivec3 p = low;
+    uint out_at = write == 1u ? offsets.at[run] : 0u;
+    for (int v = 0; v < extent.x * extent.y; ++v) {
+        uint material = material_at(p);
+        bool visible = in_mask(params.scene.visible_mask, material);
+        if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) visible = visible && !is_cut_away(vec3(p), params.scene.reach);
+        float value = 0.0;
+        if (TRANSFER == 1u) {
+            uvec2 code = EDGES == 1u && visible ? imageLoad(edges, p).xy : uvec2(0u);
+            value = classified_value(p, voxel(p), material, unpack_edge(code.x, code.y));
+            visible = visible && transfer_at(TransferRef(params.scene.transfer), value).a > 0.0;
+        }
+        if (visible) {
+            if (write == 1u) {
+                if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
+                uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
+                splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), 0u, material << 28);
+            }
+            ++out_at;
+        }
+        if (++p.x == low.x + extent.x) {
+            p.x = low.x;
+            ++p.y;
+        }
+    }
+    if (write == 0u) offsets.at[run] = out_at;
+}

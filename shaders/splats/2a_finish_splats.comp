@@ -1,0 +1,54 @@
+// Gives each collected splat its edge or the face that fits the surface around it: one invocation a splat, where voxels that are
+// seen lie one behind the other. docs/method.md, pass 2.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/scene_params.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_FACES) const uint FACES = 0u;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
+layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
+layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
+
+ivec3 dims;
+#include "shaders/common/material.glsl"
+#include "shaders/common/volume_sampling.glsl"
+
+uint material_at(ivec3 p) { return material_of(voxel(p)); }
+#include "shaders/splats/fit_face.glsl"
+
+void main() {
+    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    bool with_edge = false;
+    for (uint run = i < params.scene.list_count ? 1u : 0u; run > 0u; --run) {
+        dims = params.scene.dims;
+        i += params.scene.list_first;
+        SplatsRef splats = SplatsRef(params.scene.splats);
+        Splat splat = splats.at[i];
+        uint nx = uint(params.scene.volume_dims.x), ny = uint(params.scene.volume_dims.y);
+        ivec3 p = ivec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny) - params.scene.block_origin;
+        uint material = splat.edge >> 28;
+        uvec2 code = imageLoad(edges, p).xy;
+        Edge e = unpack_edge(code.x, code.y);
+        uint normal = code.x;
+        if (FACES == 1u) {
+            // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.
+            Face face = fit_face(p, material);
+            bool cut = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
+            vec3 g = cut ? vec3(0.0) : voxel_gradient(p);
+            float slope = length(g);
+            e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
+            normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
+            BendingsRef(params.scene.traits).at[i] =
+                cut ? uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed)) : uvec2(0u);
+        }
+        with_edge = e.state >= EDGE_LOWER;
+        splats.at[i] = Splat(splat.voxel, normal, (e.state == EDGE_NONE ? 0u : pack_edge(e)) | (material << 28));
+    }
+    uint edges_here = subgroupAdd(with_edge ? 1u : 0u);
+    if (subgroupElect() && edges_here > 0u) atomicAdd(UintsRef(params.scene.run_offsets).at[params.scene.edge_count_at], edges_here);
+}

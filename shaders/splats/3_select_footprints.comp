@@ -1,0 +1,76 @@
+// For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels
+// its sheet group.
+// docs/method.md, pass 3.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_TILES) const uint TILES = 1u;
+layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/splats/splat_projection.glsl"
+#define CLIP_PARAMS params.frame
+#include "shaders/common/clip.glsl"
+
+// A box grows only outwards, so a look before the atomic spares nearly all of them.
+void grow(GroupsRef groups, uint g, ivec4 box) {
+    ivec4 now = groups.at[g].rect;
+    if (box.x < now.x) atomicMin(groups.at[g].rect.x, box.x);
+    if (box.y < now.y) atomicMin(groups.at[g].rect.y, box.y);
+    if (box.z > now.z) atomicMax(groups.at[g].rect.z, box.z);
+    if (box.w > now.w) atomicMax(groups.at[g].rect.w, box.w);
+}
+
+// Where splat i lies on the screen, for those who draw it with sheets `first` to `last`.
+void note(uint i, uint first, uint last, ivec4 box) {
+    if (TILES == 1u) {
+        uvec4 tiles = uvec4(uvec2(box.xy) / TILE, (uvec2(box.zw) + TILE - 1u) / TILE);
+        PairsRef(params.frame.tile_rects).at[i] = uvec2(tiles.x | tiles.y << 16, tiles.z | tiles.w << 16);
+        uint pairs = (tiles.z - tiles.x) * (tiles.w - tiles.y);
+        for (uint s = first; s <= last; ++s) atomicAdd(UintsRef(params.frame.sheet_pairs).at[s], pairs);
+    } else {
+        for (uint g = first / params.frame.sheets_per_group; g <= last / params.frame.sheets_per_group; ++g)
+            grow(GroupsRef(params.frame.groups), g, box);
+    }
+}
+
+void main() {
+    uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (slot >= params.frame.slot_count) return;
+    uint i = slot;
+    bool there = true;
+    if (CULLED == 1u) {
+        uvec2 batch = PairsRef(params.frame.batches).at[slot / SPLAT_BATCH];
+        there = slot % SPLAT_BATCH < batch.y;
+        i = batch.x + min(slot % SPLAT_BATCH, batch.y - 1u);
+    }
+    Splat splat = SplatsRef(params.frame.splats).at[i];
+    Projection p = place_splat(i, splat.voxel, unpack_edge(splat.normal, splat.edge));
+    project_support(p);
+    ivec4 box = pixel_box(p);
+    bool drawn = there && p.visible && box.x < box.z && box.y < box.w;
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
+    int most = int(params.frame.sheet_count) - 1;
+    if (SLICED == 1u) {
+        // Depths relative to the first sheet, where a far eye costs no digits.
+        float middle = dot(params.frame.view_z, p.position + p.centre) - params.frame.sheet_zero;
+        float reach = p.radius * length(params.frame.view_z);
+        int first = clamp(int(floor((middle - reach) / params.frame.sheet_thickness)), 0, most);
+        int last = clamp(int(floor((middle + reach) / params.frame.sheet_thickness)), first, most);
+        UintsRef(params.frame.sheets).at[slot] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
+        if (drawn) note(i, uint(first), uint(last), box);
+    } else {
+        int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
+        sheet = clamp(sheet, 0, most);
+        UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;
+        if (drawn) note(i, uint(sheet), uint(sheet), box);
+    }
+}

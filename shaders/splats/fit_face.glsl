@@ -1,0 +1,300 @@
+// A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
+// faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims` and
+// `material_at(ivec3)`.
+#include "shaders/edges/edge_record.glsl"
+#include "shaders/footprints/face_record.glsl"
+
+struct Surfel {
+    bool there;
+    vec3 at;  // relative to the voxel
+    vec3 n;   // out of the voxel's material
+    uint state;  // which end of the material's interval it is
+    bool border; // of the volume
+};
+
+// `material`: whose border is wanted, from either side.
+Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
+    Surfel s = Surfel(false, vec3(0.0), vec3(0.0), EDGE_NONE, false);
+    bool inside = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
+    ivec3 held = clamp(q, ivec3(0), dims - 1);
+    uvec2 code = imageLoad(edges, held).xy;
+    uint state = code.y >> 26 & 3u;
+    // The volume's border bounds what is inside of it alone.
+    bool at_border = (code.y & EDGE_BORDER) != 0u;
+    for (int run = inside && state >= EDGE_LOWER ? 1 : 0; run > 0; --run) {
+        Edge e = unpack_edge(code.x, code.y);
+        uint own = material_at(held);
+        // An upper end is the lower end of the material above.
+        bool ours = own == material, below = own + 1u == material && state == EDGE_UPPER && !at_border;
+        bool above = own == material + 1u && state == EDGE_LOWER && !at_border;
+        s.there = ours || below || above;
+        s.at = vec3(q - p) + e.d * e.n;
+        s.n = ours ? e.n : -e.n;
+        s.border = at_border;
+        s.state = ours ? state : (below ? EDGE_LOWER : EDGE_UPPER);
+    }
+    return s;
+}
+
+// Of a surfel at r from the middle, where the surface has the normal n: those that face the other way count from further off, since
+// they may be the other side of the same wall.
+float surfel_weight(vec3 r, vec3 n, vec3 other) {
+    float along = dot(r, n);
+    float turned = clamp(-2.0 * dot(n, other), 0.0, 1.0);
+    float shorter = 1.0 - 0.5 * turned;
+    float w = 1.0 - (dot(r, r) - along * along * (1.0 - shorter * shorter)) / (FIT_RADIUS * FIT_RADIUS);
+    w = max(w, 0.0);
+    return w * w;
+}
+
+// Sums over surfels at r with normals m, by weight.
+struct Moments {
+    float weight;
+    vec3 r, m;
+    vec3 squares, products;  // of r: xx yy zz, yz xz xy
+    mat3 turns;              // m r'
+};
+
+Moments no_moments() { return Moments(0.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), mat3(0.0)); }
+
+void add_surfel(inout Moments sums, vec3 r, vec3 m, float w) {
+    sums.weight += w;
+    sums.r += w * r;
+    sums.m += w * m;
+    sums.squares += w * r * r;
+    sums.products += w * r.yxx * r.zzy;
+    sums.turns += outerProduct(w * m, r);
+}
+
+struct Quadric {
+    float c;
+    vec3 g;
+    Bending h;
+};
+
+float quadric_at(Quadric q, vec3 r) { return q.c + dot(q.g, r) + 0.5 * dot(r, bent(q.h, r)); }
+vec3 quadric_slope(Quadric q, vec3 r) { return q.g + bent(q.h, r); }
+
+// One of Jacobi's rotations: pq becomes 0.
+void rotate(inout float pp, inout float qq, inout float pq, inout float rp, inout float rq, inout vec3 p, inout vec3 q) {
+    float theta = (qq - pp) * 0.5;
+    float t = pq / (abs(theta) + sqrt(theta * theta + pq * pq) + 1e-30) * (theta < 0.0 ? -1.0 : 1.0);
+    float c = inversesqrt(t * t + 1.0), s = t * c;
+    pp -= t * pq;
+    qq += t * pq;
+    pq = 0.0;
+    float old_rp = rp;
+    rp = c * rp - s * rq;
+    rq = s * old_rp + c * rq;
+    vec3 old_p = p;
+    p = c * p - s * q;
+    q = s * old_p + c * q;
+}
+
+// Normals are linear in place: H is the symmetric matrix that fits them best, which solves H C + C H = D + D', C and D the
+// covariances of places, and of normals with places. g follows, and c from the places, which lie on the surface.
+Quadric quadric_of(Moments sums) {
+    float share = 1.0 / max(sums.weight, 1e-20);
+    vec3 r = share * sums.r, m = share * sums.m, squares = share * sums.squares, products = share * sums.products;
+    vec3 own = squares - r * r, mixed = products - r.yxx * r.zzy;
+    mat3 turns = share * sums.turns - outerProduct(m, r);
+    mat3 both = turns + transpose(turns);
+    mat3 axes = mat3(1.0);
+    for (int sweep = 0; sweep < 4; ++sweep) {
+        rotate(own.x, own.y, mixed.z, mixed.y, mixed.x, axes[0], axes[1]);
+        rotate(own.x, own.z, mixed.y, mixed.z, mixed.x, axes[0], axes[2]);
+        rotate(own.y, own.z, mixed.x, mixed.z, mixed.y, axes[1], axes[2]);
+    }
+    mat3 turned = transpose(axes) * both * axes;
+    own = max(own, vec3(0.0)) + FIT_RIDGE;
+    for (int i = 0; i < 3; ++i) turned[i] /= own + own[i];
+    mat3 h = axes * turned * transpose(axes);
+    Quadric q;
+    q.h = Bending(vec3(h[0][0], h[1][1], h[2][2]), vec3(h[1][2], h[0][2], h[0][1]));
+    q.g = m - bent(q.h, r);
+    q.c = -dot(q.g, r) - 0.5 * dot(q.h.diagonal, squares) - dot(q.h.mixed, products);
+    return q;
+}
+
+struct Face {
+    Edge edge;
+    Bending h;
+    bool mixed;  // what faces the other way around is the other end of the material's interval
+};
+
+// How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
+struct FitErrors {
+    float weight;
+    float one;
+    float own;
+    float same;
+    float opposite;
+    float opposite_sum;
+    float opposite_sum2;
+};
+
+FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Quadric wall, Quadric own) {
+    FitErrors e = FitErrors(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
+    ivec3 around = p + ivec3(round(middle));
+    for (int i = 0; i < 125; ++i) {
+        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        vec3 r = s.at - middle;
+        float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
+        for (int run = w > 0.0 ? 1 : 0; run > 0; --run) {
+            float off = quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2), facing = dot(s.n, n);
+            float level = quadric_at(wall, r);
+            e.weight += w;
+            e.one += w * off * off;
+            float own_off = quadric_at(own, r) / max(length(quadric_slope(own, r)), 0.2);
+            e.own += w * own_off * own_off;
+            e.same += facing > 0.0 ? w * level * level : 0.0;
+            // What faces sideways belongs to no wall.
+            bool opposed = facing < -0.5;
+            e.same += facing <= 0.0 && !opposed ? w : 0.0;
+            e.opposite += opposed ? w : 0.0;
+            e.opposite_sum += opposed ? w * level : 0.0;
+            e.opposite_sum2 += opposed ? w * level * level : 0.0;
+        }
+    }
+    return e;
+}
+
+// The field's own expansion around voxel p, negative where the field is on the voxel's side of `iso`; design (13). Of about
+// unit slope where it is 0.
+Quadric field_quadric(ivec3 p, float iso, float side) {
+    ivec3 l = max(p - 1, ivec3(0)), h = min(p + 1, dims - 1);
+    float f = voxel(p), off = iso - f;
+    vec3 low = vec3(voxel(ivec3(l.x, p.yz)), voxel(ivec3(p.x, l.y, p.z)), voxel(ivec3(p.xy, l.z)));
+    vec3 high = vec3(voxel(ivec3(h.x, p.yz)), voxel(ivec3(p.x, h.y, p.z)), voxel(ivec3(p.xy, h.z)));
+    vec3 g = 0.5 * (high - low), diagonal = high - 2.0 * f + low;
+    vec3 mixed = 0.25 * vec3(voxel(ivec3(p.x, h.yz)) - voxel(ivec3(p.x, h.y, l.z)) - voxel(ivec3(p.x, l.y, h.z)) + voxel(ivec3(p.x, l.yz)),
+                             voxel(ivec3(h.x, p.y, h.z)) - voxel(ivec3(h.x, p.y, l.z)) - voxel(ivec3(l.x, p.y, h.z)) + voxel(ivec3(l.x, p.y, l.z)),
+                             voxel(ivec3(h.xy, p.z)) - voxel(ivec3(h.x, l.y, p.z)) - voxel(ivec3(l.x, h.y, p.z)) + voxel(ivec3(l.xy, p.z)));
+    float norm = sqrt(dot(diagonal, diagonal) + 2.0 * dot(mixed, mixed));
+    float scale = side * inversesqrt(max(dot(g, g) + 2.0 * abs(off) * norm, 1e-12));
+    return Quadric(scale * off, -scale * g, Bending(-scale * diagonal, -scale * mixed));
+}
+
+// The same about another point.
+Quadric quadric_about(Quadric q, vec3 m) { return Quadric(quadric_at(q, m), quadric_slope(q, m), q.h); }
+
+// The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
+vec3 foot_of(Quadric q, vec3 voxel_at, vec3 at) {
+    for (int i = 0; i < FOOT_STEPS; ++i) {
+        vec3 slope = quadric_slope(q, at);
+        float steep = length(slope);
+        vec3 up = slope / max(steep, 1e-6);
+        float bend = dot(up, bent(q.h, up)), value = quadric_at(q, at);
+        float moved = -2.0 * value / (steep + sqrt(max(steep * steep - 2.0 * value * bend, 0.0)) + 1e-6);
+        at += clamp(moved, -1.0, 1.0) * up;
+        vec3 from = at - voxel_at;
+        at -= i + 2 < FOOT_STEPS ? 0.7 * (from - dot(from, up) * up) : vec3(0.0);
+    }
+    return at;
+}
+
+// By how much samples around lie on the wrong side of each of three quadrics about `middle`, squared: of `one`, of the wall
+// from `wall` to its level, of the field's own.
+vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall, float level, Quadric own) {
+    vec3 wrong = vec3(0.0);
+    for (int i = 0; i < 27; ++i) {
+        ivec3 q = p + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        bool there = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
+        bool inside = there && material_at(clamp(q, ivec3(0), dims - 1)) == material;
+        vec3 r = vec3(q - p) - middle;
+        float to_wall = quadric_at(wall, r);
+        vec3 off = vec3(quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2), max(to_wall, level - to_wall),
+                        quadric_at(own, r) / max(length(quadric_slope(own, r)), 0.2));
+        off = min(max(inside ? off : -off, 0.0), 1.0);
+        wrong += off * off;
+    }
+    return wrong;
+}
+
+// Without a surface in reach: no edge.
+Face fit_face(ivec3 p, uint material) {
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false);
+    vec3 middle = vec3(0.0), n = vec3(0.0);
+    float nearest = FACE_SEARCH;
+    uint state = EDGE_LOWER;
+    bvec2 crossed = bvec2(false);
+    bool border = false;
+    for (int i = 0; i < 125; ++i) {
+        ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
+        Surfel s = surfel_at(p, q, material);
+        float away = s.there ? length(s.at) : 1e9;
+        // Of what is equally far the first is taken, whichever way numbers are rounded.
+        bool nearer = away < nearest - 1e-4;
+        nearest = nearer ? away : nearest;
+        middle = nearer ? s.at : middle;
+        n = nearer ? s.n : n;
+        state = nearer ? s.state : state;
+        border = nearer ? s.border : border;
+        uint other = material_at(clamp(q, ivec3(0), dims - 1));
+        bool beside = all(lessThanEqual(abs(o), ivec3(1)));
+        crossed.x = crossed.x || (beside && other < material);
+        crossed.y = crossed.y || (beside && other > material);
+    }
+    bool found = nearest < FACE_SEARCH;
+    if (border) {
+        // A plane, and behind it where the volume ends on the other side.
+        float d = dot(middle, n);
+        face.edge = Edge(n, d, dot(abs(n), vec3(params.scene.volume_dims)) - d, EDGE_LOWER);
+        return face;
+    }
+    if (!found) state = crossed.x ? EDGE_LOWER : EDGE_UPPER;
+    for (int run = found || crossed.x || crossed.y ? 1 : 0; run > 0; --run) {
+        Moments all = no_moments(), same = no_moments();
+        float mixed = 0.0;
+        ivec3 around = p + ivec3(round(middle));
+        for (int i = 0; i < 125; ++i) {
+            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+            vec3 r = s.at - middle;
+            float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
+            add_surfel(all, r, s.n, w);
+            add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
+            mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
+        }
+        // Where none is seen a layer ends at its lower values.
+        face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
+        Quadric one = quadric_of(all), wall = quadric_of(same);
+        bool upper = state == EDGE_UPPER;
+        Quadric centred = field_quadric(p, params.scene.iso[upper ? material : max(material, 1u) - 1u], upper ? -1.0 : 1.0);
+        Quadric own = quadric_about(centred, middle);
+        FitErrors e = fit_errors(p, material, middle, n, one, wall, own);
+        // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
+        float level = e.opposite_sum / max(e.opposite, 1e-20);
+        float wall_error = e.same + max(e.opposite_sum2 - e.opposite_sum * level, 0.0);
+        bool is_wall = e.opposite > 0.0 && level < -FIT_THINNEST && wall_error < FIT_WALL * e.one;
+        vec3 wrong = wrong_sides(p, material, middle, one, wall, level, own);
+        float error = is_wall ? wall_error + wrong.y : e.one + wrong.x;
+        // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a voxel.
+        bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < FIT_OWN * error);
+        is_wall = is_wall && !is_own;
+        Quadric q = one;
+        if (is_wall) q = wall;
+        if (is_own) {
+            q = centred;
+            middle = vec3(0.0);
+        }
+        vec3 begin = vec3(0.0);
+        if (is_own) {
+            vec3 d = q.h.diagonal;
+            vec3 axis = d.x >= d.y && d.x >= d.z ? vec3(1.0, 0.0, 0.0) : d.y >= d.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+            begin = 0.1 * normalize(q.g + 1e-3 * axis);
+        }
+        vec3 at = foot_of(q, -middle, begin);
+        vec3 slope = quadric_slope(q, at);
+        float steep = length(slope);
+        bool real = steep >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS;
+        vec3 foot = middle + (real ? at : vec3(0.0));
+        bool none = is_own && !real;
+        face.edge.n = real ? slope / max(steep, 1e-6) : n;
+        face.edge.d = dot(foot, face.edge.n);
+        face.edge.state = none ? EDGE_NONE : state;
+        float scale = real ? 1.0 / max(steep, 0.3) : 0.0;
+        face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
+        if (real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
+    }
+    return face;
+}

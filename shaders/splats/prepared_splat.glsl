@@ -1,0 +1,116 @@
+// What all pixels of a splat share, found once: where it lies, its kernel, its colour. Kept in records of PREPARED_STRIDE vec4 from
+// 4_prepare_splats to 5_draw_tiles; `prepared_stride` in C++ has the same sum. After shaders/splats/splat_inputs.glsl.
+#ifndef EDGESPLAT_PREPARED_SPLAT_GLSL
+#define EDGESPLAT_PREPARED_SPLAT_GLSL
+#include "shaders/splats/splat_conic.glsl"
+
+struct PreparedSplat {
+    SplatConic conic;
+    vec3 start;      // a point of the ray with slopes (0, 0), relative to the voxel, index space
+    float plane;     // its depth, mm: other rays pass plane * (x ray_x + y ray_y) beside it
+    vec2 slopes;     // of the voxel; with antialias only
+    SplatInputs inputs;
+};
+
+PreparedSplat prepared_splat(uint number, uint sheet) {
+    PreparedSplat s;
+    Splat splat = SplatsRef(params.frame.splats).at[number];
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    Projection p = place_splat(number, splat.voxel, e);
+    vec2 depths = vec2(0.0);
+    if (SLICED == 1u) {
+        float near = params.frame.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
+        depths = vec2(near, near + params.frame.sheet_thickness);
+        cut_support(p, depths);
+    }
+    s.inputs = splat_inputs(number, splat, e, p, depths);
+    s.conic = splat_conic(p);
+    // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
+    bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
+    s.plane = at_eye ? params.frame.near_depth : p.view.z;
+    s.slopes = p.view.xy / p.view.z;
+    s.start = at_eye ? s.plane * params.frame.ray_z - s.inputs.from_eye
+                     : -s.plane * (s.slopes.x * params.frame.ray_x + s.slopes.y * params.frame.ray_y);
+    return s;
+}
+
+const uint PREPARED_KERNEL = 2u;
+const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
+const uint PREPARED_CUT = PREPARED_START + 2u;
+const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
+const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
+const uint PREPARED_STRIDE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
+
+// Entries of a chunk are consecutive and no more than there are slots.
+uint prepared_slot(uint entry) { return (entry & params.frame.prepared_mask) * PREPARED_STRIDE; }
+
+ivec2 prepared_texel(uint at) { return ivec2(at % PREPARED_ROW, at / PREPARED_ROW); }
+
+#ifdef KEEPS_PREPARED
+void keep_prepared(uint entry, PreparedSplat s) {
+    uint at = prepared_slot(entry);
+    imageStore(prepared, prepared_texel(at), vec4(s.conic.centre, s.conic.form.xy));
+    imageStore(prepared, prepared_texel(at + 1u), vec4(s.conic.form.z, s.conic.linear, s.conic.depth));
+    if (FACES) {
+        FaceForm f = s.inputs.face;
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), vec4(f.slope, f.value));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(f.h.diagonal, f.cut.depth));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
+                   vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), 0.0));
+    }
+    if (FOOTPRINTS != ISOTROPIC && !FACES) {
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
+        imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(s.inputs.shape.x, 0.0, 0.0, 0.0));
+    }
+    imageStore(prepared, prepared_texel(at + PREPARED_START), vec4(s.start, s.plane));
+    imageStore(prepared, prepared_texel(at + PREPARED_START + 1u), s.inputs.color_sigma);
+    if (SLICED == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CUT), vec4(s.inputs.shape.yz, 0.0, 0.0));
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        imageStore(prepared, prepared_texel(at + PREPARED_MATTER), vec4(s.inputs.from_eye, uintBitsToFloat(s.inputs.number_material.y)));
+        imageStore(prepared, prepared_texel(at + PREPARED_MATTER + 1u), vec4(s.inputs.matter, uintBitsToFloat(s.inputs.number_material.x)));
+    }
+    if (ANTIALIAS == 1u) {
+        imageStore(prepared, prepared_texel(at + PREPARED_FILTER), vec4(s.slopes, 0.0, 0.0));
+        imageStore(prepared, prepared_texel(at + PREPARED_FILTER + 1u), s.inputs.filtered);
+    }
+}
+
+#else
+SplatConic load_conic(uint entry) {
+    uint at = prepared_slot(entry);
+    vec4 u = imageLoad(prepared, prepared_texel(at)), v = imageLoad(prepared, prepared_texel(at + 1u));
+    return SplatConic(u.xy, vec3(u.zw, v.x), v.yz, v.w);
+}
+
+// What draws an entry.
+void load_kernel(uint entry, inout PreparedSplat s) {
+    uint at = prepared_slot(entry);
+    if (FACES) {
+        vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
+        vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0));
+        s.inputs.number_material = uvec2(floatBitsToUint(d.y), floatBitsToUint(d.z));
+    }
+    if (FOOTPRINTS != ISOTROPIC && !FACES) {
+        s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
+        s.inputs.shape.x = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u)).x;
+    }
+    vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_START));
+    s.start = v.xyz;
+    s.plane = v.w;
+    s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));
+    if (SLICED == 1u) s.inputs.shape.yz = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));
+        s.inputs.from_eye = place.xyz;
+        s.inputs.matter = matter.xyz;
+        if (!FACES) s.inputs.number_material = uvec2(floatBitsToUint(matter.w), floatBitsToUint(place.w));
+    }
+    if (ANTIALIAS == 1u) {
+        s.slopes = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER)).xy;
+        s.inputs.filtered = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER + 1u));
+    }
+}
+#endif
+#endif

@@ -1,0 +1,77 @@
+// What a fragment needs of its splat, for all of its pixels: place, footprint, colour. docs/method.md, pass 5. After
+// shaders/splats/splat_projection.glsl, shading.glsl and transfer.glsl.
+#ifndef EDGESPLAT_SPLAT_INPUTS_GLSL
+#define EDGESPLAT_SPLAT_INPUTS_GLSL
+
+struct SplatInputs {
+    vec3 from_eye;         // voxel centre minus eye, index space
+    vec4 color_sigma;      // payload, extinction per mm
+    vec4 normal_distance;  // n, D
+    vec3 shape;            // negative: the splat is not warped; depths of the slice (mm from the voxel)
+    vec3 matter;           // colour before light: what a cut shows; with clip planes only
+    uvec2 number_material; // of the splat, likewise or with faces, and how its surface is lit
+    FaceForm face;         // with faces only: light falls where a ray meets it, and color_sigma has the colour before light
+    vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
+};
+
+SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
+    SplatInputs s;
+    s.from_eye = p.position - params.frame.eye;
+    vec4 material = vec4(0.0);
+    if (TRANSFER == 1u)
+        material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
+    else
+        material = params.frame.materials[splat.edge >> 28];
+    // A surface faces its lower values, whichever side of it the splat is on.
+    vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
+    vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
+    vec3 world_from_eye = params.frame.index_to_world * s.from_eye;
+    vec3 to_eye = -unit_or_zero(world_from_eye);
+    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    bool turned = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
+    if (turned) world_normal = -world_normal;
+    float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;
+    vec3 payload = vec3(0.0);
+    if (PAYLOAD == PAYLOAD_COLOR) {
+        bool has_normal = e.state >= (LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
+        payload = shade(Surface(material.rgb, splat.edge >> 28, number, has_normal, world_normal, turned, world_from_eye, to_eye, depth));
+    }
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
+        float signed_distance = e.state == EDGE_LOWER ? -e.d : e.state == EDGE_UPPER ? e.d : -params.frame.band;
+        payload = vec3(depth, signed_distance, 0.0);
+    }
+    if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
+    s.color_sigma = vec4(payload, material.a);
+    s.number_material = uvec2(number, splat.edge >> 28);
+    if (FACES) {
+        bool is_cut = e.state >= EDGE_LOWER && abs(e.d) < params.frame.support + params.frame.face_depth;
+        bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
+        s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
+        Bending h = Bending(vec3(0.0), vec3(0.0));
+        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
+        for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
+            h = bending_of(number);
+            vec3 a = abs(e.n);
+            uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
+            s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
+            s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
+            vec3 at_foot = bent(h, e.d * e.n);
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut_of(e, h));
+        }
+        if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
+    }
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;
+    s.normal_distance = vec4(e.n, e.d);
+    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < (FACES ? params.frame.support + params.frame.face_depth : params.frame.band);
+    s.shape = vec3(warped ? 1.0 : -1.0, depths);
+    if (ANTIALIAS == 1u) {
+        LowPass f = p.filtered;
+        float matter = warped ? matter_of_voxel(e.d, e.d2) : 1.0;
+        s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
+        if (f.share >= 1.0) s.shape.x = -1.0;
+        if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;
+    }
+
+    return s;
+}
+#endif

@@ -1,0 +1,146 @@
+// Where a splat's support lies on the screen. The including shader declares the uniform block `params.frame` (its fields are
+// read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS, WARP and ANTIALIAS.
+#ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
+#define EDGESPLAT_SPLAT_PROJECTION_GLSL
+#include "shaders/footprints/antialias.glsl"
+#include "shaders/edges/edge_record.glsl"
+#include "shaders/footprints/face_form.glsl"
+#include "shaders/shared/frame_params.h"
+
+struct Projection {
+    vec3 position;    // voxel centre relative to the anchor, index space
+    vec3 view;        // voxel centre, mm: right, down, forward of the eye
+    vec3 centre;      // of the sphere that holds the support, relative to the voxel centre, index space
+    float radius;     // its radius, voxels
+    LowPass filtered; // with antialias only
+    float depth;      // of the support's centre, mm
+    vec2 slope;       // view.xy / view.z of the support's centre
+    vec2 low, high;   // box of the support in slopes, relative to `slope`
+    bool at_eye;      // the support reaches the eye plane: the box is of slopes from the view axis, `slope` is 0
+    bool visible;
+};
+
+vec3 view_position(vec3 position) {
+    return vec3(dot(params.frame.view_x, position) + params.frame.anchor_x, dot(params.frame.view_y, position) + params.frame.anchor_y,
+                dot(params.frame.view_z, position) + params.frame.anchor_z);
+}
+
+Bending bending_of(uint number) {
+    uvec2 code = BendingsRef(params.frame.traits).at[number];
+    return Bending(unpack_bending(code.x), unpack_bending(code.y));
+}
+
+FaceCut cut_of(Edge e, Bending h) {
+    float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
+    return face_cut(e.d, dot(e.n, bent(h, e.n)), bending_norm(h), thickness, params.frame.face_depth);
+}
+
+// Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from
+// the slope of the centre, the plane touches the sphere where s^2 (z^2 - r^2 |Z|^2) + 2 s r^2 X.Z - r^2 |X|^2 = 0, X the
+// axis functional of slope 0. Relative to the centre nothing cancels, however far the eye.
+vec2 touching_slopes(vec3 x_axis, vec3 z_axis, float depth, float radius) {
+    float r2 = radius * radius;
+    float a = depth * depth - r2 * dot(z_axis, z_axis);
+    float b = r2 * dot(x_axis, z_axis);
+    float c = r2 * dot(x_axis, x_axis);
+    float root = sqrt(b * b + a * c);
+    return vec2(-b - root, -b + root) / a;
+}
+
+// The same for a support that reaches the eye plane. Seen along the other screen axis it is an ellipse; with the eye
+// inside, every slope meets it, else the slopes beyond the one tangent that touches it in front of the eye.
+vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, float edge) {
+    float r2 = radius * radius;
+    float a = z * z - r2 * dot(z_axis, z_axis);
+    float b = x * z - r2 * dot(x_axis, z_axis);
+    float c = x * x - r2 * dot(x_axis, x_axis);
+    float discriminant = b * b - a * c;
+    vec2 range = vec2(-edge, edge);
+    if (discriminant <= 0.0 || abs(a) < 1e-12) return range;
+    for (int i = 0; i < 2; ++i) {
+        float s = (b + (i == 0 ? -1.0 : 1.0) * sqrt(discriminant)) / a;
+        vec3 q = x_axis - s * z_axis;
+        float side = x - s * z;
+        float touching_depth = z - sign(side) * radius * dot(z_axis, q) / length(q);
+        if (touching_depth > 0.0 && side > 0.0) range.x = max(range.x, s);
+        if (touching_depth > 0.0 && side < 0.0) range.y = min(range.y, s);
+    }
+    return range;
+}
+
+// The widened kernel lies around the voxel. Splats so near that they may reach the eye stay as they are.
+void filter_splat(inout Projection p) {
+    vec2 pixel = p.view.z * params.frame.pixel;
+    vec3 u = normalize(p.position - params.frame.eye);
+    p.filtered = low_pass(pixel.x * params.frame.ray_x, pixel.y * params.frame.ray_y, u, params.frame.support);
+    float around = max(p.radius + length(p.centre), params.frame.support);
+    if (p.view.z < 2.0 * around * length(params.frame.view_z)) p.filtered.share = 0.0;
+    p.radius = p.filtered.share > 0.0 ? around : p.radius;
+    p.centre = p.filtered.share > 0.0 ? vec3(0.0) : p.centre;
+}
+
+// Position and support; project_support() finds where they lie on the screen.
+Projection place_splat(uint number, uint voxel, Edge e) {
+    Projection p;
+    uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
+    p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
+    p.view = view_position(p.position);
+    bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
+    vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
+    for (uint run = FACES && cut_or_warped ? 1u : 0u; run > 0u; --run) {
+        FaceCut cut = cut_of(e, bending_of(number));
+        support = vec2(cut.shift, cut.radius);
+    }
+    p.centre = support.x * e.n;
+    p.radius = support.y;
+    if (ANTIALIAS == 1u) filter_splat(p);
+    return p;
+}
+
+// How far from its centre a splat is drawn across the ray.
+float reach_across(Projection p) { return ANTIALIAS == 1u && p.filtered.share > 0.0 ? max(p.radius, p.filtered.reach) : p.radius; }
+
+// The support's part between two depths, mm relative to the voxel centre: a cap, or what is left of the sphere, lies in
+// the sphere over the circle in which the nearer plane cuts it.
+void cut_support(inout Projection p, vec2 depths) {
+    float unit = length(params.frame.view_z);
+    float middle = dot(params.frame.view_z, p.centre);
+    float to_slab = clamp(middle, depths.x, depths.y) - middle;
+    float gap = min(abs(to_slab) / unit, p.radius);
+    p.centre += sign(to_slab) * gap / unit * params.frame.view_z;
+    p.radius = sqrt(p.radius * p.radius - gap * gap);
+}
+
+void project_support(inout Projection p) {
+    vec3 centre = view_position(p.position + p.centre);
+    p.depth = centre.z;
+    float reach = p.radius * length(params.frame.view_z);
+    float across = reach_across(p);
+    p.visible = centre.z + reach > 0.0;
+    p.at_eye = centre.z < 1.05 * reach;
+    p.slope = p.at_eye ? vec2(0.0) : centre.xy / centre.z;
+    vec2 edge = vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    vec2 x, y;
+    if (p.at_eye) {
+        x = slopes_at_eye(params.frame.view_x, params.frame.view_z, centre.x, centre.z, p.radius, edge.x);
+        y = slopes_at_eye(params.frame.view_y, params.frame.view_z, centre.y, centre.z, p.radius, edge.y);
+    } else {
+        x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, across);
+        y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, across);
+    }
+    // A filter wider than its distance covers the picture.
+    if (ANTIALIAS == 1u && !p.at_eye && centre.z < 1.05 * across * length(params.frame.view_z)) x = y = vec2(-1e9, 1e9);
+    // Clipped to a little more than the picture, so that rounding loses no pixel.
+    p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
+    p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);
+    p.visible = p.visible && all(lessThan(p.low, p.high));
+}
+
+// Slopes to pixels: x0 y0 x1 y1, half open, clipped.
+ivec4 pixel_box(Projection p) {
+    vec2 scale = 0.5 * vec2(params.frame.size) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    vec2 low = (p.slope + p.low) * scale + 0.5 * vec2(params.frame.size);
+    vec2 high = (p.slope + p.high) * scale + 0.5 * vec2(params.frame.size);
+    return ivec4(clamp(ivec2(floor(low)), ivec2(0), params.frame.size), clamp(ivec2(ceil(high)), ivec2(0), params.frame.size));
+}
+#endif

@@ -1,0 +1,39 @@
+// Second third: exclusive prefix sum over (tile, block), and each tile's range. One workgroup: each invocation sums a run of
+// counters, the runs are scanned in shared memory.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 256) in;
+layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform writeonly uimageBuffer ranges;
+#include "shaders/common/workgroup_sums.glsl"
+
+// The next list may begin there or after.
+uint begin_of_list(uint at) { return (at + MARKED_AT_ONCE - 1u) / MARKED_AT_ONCE * MARKED_AT_ONCE; }
+
+void main() {
+    uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;
+    uint tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
+    uint per_run = (tiles + 255u) / 256u;
+    uint first = min(me * per_run, tiles), last = min(first + per_run, tiles);
+
+    uint sum = 0u;
+    for (uint tile = first; tile < last; ++tile) {
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += imageLoad(counters, int(i)).x;
+        sum = begin_of_list(sum);
+    }
+    uint offset = sum_before(sum);
+    for (uint tile = first; tile < last; ++tile) {
+        uint begin = offset;
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
+            uint n = imageLoad(counters, int(i)).x;
+            imageStore(counters, int(i), uvec4(offset));
+            offset += n;
+        }
+        imageStore(ranges, int(tile), uvec4(begin, offset, 0u, 0u));
+        offset = begin_of_list(offset);
+    }
+}

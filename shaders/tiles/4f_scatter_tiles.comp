@@ -1,0 +1,25 @@
+// Last third: every pair of a splat and a tile that is not opaque yet goes to its place, sheet by sheet.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/tiles/tile_entries.glsl"
+#include "shaders/splats/sheet_of_entry.glsl"
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform writeonly uimageBuffer entries;
+
+void main() {
+    Block block = block_of_invocation();
+    UintsRef starts = UintsRef(params.frame.sheet_starts);
+    Pairs pairs = begin_pairs(block, 1u);
+    uint sheet = sheet_of_entry(pairs.entry);
+    for (uint n = 0u; n < PAIR_STEPS && pairs.entry < block.last; ++n) {
+        while (starts.at[sheet + 1u] <= pairs.entry) ++sheet;
+        uvec2 at = tile_of(pairs);
+        uint tile = at.y * uint(params.frame.tiles.x) + at.x;
+        if (!is_closed(tile)) {
+            uint place = tile * params.frame.tile_blocks + block.column, pair = count_at(place);
+            set_count(place, pair + 1u);
+            imageStore(entries, int(params.frame.entries_first + pair), uvec4(pairs.entry, sheet, 0u, 0u));
+        }
+        next_pair(pairs, block);
+    }
+    end_pairs(pairs, block, 1u);
+}

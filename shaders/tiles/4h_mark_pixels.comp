@@ -1,0 +1,95 @@
+// For every entry of a tile's list: which of the tile's pixels its support reaches, row by row, kept as a word a pixel of
+// what each 32 entries have for it. docs/method.md, 4_mark_pixels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 8, local_size_y_id = SPEC_LIST_PARTS) in;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
+layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
+layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
+layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
+layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
+layout(binding = BIND_TILE_MARKS, r32ui) uniform uimageBuffer marks;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
+layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
+layout(push_constant) uniform Push { uint draw_round; };
+#include "shaders/splats/splat_projection.glsl"
+#include "shaders/light/shading.glsl"
+#include "shaders/common/transfer.glsl"
+#include "shaders/splats/splat_inputs.glsl"
+#include "shaders/footprints/footprint.glsl"
+#include "shaders/splats/prepared_splat.glsl"
+
+#include "shaders/tiles/tile_marks.glsl"
+
+// The least distance of two voxels, mm.
+float least_voxel() {
+    mat3 m = params.frame.index_to_world;
+    return min(length(m[0]), min(length(m[1]), length(m[2])));
+}
+
+const uint ROWS = TILE / gl_WorkGroupSize.x;  // of an invocation
+const uint OWN = ROWS * TILE / (CELL_X * CELL_Y);
+const float TOO_WIDE = 1e30;
+
+void main() {
+    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (ROUNDS == 1u) tile = imageLoad(order, int(tile)).x;
+    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
+    uvec2 range = imageLoad(ranges, int(tile)).xy;
+    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    bool closed = imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x;
+    if (range.x >= range.y || closed) return;
+    ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
+    int row = corner.y + int(gl_LocalInvocationID.x * ROWS);
+    float finest = TOO_WIDE;
+    for (uint base = range.x + MARKED_AT_ONCE * gl_LocalInvocationID.y; base < range.y; base += MARKED_AT_ONCE * gl_WorkGroupSize.y) {
+        int marks_at = first_mark(base) + int(gl_LocalInvocationID.x * OWN);
+        uint count = min(MARKED_AT_ONCE, range.y - base);
+        // Lists that are kept from step to step are marked already, where tiles were not closed.
+        if (REFINED == 1u) count = imageLoad(marks, marks_at).x == ~0u ? count : 0u;
+        uint marked[2u * TILE];
+        for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
+        for (uint k = 0u; k < count; ++k) {
+            uvec2 entry = imageLoad(entries, int(params.frame.entries_first + base + k)).xy;
+            SplatConic conic;
+            if (PREPARED == 1u) conic = load_conic(entry.x);
+            else conic = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y).conic;
+            if (REFINED == 1u) {
+                float depth = max(conic.depth, params.frame.near_depth);
+                finest = min(finest, least_voxel() / (depth * 2.0 * params.frame.tan_half_x / float(params.frame.size.x)));
+            }
+            uint covered = 0u;
+            for (uint r = 0u; r < ROWS; ++r) {
+                ivec2 ends = clamp(row_of_conic(conic, row + int(r)) - corner.x, 0, int(TILE));
+                uint own = (1u << ends.y) - 1u & ~((1u << ends.x) - 1u);
+                covered = WIDE_MARKS == 1u ? covered | own : own;
+                if (WIDE_MARKS == 0u)
+                    for (uint x = 0u; x < TILE; ++x) marked[r * TILE + x] |= (own >> x & 1u) << k;
+            }
+            if (WIDE_MARKS == 1u)
+                for (uint c = 0u; c < OWN; ++c) marked[c] |= (covered >> c * CELL_X & (1u << CELL_X) - 1u) != 0u ? 1u << k : 0u;
+        }
+        for (uint store = count > 0u ? 1u : 0u; store > 0u; --store)
+            for (uint c = 0u; c < OWN; ++c) imageStore(marks, marks_at + int(c), uvec4(marked[c]));
+    }
+    // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.
+    if (REFINED == 1u && gl_LocalInvocationID.x == 0u)
+        atomicMin(UintsRef(params.frame.tile_finest).at[tile], floatBitsToUint(finest));
+}

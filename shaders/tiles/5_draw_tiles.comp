@@ -1,0 +1,193 @@
+// A chunk of sheets, tile by tile: each pixel adds the splats of a sheet, folds the sheet behind what it has, and stops when it
+// is opaque. Of its tile's list it draws what is marked for it.
+// docs/method.md, 5_draw_tiles.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x_id = SPEC_GROUP) in;
+layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
+layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_LIT_EDGES) const uint LIT_EDGES = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
+layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
+layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
+layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
+layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
+layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
+layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
+layout(binding = BIND_TILE_MARKS, r32ui) uniform readonly uimageBuffer marks;
+layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
+layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
+layout(binding = BIND_TILE_PIXELS, r32ui) uniform readonly uimageBuffer listed_pixels;
+layout(binding = BIND_TILE_SHEETS, rgba32f) uniform imageBuffer unfinished;
+layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
+#include "shaders/splats/splat_projection.glsl"
+#include "shaders/light/shading.glsl"
+#include "shaders/common/transfer.glsl"
+#include "shaders/splats/splat_inputs.glsl"
+
+vec3 from_eye;
+vec4 color_sigma;
+vec4 normal_distance;
+vec3 shape;
+vec2 pixels;
+vec3 matter;
+uvec2 number_material;
+vec4 filtered;
+FaceForm face_form;
+#define CLIP_PARAMS params.frame
+#include "shaders/footprints/footprint.glsl"
+#include "shaders/splats/prepared_splat.glsl"
+#include "shaders/splats/splat_value.glsl"
+#include "shaders/common/fold_sheet.glsl"
+#include "shaders/tiles/pixel_in_tile.glsl"
+#include "shaders/tiles/tile_marks.glsl"
+
+uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
+
+// A pixel takes no more once it is opaque.
+void fold(inout vec4 sum, inout bool open, vec4 sheet) {
+    sum = open ? folded(sum, sheet) : sum;
+    open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
+}
+
+// Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
+const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
+
+// Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
+uint pixels_of(uint tile) { return mix(imageLoad(todo_pixels, int(tile)).x, FIRST_PIXELS, what >> 31 == 1u); }
+
+ivec2 place_of(uint tile, uint place) {
+    if (REFINED == 0u) return pixel_in_tile(place);
+    uint listed = imageLoad(listed_pixels, int(tile * TILE * TILE + place)).x;
+    return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
+}
+
+void main() {
+    uint draw_round = what & 0xfffffu;
+    uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (ROUNDS == 1u) item = imageLoad(order, int(tile_count() + item)).x;
+    uint groups = REFINED == 1u ? what >> 20 & 0xfu : 1u;
+    uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (tile >= tile_count()) return;
+    uvec2 range = imageLoad(ranges, int(tile)).xy;
+    uint whole_end = range.y;
+    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    if (range.x >= range.y) return;
+    // The sheet of the first entry may have begun in the round before, that of the last may go on in the next.
+    bool goes_on = ROUNDS == 1u && range.y < whole_end, went_on = ROUNDS == 1u && draw_round > 0u;
+    ivec2 size = params.frame.size;
+    uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
+    ivec2 pixel = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) +
+                  place_of(tile, min(place, max(count, 1u) - 1u));
+    bool inside = pixel.x < size.x && pixel.y < size.y && place < count;
+    ivec2 held = min(pixel, size - 1);
+    vec4 sum = imageLoad(picture, held.y * size.x + held.x);
+    bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
+    bool open = was_open;
+    uint evaluated = 0u, shaded = 0u;
+    for (uint run = open ? 1u : 0u; run > 0u; --run) {
+        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+        vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
+        vec3 way = params.frame.ray_z + across;
+        float way_length = length(way);
+        vec3 u = way / way_length;
+        float mm = length(params.frame.index_to_world * u);
+        normal_distance = vec4(0.0);
+        if (FACES) volume_piece = piece_in_volume(u);
+        int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
+        vec4 sheet_sum = vec4(0.0);
+        uint current = imageLoad(entries, at).y;
+        if (ROUNDS == 1u) {
+            bool same = went_on && imageLoad(entries, at - (went_on ? 1 : 0)).y == current;
+            sheet_sum = same ? imageLoad(unfinished, held.y * size.x + held.x) : vec4(0.0);
+            // A sheet that ended with the round before.
+            for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, imageLoad(unfinished, held.y * size.x + held.x));
+        }
+        uint length = range.y - range.x;
+        for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
+            uvec4 words;
+            for (uint i = 0u; i < 4u; ++i) {
+                uint begin = base + i * MARKED_AT_ONCE, left = length - min(begin, length);
+                words[i] = imageLoad(marks, marks_at + int(begin / MARKED_AT_ONCE * CELLS)).x;
+                words[i] = left == 0u ? 0u : words[i] & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
+            }
+            while ((words.x | words.y | words.z | words.w) != 0u && open) {
+                bvec3 done = equal(words.xyz, uvec3(0u));
+                uint first = !done.x ? 0u : !done.y ? 1u : !done.z ? 2u : 3u;
+                uint bits = !done.x ? words.x : !done.y ? words.y : !done.z ? words.z : words.w;
+                uint rest = bits & bits - 1u;
+                words = uvec4(first == 0u ? rest : words.x, first == 1u ? rest : words.y, first == 2u ? rest : words.z,
+                              first == 3u ? rest : words.w);
+                uvec2 entry = imageLoad(entries, at + int(base + first * MARKED_AT_ONCE) + findLSB(bits)).xy;
+                uint sheet = entry.y;
+                vec4 with_sheet = sum;
+                bool still_open = open;
+                fold(with_sheet, still_open, sheet_sum);
+                bool ended = sheet != current;
+                sum = ended ? with_sheet : sum;
+                open = ended ? still_open : open;
+                sheet_sum = ended ? vec4(0.0) : sheet_sum;
+                current = sheet;
+                PreparedSplat h;
+                if (PREPARED == 1u) load_kernel(entry.x, h);
+                else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], sheet);
+                color_sigma = h.inputs.color_sigma;
+                normal_distance = FOOTPRINTS != ISOTROPIC ? h.inputs.normal_distance : vec4(0.0);
+                shape = vec3(FOOTPRINTS != ISOTROPIC ? h.inputs.shape.x : -1.0, SLICED == 1u ? h.inputs.shape.yz : vec2(0.0));
+                if (FACES) {
+                    face_form = h.inputs.face;
+                    number_material = h.inputs.number_material;
+                }
+                if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+                    from_eye = h.inputs.from_eye;
+                    matter = h.inputs.matter;
+                    if (!FACES) number_material = h.inputs.number_material;
+                }
+                vec3 offset = h.start + h.plane * across;
+                if (ANTIALIAS == 1u) {
+                    filtered = h.inputs.filtered;
+                    pixels = (slope - h.slopes) / params.frame.pixel;
+                }
+                if (COUNT == 1u) {
+                    ++evaluated;
+                    shaded += open ? 1u : 0u;
+                }
+                float beyond = dot(offset, u);
+                sheet_sum += splat_value(offset - beyond * u, u, h.plane * way_length - beyond, mm);
+            }
+        }
+        // What the next round may go on with is the sheet of the last entry, whether or not it was here.
+        bool kept = goes_on && imageLoad(entries, at + int(range.y - range.x) - 1).y == current;
+        for (uint run = kept ? 0u : 1u; run > 0u; --run) {
+            fold(sum, open, sheet_sum);
+            sheet_sum = vec4(0.0);
+        }
+        for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
+        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
+    }
+    uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
+    if (COUNT == 1u) {
+        uint all = subgroupAdd(evaluated), of_open = subgroupAdd(shaded);
+        if (subgroupElect()) {
+            atomicAdd(UintsRef(params.frame.drawn).at[1], all);
+            atomicAdd(UintsRef(params.frame.drawn).at[2], of_open);
+        }
+    }
+    if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);
+}

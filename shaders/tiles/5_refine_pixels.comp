@@ -1,0 +1,82 @@
+// Between pixels that are drawn: where the picture is smooth the others follow from those around them, elsewhere they are listed to
+// be drawn. An invocation has a cell of STEP x STEP pixels, of which the first is there. docs/method.md, 5_refine_pixels.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x_id = SPEC_GROUP) in;
+layout(constant_id = SPEC_STEP) const uint STEP = 4u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(binding = BIND_TILE_PIXELS, r32ui) uniform writeonly uimageBuffer pixels;
+#include "shaders/tiles/pixel_in_tile.glsl"
+
+shared uvec2 rough;  // cells that are listed, a bit each: lists are the same whoever comes first
+
+// Differences of what is shown, not of light: near enough to sRGB, and of finite slope.
+vec4 shown(vec4 c) { return vec4(sqrt(max(c.rgb, 0.0) + 0.0015), c.a); }
+
+float largest(vec4 v) { return max(max(v.r, v.g), max(v.b, v.a)); }
+
+vec4 between(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - (a + d)) / 16.0; }
+
+void keep(ivec2 pixel, vec4 value) { imageStore(picture, pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
+
+void main() {
+    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
+    ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
+    ivec2 size = params.frame.size, in_tile = pixel_in_tile(gl_LocalInvocationIndex) * int(STEP), first = corner + in_tile;
+    ivec2 last = (size - 1) / int(STEP) * int(STEP);
+    vec4 at[4][4], seen[4][4];
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 0; x < 4; ++x) {
+            ivec2 pixel = clamp(first + int(STEP) * ivec2(x - 1, y - 1), ivec2(0), last);
+            at[y][x] = imageLoad(picture, pixel.y * size.x + pixel.x);
+            seen[y][x] = shown(at[y][x]);
+        }
+    }
+    vec4 bend = vec4(0.0);
+    for (int i = 1; i < 3; ++i) {
+        for (int j = 0; j < 2; ++j) {
+            bend = max(bend, abs(seen[i][j] - 2.0 * seen[i][j + 1] + seen[i][j + 2]));
+            bend = max(bend, abs(seen[j][i] - 2.0 * seen[j + 1][i] + seen[j + 2][i]));
+        }
+    }
+    for (int y = 0; y < 3; ++y)
+        for (int x = 0; x < 3; ++x)
+            bend = max(bend, abs(seen[y][x] - seen[y][x + 1] - seen[y + 1][x] + seen[y + 1][x + 1]));
+    // Not a number is not smooth, nor is what has nothing beyond it. What a voxel narrower than a step shows may lie unseen.
+    float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
+    bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
+
+    const int half_step = int(STEP / 2u);
+    bool right = first.x + half_step < size.x && first.y < size.y, below = first.x < size.x && first.y + half_step < size.y;
+    if (smooth_here) {
+        vec4 rows[4];
+        for (int y = 0; y < 4; ++y) rows[y] = between(at[y][0], at[y][1], at[y][2], at[y][3]);
+        keep(first + ivec2(half_step, 0), rows[1]);
+        keep(first + ivec2(0, half_step), between(at[0][1], at[1][1], at[2][1], at[3][1]));
+        keep(first + half_step, between(rows[0], rows[1], rows[2], rows[3]));
+    }
+    uint me = gl_LocalInvocationIndex;
+    if (me == 0u) rough = uvec2(0u);
+    barrier();
+    bool is_rough = !smooth_here && (right || below);
+    if (is_rough) atomicOr(rough[me / 32u], 1u << (me % 32u));
+    barrier();
+    uvec2 before = rough & uvec2(me < 32u ? (1u << me) - 1u : 0xffffffffu, me < 32u ? 0u : (1u << (me - 32u)) - 1u);
+    if (is_rough) {
+        // Beyond the picture's sides there is nothing to draw; a list that names it does not.
+        uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
+        uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
+        imageStore(pixels, int(place), uvec4(code + half_code));
+        imageStore(pixels, int(place + 1u), uvec4(code + (half_code << 8)));
+        imageStore(pixels, int(place + 2u), uvec4(code + half_code + (half_code << 8)));
+    }
+    if (me == 0u) {
+        UintsRef(params.frame.tile_todo).at[tile] = 3u * uint(bitCount(rough.x) + bitCount(rough.y));
+        UintsRef(params.frame.tile_closed).at[tile] = 0u;
+    }
+}
