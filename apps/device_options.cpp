@@ -9,8 +9,8 @@ void print_devices() {
     if (devices.empty())
         fmt::print("no Vulkan device; the package mesa-vulkan-drivers brings one that runs on the processor\n");
     for (const edgesplat::DeviceInfo& d : devices) {
-        fmt::print("{}: {} ({}), {} {}, Vulkan {}\n", d.index, d.name, d.type, d.driver, d.driver_version,
-                   d.api_version);
+        fmt::print("{}: {} ({}), {} {}, Vulkan {}, profile {}\n", d.index, d.name, d.type, d.driver, d.driver_version,
+                   d.api_version, d.profile);
         for (const std::string& reason : d.rejections)
             fmt::print("   cannot be used: {}\n", reason);
     }
@@ -34,6 +34,11 @@ void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
     command
         .add_option("--device", choice.device, "A Vulkan device: its number in --list-devices, or a part of its name")
         ->type_name("DEVICE")
+        ->group(kGroup);
+    command
+        .add_option("--device-profile", choice.profile,
+                    "How frames are made, lavapipe, generic or discrete, whatever the device is; --explain says which")
+        ->type_name("PROFILE")
         ->group(kGroup);
     add_device_list(command);
     command.add_flag("--validation", choice.validation, "Check every Vulkan call; any message makes the program fail")

@@ -8,5 +8,5 @@
 /// --list-devices.
 void add_device_list(CLI::App& app);
 
-/// --device, --list-devices, --validation, --check-numbers.
+/// --device, --device-profile, --list-devices, --validation, --check-numbers.
 void add_device_options(CLI::App& app, edgesplat::DeviceChoice& choice);

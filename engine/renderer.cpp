@@ -135,11 +135,10 @@ void RendererState::draw(const Scene& scene, const Camera& camera, const Setting
 void RendererState::draw_planned() {
     provide_targets(plan);
     if (!plan.variant.tiles) {
-        run_frame(commands, plan, targets);
-        draw_times = commands.span_times();
+        draw_times = draw_sheets(commands, plan, targets);
         return;
     }
-    const passes::TileDraw how{.rounds = device.is_software(), .count = counting, .part = exchange != nullptr};
+    const passes::TileDraw how{.profile = &device.profile(), .count = counting, .part = exchange != nullptr};
     if (exchange) return draw_part(how);
     draw_times.clear();
     if (draw_front_first(how)) return;
@@ -154,7 +153,7 @@ void RendererState::draw_chunks(const Chunks& chunks, const passes::TileDraw& ho
     std::function<void()> between;
     if (interruption) between = [this] { heed_interruption(); };
     add_times(draw_times,
-              draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how, between));
+              draw_tiles(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()), how, between));
 }
 
 Renderer::Renderer(const DeviceChoice& choice) : state_(open_state(choice, 2)) {}
@@ -218,7 +217,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     RenderResult result;
     self.release_unused(settings);
     self.device.forget_peaks();
-    const gpu::CommandCounts commands_before = self.commands.counts();
+    const std::uint64_t submissions_before = self.commands.submissions();
     const gpu::PipelineCreation made = self.pipelines.creation();
     self.voxels_estimated = 0;
     self.provide_splats({self.original, scene, camera, wanted, size, aovs}, result.stats);
@@ -266,8 +265,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
         draw_output("normal", shader::PAYLOAD_NORMAL);
         result.normal = take(pixels(), size, 0, 3);
     }
-    result.stats.submissions = self.commands.counts().run - commands_before.run;
-    result.stats.recordings = self.commands.counts().recorded - commands_before.recorded;
+    result.stats.submissions = self.commands.submissions() - submissions_before;
     result.stats.pipelines_made = self.pipelines.creation().count - made.count;
     result.stats.pipeline_milliseconds = self.pipelines.creation().milliseconds - made.milliseconds;
     if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);

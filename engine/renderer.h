@@ -8,43 +8,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/device_info.h"
 #include "engine/distribute/part_exchange.h"
 #include "engine/error.h"
 #include "engine/image/image.h"
-#include "engine/scene/camera.h"
+#include "engine/scene/frame_request.h"
 #include "engine/scene/renderer_kind.h"
-#include "engine/scene/scene.h"
-#include "engine/scene/settings.h"
-#include "engine/volume/volume.h"
 
 namespace edgesplat {
-
-/// One Vulkan device of this machine, usable or not.
-struct DeviceInfo {
-    int index = 0;
-    std::string name, type, driver, driver_version, api_version;
-    std::vector<std::string> rejections;  ///< why it cannot be used; empty = usable
-};
-
-/// Which device to open and how loudly to check it.
-struct DeviceChoice {
-    std::string device;       ///< empty: the best usable one; else an index or a part of a name
-    bool validation = false;  ///< Khronos validation and synchronization validation; messages are counted
-    /// Pictures are looked through for numbers that are not finite: render() then throws Error, naming the first pass
-    /// and splat that came to one. For finding faults; without it nothing is read back or run for it.
-    bool check_numbers = false;
-};
-
-/// Every device of this machine, best first. Empty where there is no Vulkan loader or driver.
-std::vector<DeviceInfo> list_devices();
-
-/// Extra outputs of a frame. Each costs another draw of the splats; none is made unless asked for.
-struct AovRequest {
-    bool tau = false;       ///< optical depth along the pixel's ray, 1 channel, unsaturated, nothing buried dropped
-    bool depth = false;     ///< mean distance along the view axis, mm, 1 channel; 0 where nothing is hit
-    bool normal = false;    ///< mean world normal of what is seen, 3 channels, unit length or 0
-    bool distance = false;  ///< mean signed distance of the seen voxels to their edge, voxels, 1 channel
-};
 
 /// How `Renderer::raycast` samples.
 struct RaycastSettings {
@@ -56,22 +27,10 @@ struct RaycastSettings {
 /// Checks the ranges above. Throws Error naming the field, the value and the range.
 void validate(const RaycastSettings& settings);
 
-struct PassTime {
-    std::string name;  ///< stem of the pass, e.g. "5_draw_splats"
-    double milliseconds = 0;
-};
-
 /// Device memory held under one name.
 struct MemoryUse {
     std::string name;
     std::uint64_t bytes = 0;  ///< the most during the frame
-};
-
-/// What drawing the splats of a picture came to.
-struct DrawCounts {
-    std::uint64_t vertices = 0;   ///< invocations of the vertex shader
-    std::uint64_t fragments = 0;  ///< of the fragment shader, as the driver counts them: some before the depth test
-    std::uint64_t shaded = 0;     ///< samples that passed the depth test
 };
 
 /// What a frame did and cost.
@@ -93,9 +52,7 @@ struct RenderStats {
     std::uint64_t blocks_held = 0;   ///< whose splats are on the device
     std::uint64_t device_bytes = 0;  ///< allocated on the device
     std::vector<MemoryUse> memory;   ///< by name, what was let go during the frame included
-    /// Lists of commands that the device was given, setup included, and those of them that had to be recorded: the
-    /// others were replayed.
-    std::uint64_t submissions = 0, recordings = 0;
+    std::uint64_t submissions = 0;   ///< lists of commands that the device was given, setup included
     std::uint64_t pipelines_made = 0;
     double pipeline_milliseconds = 0;  ///< spent on making them; part of setup and frame
     /// After Renderer::count_fragments: of the splats of the picture, extra outputs not among them.
@@ -112,7 +69,6 @@ struct RenderResult {
     RenderStats stats;
 };
 
-struct FrameRequest;     // engine/forecast/effect_table.h
 struct FrameForecast;    // engine/forecast/forecast.h
 struct PlannedResource;  // engine/forecast/forecast.h
 struct FittingChange;    // engine/forecast/description.h

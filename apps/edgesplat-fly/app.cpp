@@ -72,7 +72,7 @@ App::App(const AppOptions& options) : options_(options), state_(!options.script.
     if (window_) Window::install_clipboard(window_->handle());
     load_font();
     open_gui();
-    const bool software = device_->is_software();
+    const bool software = device_->info().is_processor;
     state_.target = options_.target > 0     ? options_.target
                     : remembered.target > 0 ? remembered.target
                     : software              ? kTargetSoftware

@@ -80,7 +80,7 @@ FrameRequest base_request(std::shared_ptr<const edgesplat::Volume> volume, const
 class Measuring {
   public:
     explicit Measuring(const EffectsOptions& options, edgesplat::Renderer& renderer)
-        : options_(&options), renderer_(&renderer), processor_(renderer.device().type == "Cpu") {}
+        : options_(&options), renderer_(&renderer), processor_(renderer.device().is_processor) {}
 
     Measured measure(const Effect& effect, const FrameRequest& plain) const {
         FrameRequest without = plain;

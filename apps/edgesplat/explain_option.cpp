@@ -67,7 +67,9 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
                             {"bytes", row.bytes},
                             {"obstacle", row.obstacle}});
     }
-    return {{"splats", d.splats},
+    return {{"device_profile", d.profile},
+            {"device_profile_reason", d.profile_reason},
+            {"splats", d.splats},
             {"splats_from", d.splats_from},
             {"sheets", d.sheets},
             {"sheet_groups", d.sheet_groups},

@@ -64,7 +64,6 @@ ordered_json to_json(const RenderedFrame& frame) {
                          {"sheets", stats.sheets},
                          {"sheet_groups", stats.sheet_groups},
                          {"submissions", stats.submissions},
-                         {"recordings", stats.recordings},
                          {"device_bytes", stats.device_bytes},
                          {"validation_messages", stats.validation_messages}};
     if (!frame.ranks.empty()) json["ranks"] = to_json(frame.ranks);

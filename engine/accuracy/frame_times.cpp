@@ -64,7 +64,6 @@ TimedVisit time_visit(const std::function<RenderStats()>& frame, const std::func
         const Cost after = cost_of(frame, stats);
         keep_passes(stats, visit);
         visit.submissions = stats.submissions;
-        visit.recordings = stats.recordings;
         visit.triples.push_back({before.wall, between.wall, after.wall});
         visit.processor_triples.push_back({before.processor, between.processor, after.processor});
         once = before.wall + between.wall + after.wall;
@@ -109,7 +108,7 @@ TimedVisit timed_visit_from(const ordered_json& json) {
 }
 
 RatioClock ratio_clock(const DeviceInfo& device) {
-    return device.type == "Cpu" ? RatioClock::Processor : RatioClock::Wall;
+    return device.is_processor ? RatioClock::Processor : RatioClock::Wall;
 }
 
 std::string_view name_of(RatioClock clock) {

@@ -26,9 +26,9 @@ struct TimedVisit {
     std::vector<std::pair<std::string, double>> passes;  ///< GPU ms, fastest of the visit
     double setup_milliseconds = 0;  ///< estimation and collection; 0 where nothing was to be set up
     // Not in the JSON:
-    std::vector<std::vector<PassTime>> frames;      ///< GPU ms of each frame
-    std::vector<PassTime> setup_passes;             ///< GPU ms; empty where nothing was to be set up
-    std::uint64_t submissions = 0, recordings = 0;  ///< RenderStats of the last frame
+    std::vector<std::vector<PassTime>> frames;  ///< GPU ms of each frame
+    std::vector<PassTime> setup_passes;         ///< GPU ms; empty where nothing was to be set up
+    std::uint64_t submissions = 0;              ///< RenderStats of the last frame
 };
 
 /// How long fast frames are repeated for.

@@ -188,7 +188,6 @@ class SuiteRun {
             for (const auto& frame : visit.frames)
                 passes.push_back(&frame);
             result.stats.submissions = visit.submissions;
-            result.stats.recordings = visit.recordings;
             if (visit.setup_milliseconds <= 0) continue;
             setups.push_back(visit.setup_milliseconds);
             setup_passes.push_back(&visit.setup_passes);

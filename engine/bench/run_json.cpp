@@ -70,7 +70,6 @@ ordered_json case_json(const CaseResult& c) {
             {"sheet_groups", stats.sheet_groups},
             {"dirty_share", stats.dirty_share ? ordered_json(*stats.dirty_share) : ordered_json()},
             {"submissions", stats.submissions},
-            {"recordings", stats.recordings},
             {"device_bytes", stats.device_bytes},
             {"memory", memory},
             {"host_peak_bytes", c.host_peak_bytes}};

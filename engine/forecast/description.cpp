@@ -131,17 +131,21 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     const FramePlan& plan = forecast.draws.front().plan;
     FrameDescription out;
     out.volume = fmt::format("{}, {} x {} x {} voxels", request.volume->name, dims.x, dims.y, dims.z);
-    if (device != nullptr) out.device = device->name;
+    if (device != nullptr) {
+        out.device = device->name;
+        out.profile = device->profile;
+        out.profile_reason = device->profile_reason;
+    }
     out.size = request.size;
     out.voxels = request.volume->geometry.voxel_count();
     out.splats = forecast.splats.splats;
     out.splats_from = forecast.splats.from == SplatCount::From::Frame ? "as collected" : "counted on the host";
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;
-    out.passes = described_passes(request, forecast, device == nullptr || device->type == "Cpu");
+    out.passes = described_passes(request, forecast, device);
     for (PassDescription& pass : out.passes)
         pass.reason = reason_for(effects, pass.name, &Effect::passes);
-    out.estimate = estimate_basis(device == nullptr || device->type == "Cpu");
+    out.estimate = estimate_basis(device);
     for (const PlannedResource& resource : forecast.resources) {
         const auto same = std::ranges::find_if(out.resources, [&](const ResourceDescription& r) {
             return r.name == resource.name && r.held == name_of(resource.held);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "engine/forecast/effect_table.h"
+#include "engine/renderer.h"
 
 namespace edgesplat {
 
@@ -46,8 +47,9 @@ struct LeftOut {
 };
 
 struct FrameDescription {
-    std::string volume;  ///< name and dims
-    std::string device;  ///< empty: of no device
+    std::string volume;                   ///< name and dims
+    std::string device;                   ///< empty: of no device
+    std::string profile, profile_reason;  ///< how frames are made on it, and why so; likewise
     glm::ivec2 size{0};
     std::uint64_t voxels = 0, splats = 0;
     std::string splats_from;  ///< "counted on the host" or "as collected"

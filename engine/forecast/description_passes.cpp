@@ -4,7 +4,6 @@
 #include <array>
 
 #include "engine/error.h"
-#include "engine/frame/frame.h"
 #include "engine/passes/1_estimate_edges.h"
 #include "engine/passes/2_collect_splats.h"
 #include "engine/passes/2b_occlude_ambient.h"
@@ -14,6 +13,7 @@
 #include "engine/passes/5_draw_tiles.h"
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
+#include "engine/store/collection.h"
 
 namespace edgesplat {
 namespace {
@@ -24,10 +24,15 @@ struct Rates {
     double select_splat, sort_entry, sort_sheet, draw_entry, fragment, warped_fragment, composite_pixel, resolve_pixel;
 };
 
-// Round numbers of the order that two processor cores take under lavapipe; not fitted to measurements.
+// Round numbers of the order that two processor cores take; not fitted to measurements.
 constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4};
 // No GPU was measured: how much faster one may be.
 constexpr double kGpuFactor = 200;
+
+/// Without a device, of one that is the processor.
+bool on_processor(const DeviceInfo* device) {
+    return device == nullptr || device->is_processor;
+}
 
 struct Constant {
     std::uint32_t id;
@@ -66,7 +71,9 @@ double fragments(const FrameRequest& request, const FramePlan& plan) {
 
 class Passes {
   public:
-    explicit Passes(bool software) : milliseconds_per_(software ? 1e-6 : 1e-6 / kGpuFactor), software_(software) {}
+    explicit Passes(const DeviceInfo* device)
+        : milliseconds_per_(on_processor(device) ? 1e-6 : 1e-6 / kGpuFactor),
+          profile_(device == nullptr ? &gpu::device_profiles().front() : &gpu::profile_named(device->profile)) {}
 
     void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
         out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
@@ -150,9 +157,9 @@ class Passes {
                 {variant(
                     "4h_mark_pixels.comp",
                     passes::mark_pixels_constants(
-                        plan.variant, {.rounds = software_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
+                        plan.variant, {.profile = profile_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
             add(name, "5_draw_tiles", drawing,
-                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.rounds = software_,
+                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.profile = profile_,
                                                                                     .refined = plan.refined,
                                                                                     .wide_marks = plan.wide_marks}))});
             // A picture whose splats turn out to be small is drawn without.
@@ -178,7 +185,7 @@ class Passes {
 
   private:
     double milliseconds_per_;
-    bool software_;
+    const gpu::DeviceProfile* profile_;
     int again_ = 1;  ///< how often a pass runs
     std::vector<PassDescription> out_;
 };
@@ -186,8 +193,8 @@ class Passes {
 }  // namespace
 
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
-                                              bool software) {
-    Passes passes(software);
+                                              const DeviceInfo* device) {
+    Passes passes(device);
     passes.add_setup(forecast);
     passes.add_reach(request, forecast);
     for (const ForecastDraw& draw : forecast.draws)
@@ -195,11 +202,12 @@ std::vector<PassDescription> described_passes(const FrameRequest& request, const
     return passes.take();
 }
 
-std::string estimate_basis(bool software) {
+std::string estimate_basis(const DeviceInfo* device) {
     std::string text =
         "estimates: round numbers of nanoseconds per voxel, splat, sheet entry, fragment and pixel for two processor "
         "cores; they rank passes and may be several times off";
-    return software ? text : text + fmt::format("; divided by {:g} for a GPU, which is a guess", kGpuFactor);
+    return on_processor(device) ? text
+                                : text + fmt::format("; divided by {:g} for a GPU, which is a guess", kGpuFactor);
 }
 
 }  // namespace edgesplat

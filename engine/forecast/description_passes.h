@@ -6,11 +6,11 @@
 
 namespace edgesplat {
 
-/// Without reasons. `software`: times of a device that is the machine's processor.
+/// Without reasons. Times of that device; null: of one that is the machine's processor.
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
-                                              bool software);
+                                              const DeviceInfo* device);
 
 /// What the times are based on, a sentence.
-std::string estimate_basis(bool software);
+std::string estimate_basis(const DeviceInfo* device);
 
 }  // namespace edgesplat

@@ -9,19 +9,9 @@
 #include <string_view>
 #include <vector>
 
-#include "engine/renderer.h"
+#include "engine/scene/frame_request.h"
 
 namespace edgesplat {
-
-/// All that decides a picture.
-struct FrameRequest {
-    std::shared_ptr<const Volume> volume;
-    Scene scene;
-    Camera camera;
-    Settings settings;
-    glm::ivec2 size{512};
-    AovRequest outputs;
-};
 
 /// A specialization constant and its value in a frame without the effect.
 struct EffectConstant {

@@ -2,12 +2,11 @@
 #include <algorithm>
 #include <vulkan/vulkan_format_traits.hpp>
 
-#include "engine/compositors/tiles/tiles.h"
+#include "engine/compositors/tiles/chunks.h"
 #include "engine/forecast/forecast.h"
 #include "engine/passes/2_collect_splats.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/plan/resources.h"
-#include "engine/renderer/state.h"
 #include "engine/store/blocks.h"
 #include "engine/store/light.h"
 #include "shaders/shared/occlusion_params.h"
@@ -68,8 +67,6 @@ void add_placeholders(std::vector<PlannedResource>& out) {
     out.push_back(on_host(buffer("drawn splats", 3 * sizeof(std::uint32_t), "(3) uint", "4, 5", "host")));
     out.push_back(on_host(buffer("quad indices", passes::quad_indices().size() * sizeof(std::uint32_t),
                                  "(quads x 6) uint", "host", "5")));
-    out.push_back(
-        on_host(buffer("numbers of groups", gpu::Commands::group_count_bytes(), "(dispatches) uvec3", "host", "all")));
 
     out.push_back(texels(vk::Format::eR32G32B32A32Sfloat, buffer("placeholder texels", 16, "zeros", "-", "-")));
     out.push_back(texels(vk::Format::eR32Uint, buffer("placeholder counts", 16, "zeros", "-", "-")));

@@ -1,40 +1,133 @@
 #include "engine/frame/frame.h"
 
 #include <algorithm>
+#include <bit>
 
+#include "engine/passes/2c_sweep_light.h"
 #include "engine/passes/3_select_footprints.h"
+#include "engine/passes/4_mark_pixels.h"
+#include "engine/passes/4_prepare_splats.h"
 #include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/4_sort_tiles.h"
 #include "engine/passes/5_draw_splats.h"
+#include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/6_composite_sheet.h"
 #include "engine/passes/7_resolve.h"
 
 namespace edgesplat {
-void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
-    for (const PassTime& time : times) {
-        const auto same = std::ranges::find(sums, time.name, &PassTime::name);
-        if (same == sums.end())
-            sums.push_back(time);
-        else
-            same->milliseconds += time.milliseconds;
-    }
-}
 
-void run_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
+std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                  std::optional<std::uint32_t> shadow_channel) {
+    const auto& p = plan.params;
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
-
+    const auto span = [&](const char* pass, const auto& body) {
+        commands.span(shadow_channel ? "2c_sweep_light" : pass, body);
+    };
     commands.run([&] {
         commands.fill(targets.counters, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        commands.span("3_select_footprints",
-                      [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });
-        commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
-        for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
-            commands.span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
-            commands.span("6_composite_sheet",
-                          [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
+        span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
+        span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
+        for (std::uint32_t group = 0; group < p.group_count; ++group) {
+            span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
+            span("6_composite_sheet", [&] {
+                if (shadow_channel) passes::sweep_light(commands, p.size, group);
+                passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
+            });
         }
-        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+        if (shadow_channel)
+            commands.span("2d_shadow_splats",
+                          [&] { passes::shadow_splats(commands, p.splat_count, plan.variant.clip, *shadow_channel); });
+        else
+            span("7_resolve", [&] { passes::resolve(commands, plan.variant, p.size, plan.gradient); });
     });
+    return commands.span_times();
+}
+
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                  const Division& division) {
+    const auto& p = plan.params;
+    commands.run([&] {
+        for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
+            commands.fill(*zeroed, 0);
+        if (!division.goes_on)
+            for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
+                commands.fill(*zeroed, 0);
+        if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
+        commands.barrier();
+        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
+        commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
+    });
+    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), p.sheet_base));
+}
+
+TilePasses::TilePasses(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                       std::uint32_t chunks, passes::TileDraw how)
+    : commands_(commands),
+      plan_(plan),
+      targets_(targets),
+      how_(how),
+      parts_(targets.chunks.mapped<glm::uvec2>(chunks)),
+      prepared_(chunks) {
+    how_.refined = plan.refined;
+    how_.wide_marks = plan.wide_marks;
+}
+
+std::uint64_t TilePasses::most_pairs(std::uint32_t chunk, std::uint32_t columns) const {
+    return most_column_pairs(parts_[chunk], columns, sheet_pairs(plan_, targets_), sheet_starts(plan_, targets_));
+}
+
+void TilePasses::sort(std::uint32_t chunk) {
+    const std::uint32_t blocks = plan_.params.tile_blocks;
+    const auto steps = (most_pairs(chunk, blocks) + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS;
+    if (how_.refined) {
+        const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
+        const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
+        commands_.fill(targets_.tile_marks, ~0U, first * sizeof(std::uint32_t), room * sizeof(std::uint32_t));
+        commands_.barrier();
+    }
+    commands_.span("4_sort_tiles", [&] {
+        passes::sort_tiles(commands_, targets_.tile_counters, blocks, chunk, static_cast<std::uint32_t>(steps));
+    });
+}
+
+void TilePasses::prepare(std::uint32_t chunk) {
+    const std::uint32_t places = plan_.params.prepared_mask + 1;
+    if (entries(chunk) > places || prepared_[chunk]) return;
+    // Places are taken in turn.
+    if (parts_.back().y - parts_.front().x > places) std::fill(prepared_.begin(), prepared_.end(), false);
+    prepared_[chunk] = true;
+    commands_.span("4_prepare_splats",
+                   [&] { passes::prepare_splats(commands_, plan_.variant, chunk, entries(chunk)); });
+}
+
+void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t tiles, std::uint64_t groups,
+                      std::uint32_t round) {
+    passes::TileDraw of_chunk = how_;
+    // A sheet of very many splats is drawn from the splats themselves.
+    of_chunk.prepared = entries(chunk) <= plan_.params.prepared_mask + 1;
+    const passes::TileRound part{.groups = groups,
+                                 .round = round,
+                                 .tile_groups = tile_groups(how_, step),
+                                 .first_pixels = how_.refined && step == shader::REFINE_STEP};
+    commands_.span("4_mark_pixels", [&] { passes::mark_pixels(commands_, plan_.variant, of_chunk, tiles, round); });
+    commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
+}
+
+void TilePasses::see_tiles() {
+    if (!how_.refined) return;
+    commands_.copy(targets_.tile_closed, targets_.tiles_seen, {{0, 0, tile_count(plan_) * sizeof(std::uint32_t)}});
+    commands_.barrier();
+}
+
+void TilePasses::finish(std::uint32_t step) {
+    if (step > 1) {
+        commands_.span("5_refine_pixels", [&] { passes::refine_pixels(commands_, tile_count(plan_), step); });
+        see_tiles();
+    } else if (!how_.part) {
+        const auto& p = plan_.params;
+        commands_.span("7_resolve", [&] { passes::resolve(commands_, plan_.variant, p.size, plan_.gradient); });
+    }
 }
 
 }  // namespace edgesplat

@@ -5,7 +5,6 @@
 #include <vulkan/vulkan_format_traits.hpp>
 
 #include "engine/error.h"
-#include "engine/gpu/serial.h"
 
 namespace edgesplat::gpu {
 
@@ -38,8 +37,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     : device_(&device),
       buffer_(device.handle(), create_info(bytes)),
       name_(name),
-      bytes_(std::max<std::size_t>(bytes, 16)),
-      serial_(next_serial()) {
+      bytes_(std::max<std::size_t>(bytes, 16)) {
     using Memory = vk::MemoryPropertyFlagBits;
     const auto requirements = buffer_.getMemoryRequirements();
     memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
@@ -69,7 +67,6 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     allocated_ = std::exchange(other.allocated_, 0);
     map_ = std::exchange(other.map_, nullptr);
     address_ = std::exchange(other.address_, 0);
-    serial_ = other.serial_;
     return *this;
 }
 

@@ -5,7 +5,6 @@
 #include <span>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "engine/gpu/command_list.h"
 #include "engine/gpu/device.h"
 #include "shaders/shared/glue.h"
 
@@ -32,8 +31,6 @@ class Buffer {
     static std::string beyond_texels(const Device& device, std::size_t bytes, vk::Format texels);
 
     vk::Buffer handle() const { return *buffer_; }
-    std::uint64_t serial() const { return serial_; }
-    BufferUse use() const { return {*buffer_, serial_}; }
     std::size_t bytes() const { return bytes_; }
     /// Of the byte `offset`.
     shader::Address address(std::uint64_t offset = 0) const { return address_ + offset; }
@@ -55,7 +52,7 @@ class Buffer {
     std::string name_;
     std::size_t bytes_ = 0, allocated_ = 0;
     void* map_ = nullptr;
-    std::uint64_t address_ = 0, serial_ = 0;
+    std::uint64_t address_ = 0;
 };
 
 }  // namespace edgesplat::gpu

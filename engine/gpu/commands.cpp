@@ -12,7 +12,9 @@ constexpr std::uint32_t kMaxTimestamps = 8192;
 // Reset together when the first of them is written: validation keeps a state for every query that is ever reset.
 constexpr std::uint32_t kTimestampsAtOnce = 64;
 constexpr std::uint32_t kMaxCountedDraws = 8192;
-constexpr std::size_t kMaxCountedDispatches = 4096;  // dispatches whose groups are counted; 48 KiB
+
+using Stage = vk::PipelineStageFlagBits2;
+using Access = vk::AccessFlagBits2;
 
 }  // namespace
 
@@ -22,17 +24,14 @@ Groups groups_for(std::uint64_t count, std::uint32_t local) {
     return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
 }
 
-std::size_t Commands::group_count_bytes() {
-    return kMaxCountedDispatches * sizeof(Groups);
-}
-
 Commands::Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set)
     : device_(&device),
       pipelines_(&pipelines),
       set_(&set),
-      group_counts_(device, group_count_bytes(), Buffer::Place::Host, "numbers of groups"),
-      kept_(device),
+      pool_(device.handle(), {vk::CommandPoolCreateFlagBits::eResetCommandBuffer, device.queue_family()}),
       fence_(device.handle(), vk::FenceCreateInfo{}) {
+    const vk::CommandBufferAllocateInfo one(*pool_, vk::CommandBufferLevel::ePrimary, 1);
+    buffer_ = std::move(vk::raii::CommandBuffers(device.handle(), one).front());
     if (device.timestamp_period() > 0)
         queries_ = vk::raii::QueryPool(device.handle(), {{}, vk::QueryType::eTimestamp, kMaxTimestamps});
 }
@@ -55,104 +54,124 @@ void Commands::finish() {
 
 void Commands::run(const std::function<void()>& body) {
     finish();  // where the last run was given up, the device may still be at it
-    list_.clear();
     span_names_.clear();
     counted_ = 0;
     draws_ = false;
-    dispatches_ = 0;
+    buffer_.reset();  // a body that threw left it half recorded
+    buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
-        if (**pool) list_.emplace_back(command::ResetQueries{**pool, 0, kMaxCountedDraws});
+        if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCountedDraws);
     bind_compute_set(*set_);
     body();
     barrier();
-    const vk::CommandBufferSubmitInfo command(kept_.of(list_));
+    buffer_.end();
+    const vk::CommandBufferSubmitInfo command(*buffer_);
     device_->queue().submit2(vk::SubmitInfo2({}, {}, command), *fence_);
+    ++submissions_;
     busy_ = true;
     finish();
 }
 
 void Commands::bind_compute_set(const DescriptorSet& set) {
-    list_.emplace_back(
-        command::BindSet{vk::PipelineBindPoint::eCompute, pipelines_->layout(), set.handle(), set.version()});
+    buffer_.bindDescriptorSets(vk::PipelineBindPoint::eCompute, pipelines_->layout(), 0, set.handle(), nullptr);
+}
+
+void Commands::bind_pipeline(vk::PipelineBindPoint point, vk::Pipeline pipeline, std::uint32_t number) {
+    buffer_.bindPipeline(point, pipeline);
+    buffer_.pushConstants<std::uint32_t>(
+        pipelines_->layout(),
+        vk::ShaderStageFlagBits::eCompute | vk::ShaderStageFlagBits::eFragment | vk::ShaderStageFlagBits::eVertex, 0,
+        number);
 }
 
 void Commands::dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups) {
-    list_.emplace_back(command::BindPipeline{vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants),
-                                             pipelines_->layout(), number});
-    if (dispatches_ == kMaxCountedDispatches) {
-        list_.emplace_back(command::Dispatch{groups});
-        return;
-    }
-    group_counts_.mapped<Groups>(kMaxCountedDispatches)[dispatches_] = groups;
-    list_.emplace_back(command::DispatchCounted{group_counts_.use(), dispatches_ * sizeof(Groups)});
-    ++dispatches_;
+    bind_pipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants), number);
+    buffer_.dispatch(groups.x, groups.y, groups.z);
+}
+
+void Commands::barrier() {
+    const vk::MemoryBarrier2 memory(Stage::eAllCommands, Access::eMemoryWrite, Stage::eAllCommands | Stage::eHost,
+                                    Access::eMemoryRead | Access::eMemoryWrite | Access::eHostRead);
+    buffer_.pipelineBarrier2(vk::DependencyInfo({}, memory));
 }
 
 void Commands::prepare(std::initializer_list<const GpuImage*> images) {
-    for (const GpuImage* image : images)
-        list_.emplace_back(command::Prepare{image->use(), image->aspect()});
+    for (const GpuImage* image : images) {
+        const vk::ImageMemoryBarrier2 fresh(
+            Stage::eAllCommands, Access::eNone, Stage::eAllCommands, Access::eMemoryRead | Access::eMemoryWrite,
+            vk::ImageLayout::eUndefined, vk::ImageLayout::eGeneral, VK_QUEUE_FAMILY_IGNORED, VK_QUEUE_FAMILY_IGNORED,
+            image->handle(), vk::ImageSubresourceRange(image->aspect(), 0, 1, 0, VK_REMAINING_ARRAY_LAYERS));
+        buffer_.pipelineBarrier2(vk::DependencyInfo({}, {}, {}, fresh));
+    }
 }
 
 void Commands::fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset, std::uint64_t bytes) {
-    list_.emplace_back(command::Fill{buffer.use(), offset, bytes, value});
+    buffer_.fillBuffer(buffer.handle(), offset, bytes, value);
 }
 
 void Commands::update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values) {
-    list_.emplace_back(command::Update{buffer.use(), offset, {values.begin(), values.end()}});
+    buffer_.updateBuffer<std::uint32_t>(buffer.handle(), offset, values);
 }
 
-void Commands::copy(const Buffer& from, const Buffer& to, std::vector<vk::BufferCopy> parts) {
-    list_.emplace_back(command::CopyBuffer{from.use(), to.use(), std::move(parts)});
+void Commands::copy(const Buffer& from, const Buffer& to, const std::vector<vk::BufferCopy>& parts) {
+    buffer_.copyBuffer(from.handle(), to.handle(), parts);
 }
 
 void Commands::copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part) {
-    list_.emplace_back(command::CopyToImage{from.use(), to.use(), part});
+    buffer_.copyBufferToImage(from.handle(), to.handle(), vk::ImageLayout::eGeneral, part);
 }
 
 void Commands::copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part) {
-    list_.emplace_back(command::CopyFromImage{from.use(), to.use(), part});
+    buffer_.copyImageToBuffer(from.handle(), vk::ImageLayout::eGeneral, to.handle(), part);
 }
 
 void Commands::clear(const GpuImage& image) {
-    list_.emplace_back(command::Clear{image.use()});
+    buffer_.clearColorImage(image.handle(), vk::ImageLayout::eGeneral, vk::ClearColorValue(),
+                            vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
 }
 
 void Commands::begin_rendering(const GpuImage& color, const GpuImage* depth, std::uint32_t layers) {
+    const auto attachment = [](const GpuImage* image) {
+        return vk::RenderingAttachmentInfo(image == nullptr ? vk::ImageView() : image->view(),
+                                           vk::ImageLayout::eGeneral, {}, {}, {}, vk::AttachmentLoadOp::eLoad,
+                                           vk::AttachmentStoreOp::eStore);
+    };
+    const vk::RenderingAttachmentInfo colors = attachment(&color), depths = attachment(depth);
     const glm::uvec2 size(color.shape().size);
-    list_.emplace_back(command::BeginRendering{
-        color.view_use(), depth == nullptr ? ViewUse() : depth->view_use(), {size.x, size.y}, layers});
+    const vk::Rect2D area({0, 0}, {size.x, size.y});
+    buffer_.beginRendering(vk::RenderingInfo({}, area, layers, 0, colors, depth == nullptr ? nullptr : &depths));
+    buffer_.setViewport(0, vk::Viewport(0, 0, static_cast<float>(size.x), static_cast<float>(size.y), 0, 1));
+    buffer_.setScissor(0, area);
 }
 
 void Commands::bind_draw(const DrawState& state, std::uint32_t number) {
-    list_.emplace_back(
-        command::BindPipeline{vk::PipelineBindPoint::eGraphics, pipelines_->draw(state), pipelines_->layout(), number});
-    // Not before: lavapipe looks for the pipeline of a descriptor set with uniform blocks.
+    bind_pipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state), number);
+    // Not before: a driver may look for the pipeline of a descriptor set with uniform blocks.
     if (!draws_)
-        list_.emplace_back(
-            command::BindSet{vk::PipelineBindPoint::eGraphics, pipelines_->layout(), set_->handle(), set_->version()});
+        buffer_.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_->layout(), 0, set_->handle(), nullptr);
     draws_ = true;
 }
 
 void Commands::draw(std::uint32_t vertices, std::uint32_t instances) {
-    list_.emplace_back(command::Draw{vertices, instances});
+    buffer_.draw(vertices, instances, 0, 0);
 }
 
 void Commands::draw_indirect(const Buffer& indices, const Buffer& draws, std::uint64_t offset) {
-    list_.emplace_back(command::DrawIndirect{indices.use(), draws.use(), offset});
+    buffer_.bindIndexBuffer(indices.handle(), 0, vk::IndexType::eUint32);
+    buffer_.drawIndexedIndirect(draws.handle(), offset, 1, sizeof(vk::DrawIndexedIndirectCommand));
 }
 
 void Commands::end_rendering() {
-    list_.emplace_back(command::EndRendering());
+    buffer_.endRendering();
 }
 
 void Commands::write_timestamp() {
     const auto at = static_cast<std::uint32_t>(span_names_.size());
     if (!*queries_ || at >= kMaxTimestamps) return;
-    // lavapipe writes timestamps when it next rasterises, which may be after dispatches that were recorded later.
-    const bool late = device_->is_software();
+    const bool late = device_->profile().late_timestamps;
     if (late) barrier();
-    if (at % kTimestampsAtOnce == 0) list_.emplace_back(command::ResetQueries{*queries_, at, kTimestampsAtOnce});
-    list_.emplace_back(command::Timestamp{*queries_, at});
+    if (at % kTimestampsAtOnce == 0) buffer_.resetQueryPool(*queries_, at, kTimestampsAtOnce);
+    buffer_.writeTimestamp2(Stage::eAllCommands, *queries_, at);
     if (late) barrier();
 }
 
@@ -184,7 +203,6 @@ std::vector<PassTime> Commands::span_times() const {
 }
 
 void Commands::count_draws(bool on) {
-    kept_.clear();  // the pools' handles may be given anew
     statistics_ = nullptr;
     samples_ = nullptr;
     if (!on || !device_->counts_draws()) return;
@@ -199,15 +217,15 @@ void Commands::count_draws(bool on) {
 
 void Commands::begin_count() {
     if (!*statistics_ || counted_ >= kMaxCountedDraws) return;
-    list_.emplace_back(command::BeginQuery{*statistics_, counted_, false});
-    list_.emplace_back(command::BeginQuery{*samples_, counted_, true});
+    buffer_.beginQuery(*statistics_, counted_, {});
+    buffer_.beginQuery(*samples_, counted_, vk::QueryControlFlagBits::ePrecise);
 }
 
 void Commands::end_count() {
     if (!*statistics_) return;
     if (counted_ < kMaxCountedDraws) {
-        list_.emplace_back(command::EndQuery{*samples_, counted_});
-        list_.emplace_back(command::EndQuery{*statistics_, counted_});
+        buffer_.endQuery(*samples_, counted_);
+        buffer_.endQuery(*statistics_, counted_);
     }
     ++counted_;
 }
@@ -232,3 +250,17 @@ std::optional<DrawCounts> Commands::draw_counts() const {
 }
 
 }  // namespace edgesplat::gpu
+
+namespace edgesplat {
+
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times) {
+    for (const PassTime& time : times) {
+        const auto same = std::ranges::find(sums, time.name, &PassTime::name);
+        if (same == sums.end())
+            sums.push_back(time);
+        else
+            same->milliseconds += time.milliseconds;
+    }
+}
+
+}  // namespace edgesplat

@@ -1,4 +1,4 @@
-// Asking for and running one list of commands at a time, with the few that the passes are made of.
+// Recording and running one list of commands at a time, with the few that the passes are made of.
 #pragma once
 
 #include <functional>
@@ -11,23 +11,21 @@
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/descriptor_set.h"
 #include "engine/gpu/image.h"
-#include "engine/gpu/kept_commands.h"
 #include "engine/gpu/pipelines.h"
 #include "shaders/shared/frame_params.h"
 
 namespace edgesplat::gpu {
 
+/// Numbers of a dispatch's workgroups.
+struct Groups {
+    std::uint32_t x = 1, y = 1, z = 1;
+};
+
 /// Enough groups of `local` invocations for `count`, folded into y beyond the 65535 that every device allows.
 Groups groups_for(std::uint64_t count, std::uint32_t local);
 
-/// How many lists were run, and how many of them had to be recorded for it.
-struct CommandCounts {
-    std::uint64_t run = 0, recorded = 0;
-};
-
 /// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: the passes depend on one
-/// another as wholes, and a finer barrier buys nothing there. What was run before is not recorded again, even if its
-/// dispatches are of other sizes now: a flight replays the command buffers of its first pictures.
+/// another as wholes, and a finer barrier buys nothing there.
 class Commands {
   public:
     /// How long the device may take for a run, ns: a software device may take minutes for a huge frame.
@@ -38,19 +36,18 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// Lists what `body` asks for, submits it and waits until the device is done. Throws Error where that takes longer
-    /// than the time-out; the next run waits as long for it again.
+    /// Records what `body` asks for, submits it and waits until the device is done. Throws Error where that takes
+    /// longer than the time-out; the next run waits as long for it again.
     void run(const std::function<void()>& body);
     void set_timeout(std::uint64_t nanoseconds) { timeout_ = nanoseconds; }
-    /// What the numbers of groups take.
-    static std::size_t group_count_bytes();
-    CommandCounts counts() const { return {kept_.recorded() + kept_.replayed(), kept_.recorded()}; }
+    /// How many lists the device was given.
+    std::uint64_t submissions() const { return submissions_; }
 
     /// For the dispatches to come of this run; else they have the set of the constructor.
     void bind_compute_set(const DescriptorSet& set);
     void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
     /// Everything before, visible to everything after.
-    void barrier() { list_.emplace_back(command::Barrier()); }
+    void barrier();
     /// Brings fresh images into layout GENERAL.
     void prepare(std::initializer_list<const GpuImage*> images);
 
@@ -58,7 +55,7 @@ class Commands {
     void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
     /// 65536 bytes at most.
     void update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values);
-    void copy(const Buffer& from, const Buffer& to, std::vector<vk::BufferCopy> parts);
+    void copy(const Buffer& from, const Buffer& to, const std::vector<vk::BufferCopy>& parts);
     void copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part);
     void copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part);
     void clear(const GpuImage& image);
@@ -71,7 +68,7 @@ class Commands {
     void draw_indirect(const Buffer& indices, const Buffer& draws, std::uint64_t offset);
     void end_rendering();
 
-    /// Lists `body` as a named span of device time; spans of one name add up. Must not nest.
+    /// Records `body` as a named span of device time; spans of one name add up. Must not nest.
     template <typename Body>
     void span(const char* name, const Body& body) {
         begin_span(name);
@@ -95,14 +92,15 @@ class Commands {
     void begin_span(const char* name);
     void end_span();
     void write_timestamp();
+    /// With the push constant of every pass.
+    void bind_pipeline(vk::PipelineBindPoint point, vk::Pipeline pipeline, std::uint32_t number);
     const Device* device_;
     Pipelines* pipelines_;
     const DescriptorSet* set_;
     bool draws_ = false;  ///< the set is bound for draws
-    CommandList list_;
-    Buffer group_counts_;         ///< Groups, mapped: of the list's dispatches
-    std::size_t dispatches_ = 0;  ///< that have theirs there
-    KeptCommands kept_;
+    vk::raii::CommandPool pool_;
+    vk::raii::CommandBuffer buffer_ = nullptr;
+    std::uint64_t submissions_ = 0;
     vk::raii::Fence fence_ = nullptr;
     bool busy_ = false;  ///< the fence is that of a list that was submitted
     std::uint64_t timeout_ = kTimeout;
@@ -113,3 +111,10 @@ class Commands {
 };
 
 }  // namespace edgesplat::gpu
+
+namespace edgesplat {
+
+/// Adds times to those of the same name.
+void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times);
+
+}  // namespace edgesplat

@@ -1,11 +1,10 @@
 #include "engine/gpu/descriptor_set.h"
 
-#include "engine/gpu/serial.h"
+#include <array>
 
 namespace edgesplat::gpu {
 
-DescriptorSet::DescriptorSet(const Device& device, const Pipelines& pipelines)
-    : device_(&device), version_(next_serial()) {
+DescriptorSet::DescriptorSet(const Device& device, const Pipelines& pipelines) : device_(&device) {
     using Type = vk::DescriptorType;
     const std::array sizes{
         vk::DescriptorPoolSize(Type::eStorageImage, shader::BIND_SHEETS),
@@ -17,17 +16,14 @@ DescriptorSet::DescriptorSet(const Device& device, const Pipelines& pipelines)
     set_ = std::move(vk::raii::DescriptorSets(device.handle(), {*pool_, layout}).front());
 }
 
-void DescriptorSet::put(std::uint32_t slot, std::uint64_t serial, vk::WriteDescriptorSet write) {
-    if (held_.at(slot) == serial) return;
-    held_.at(slot) = serial;
-    version_ = next_serial();
+void DescriptorSet::put(std::uint32_t slot, vk::WriteDescriptorSet write) {
     write.setDstSet(*set_).setDstBinding(slot).setDescriptorCount(1);
     device_->handle().updateDescriptorSets(write, nullptr);
 }
 
 void DescriptorSet::put_image(std::uint32_t slot, const GpuImage& image, vk::Sampler sampler) {
     const vk::DescriptorImageInfo info(sampler, image.view(), vk::ImageLayout::eGeneral);
-    put(slot, image.serial(),
+    put(slot,
         vk::WriteDescriptorSet()
             .setDescriptorType(sampler ? vk::DescriptorType::eCombinedImageSampler : vk::DescriptorType::eStorageImage)
             .setPImageInfo(&info));
@@ -35,16 +31,14 @@ void DescriptorSet::put_image(std::uint32_t slot, const GpuImage& image, vk::Sam
 
 void DescriptorSet::put_texels(std::uint32_t slot, const Buffer& buffer) {
     const vk::BufferView texels = buffer.texels();
-    put(slot, buffer.serial(),
-        vk::WriteDescriptorSet()
-            .setDescriptorType(vk::DescriptorType::eStorageTexelBuffer)
-            .setPTexelBufferView(&texels));
+    put(slot, vk::WriteDescriptorSet()
+                  .setDescriptorType(vk::DescriptorType::eStorageTexelBuffer)
+                  .setPTexelBufferView(&texels));
 }
 
 void DescriptorSet::put_block(std::uint32_t slot, const Buffer& block) {
     const vk::DescriptorBufferInfo info(block.handle(), 0, block.bytes());
-    put(slot, block.serial(),
-        vk::WriteDescriptorSet().setDescriptorType(vk::DescriptorType::eUniformBuffer).setPBufferInfo(&info));
+    put(slot, vk::WriteDescriptorSet().setDescriptorType(vk::DescriptorType::eUniformBuffer).setPBufferInfo(&info));
 }
 
 }  // namespace edgesplat::gpu

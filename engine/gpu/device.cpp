@@ -83,28 +83,13 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& p
     return std::nullopt;
 }
 
-int rank(vk::PhysicalDeviceType type) {
-    switch (type) {
-        case vk::PhysicalDeviceType::eDiscreteGpu:
-            return 0;
-        case vk::PhysicalDeviceType::eIntegratedGpu:
-            return 1;
-        case vk::PhysicalDeviceType::eVirtualGpu:
-            return 2;
-        case vk::PhysicalDeviceType::eCpu:
-            return 3;
-        default:
-            return 4;
-    }
-}
-
 /// Physical devices, best kind first; devices of one kind keep the loader's order.
 std::vector<vk::raii::PhysicalDevice> sorted_devices(const vk::raii::Instance& instance) {
     auto devices = instance.enumeratePhysicalDevices();
     std::vector<vk::raii::PhysicalDevice> sorted;
-    for (int r = 0; r <= 4; ++r) {
+    for (int r = 0; r <= kWorstRank; ++r) {
         for (auto& device : devices) {
-            if (*device && rank(device.getProperties().deviceType) == r) sorted.push_back(device);
+            if (*device && rank_of(device.getProperties()) == r) sorted.push_back(device);
         }
     }
     return sorted;
@@ -163,7 +148,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
     }
 }
 
-DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
+DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index, const std::string& profile) {
     const auto chain = physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceDriverProperties>();
     const auto& properties = chain.get<vk::PhysicalDeviceProperties2>().properties;
     const auto& driver = chain.get<vk::PhysicalDeviceDriverProperties>();
@@ -172,6 +157,10 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index) {
     info.index = index;
     info.name = properties.deviceName.data();
     info.type = vk::to_string(properties.deviceType);
+    info.is_processor = gpu::is_processor(properties);
+    const ChosenProfile chosen = choose_profile(properties, profile);
+    info.profile = chosen.profile->name;
+    info.profile_reason = chosen.reason;
     info.driver = driver.driverName.data();
     info.driver_version = driver.driverInfo.data();
     info.api_version =
@@ -228,7 +217,7 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
     std::string seen;
     int index = 0;
     for (auto& candidate : sorted_devices(instance_)) {
-        DeviceInfo info = describe(candidate, index++);
+        DeviceInfo info = describe(candidate, index++, choice.profile);
         std::string verdict = info.rejections.empty() ? "usable" : "rejected:";
         for (const auto& rejection : info.rejections)
             verdict += " " + rejection + ";";
@@ -244,7 +233,7 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
         fail("no usable Vulkan device{}:{}", choice.device.empty() ? "" : " matches --device " + choice.device, seen);
     }
 
-    software_ = physical_.getProperties().deviceType == vk::PhysicalDeviceType::eCpu;
+    profile_ = &profile_named(info_.profile);
     queue_family_ = *find_queue_family(physical_);
     const bool timestamps = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits > 0;
     timestamp_period_ = timestamps ? static_cast<double>(physical_.getProperties().limits.timestampPeriod) : 0.0;
@@ -355,7 +344,7 @@ std::vector<DeviceInfo> list_devices() {
     const vk::raii::Context context;
     const auto instance = gpu::create_instance(context, false, nullptr);
     for (const auto& device : gpu::sorted_devices(instance))
-        infos.push_back(gpu::describe(device, static_cast<int>(infos.size())));
+        infos.push_back(gpu::describe(device, static_cast<int>(infos.size()), ""));
     return infos;
 }
 

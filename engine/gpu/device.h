@@ -10,7 +10,8 @@
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "engine/renderer.h"
+#include "engine/device_info.h"
+#include "engine/gpu/device_profile.h"
 
 namespace edgesplat::gpu {
 
@@ -35,8 +36,8 @@ struct DeviceExtensions {
     std::vector<const char*> instance, device;
 };
 
-/// Description of a physical device and every reason it cannot be used (empty: it can).
-DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index);
+/// Description of a physical device and every reason it cannot be used (empty: it can). `profile`: as in DeviceChoice.
+DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index, const std::string& profile);
 
 /// What of these limits is less than the one descriptor set and the shaders need, a reason each.
 std::vector<std::string> beyond_limits(const vk::PhysicalDeviceLimits& limits,
@@ -55,7 +56,7 @@ class Device {
     std::uint32_t queue_family() const { return queue_family_; }
     /// Nanoseconds per timestamp tick; 0 where the queue has no timestamps.
     double timestamp_period() const { return timestamp_period_; }
-    bool is_software() const { return software_; }
+    const DeviceProfile& profile() const { return *profile_; }
     /// Whether draws can be counted: pipeline statistics and precise occlusion queries.
     bool counts_draws() const { return counts_draws_; }
     /// Why it cannot draw into layers of a target; empty: it can.
@@ -103,7 +104,8 @@ class Device {
     std::string layers_obstacle_;
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
-    bool software_ = false, has_memory_budget_ = false, counts_draws_ = false;
+    const DeviceProfile* profile_ = nullptr;
+    bool has_memory_budget_ = false, counts_draws_ = false;
 };
 
 }  // namespace edgesplat::gpu

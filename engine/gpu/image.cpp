@@ -3,7 +3,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/gpu/serial.h"
 
 namespace edgesplat::gpu {
 
@@ -40,8 +39,7 @@ std::string beyond_limits(const Device& device, const ImageShape& shape) {
     return "";
 }
 
-GpuImage::GpuImage(const Device& device, const ImageShape& shape, const char* name)
-    : shape_(shape), name_(name), serial_(next_serial()) {
+GpuImage::GpuImage(const Device& device, const ImageShape& shape, const char* name) : shape_(shape), name_(name) {
     const std::string beyond = beyond_limits(device, shape);
     if (!beyond.empty()) fail("{}: {}", name, beyond);
     const auto layers = static_cast<std::uint32_t>(shape.layers);
@@ -69,7 +67,6 @@ GpuImage& GpuImage::operator=(GpuImage&& other) noexcept {
     shape_ = other.shape_;
     name_ = std::move(other.name_);
     allocated_ = std::exchange(other.allocated_, 0);
-    serial_ = other.serial_;
     return *this;
 }
 

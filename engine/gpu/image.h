@@ -4,7 +4,6 @@
 #include <glm/glm.hpp>
 #include <vulkan/vulkan_raii.hpp>
 
-#include "engine/gpu/command_list.h"
 #include "engine/gpu/device.h"
 
 namespace edgesplat::gpu {
@@ -37,9 +36,6 @@ class GpuImage {
 
     vk::Image handle() const { return *image_; }
     vk::ImageView view() const { return *view_; }
-    std::uint64_t serial() const { return serial_; }
-    ImageUse use() const { return {*image_, serial_}; }
-    ViewUse view_use() const { return {*view_, serial_}; }
     const ImageShape& shape() const { return shape_; }
     vk::ImageAspectFlags aspect() const;
     explicit operator bool() const { return device_ != nullptr; }
@@ -52,7 +48,7 @@ class GpuImage {
     vk::raii::ImageView view_ = nullptr;
     ImageShape shape_{};
     std::string name_;
-    std::uint64_t allocated_ = 0, serial_ = 0;
+    std::uint64_t allocated_ = 0;
 };
 
 }  // namespace edgesplat::gpu

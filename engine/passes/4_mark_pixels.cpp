@@ -4,11 +4,11 @@ namespace edgesplat::passes {
 
 gpu::Specialization mark_pixels_constants(const DrawVariant& variant, TileDraw how) {
     gpu::Specialization constants = draw_constants(variant);
-    constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_ROUNDS, how.profile->rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
     constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
-    constants.emplace_back(shader::SPEC_LIST_PARTS, how.rounds ? 1U : 8U);
+    constants.emplace_back(shader::SPEC_LIST_PARTS, how.profile->list_parts);
     return constants;
 }
 

@@ -3,14 +3,12 @@
 namespace edgesplat::passes {
 
 std::uint32_t tile_group(TileDraw how) {
-    if (!how.refined) return shader::TILE * shader::TILE;
-    // Rounds are for lavapipe, whose subgroups are 8 invocations; elsewhere one is up to 64.
-    return how.rounds ? 16 : 64;
+    return how.refined ? how.profile->list_group : shader::TILE * shader::TILE;
 }
 
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
     gpu::Specialization constants = draw_constants(variant);
-    constants.emplace_back(shader::SPEC_ROUNDS, how.rounds ? 1U : 0U);
+    constants.emplace_back(shader::SPEC_ROUNDS, how.profile->rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_COUNT, how.count ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);

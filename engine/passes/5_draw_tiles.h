@@ -7,7 +7,8 @@ namespace edgesplat::passes {
 
 /// What of drawing is no matter of the picture.
 struct TileDraw {
-    bool rounds = true;    ///< only entries [round_begin(round), round_begin(round + 1)) of each list
+    /// With its rounds only entries [round_begin(round), round_begin(round + 1)) of each list are drawn.
+    const gpu::DeviceProfile* profile = &gpu::device_profiles().front();
     bool count = false;    ///< FrameParams::drawn counts footprints
     bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
     bool part = false;     ///< some of the sheets: the picture is not finished with them

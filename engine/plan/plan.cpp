@@ -8,7 +8,6 @@
 #include "engine/error.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
-#include "engine/store/light.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/face.h"
@@ -87,6 +86,14 @@ glm::vec4 place_of(const Light& light, const glm::dvec3& eye) {
         }
     }
     return {0, 0, 0, 1};
+}
+
+/// FrameParams::shadow_channels.
+std::uint32_t shadow_channels(const Scene& scene) {
+    std::uint32_t channels = 0, next = 1;
+    for (const std::size_t light : shadow_lights(scene))
+        channels |= next++ << 4 * light;
+    return channels;
 }
 
 bool answers_in_its_own_way(const Material& material) {

@@ -3,7 +3,9 @@
 
 #include "engine/culling/bricks.h"
 #include "engine/passes/5_draw_splats.h"
-#include "engine/renderer.h"
+#include "engine/scene/camera.h"
+#include "engine/scene/scene.h"
+#include "engine/scene/settings.h"
 #include "shaders/shared/frame_params.h"
 #include "shaders/shared/transfer_rows.h"
 

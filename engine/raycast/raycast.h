@@ -6,6 +6,7 @@
 #include "engine/passes/raycast.h"
 #include "engine/plan/plan.h"
 #include "engine/plan/resources.h"
+#include "engine/renderer.h"
 #include "shaders/shared/raycast_params.h"
 
 namespace edgesplat {

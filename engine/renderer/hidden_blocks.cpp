@@ -41,8 +41,8 @@ void RendererState::leave_hidden_blocks(const FrameRequest& request, std::vector
     provide_targets(plan);
     const Chunks chunks = sort_frame(commands, plan, targets, {.slab = glm::ivec2(0, sheets.x)});
     provide_chunks(chunks);
-    draw_frame(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
-               {.rounds = device.is_software(), .part = true});
+    draw_tiles(commands, plan, targets, static_cast<std::uint32_t>(chunks.parts.size()),
+               {.profile = &device.profile(), .part = true});
     const OpenTiles open(plan,
                          gpu::read_back<std::uint32_t>(device, commands, targets.tile_closed, 0, tile_count(plan)));
     release_for_collection();

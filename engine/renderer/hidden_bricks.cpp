@@ -10,8 +10,7 @@
 namespace edgesplat {
 
 bool RendererState::draw_front_first(const passes::TileDraw& how) {
-    // Elsewhere than on the processor itself, waiting in between may take longer than what it spares.
-    if (!device.is_software() || !collected || !collected->buried) return false;
+    if (!device.profile().front_first || !collected || !collected->buried) return false;
     const auto divided = divide_front(plan, volume_resources.bricks, least_hiding);
     if (!divided) return false;
     const FramePlan whole = plan;

@@ -61,7 +61,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
             const gpu::Buffer layers(device, light_layer_bytes(light), gpu::Buffer::Place::Device, "light layers");
             light.params.light_layers = layers.address();
             provide_targets(light);
-            add_times(collection_times, run_light_frame(commands, light, targets, channel));
+            add_times(collection_times, draw_sheets(commands, light, targets, channel));
         }
     }
     drop_targets();

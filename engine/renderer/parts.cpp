@@ -10,6 +10,8 @@
 #include "engine/distribute/parts.h"
 #include "engine/error.h"
 #include "engine/gpu/read_back.h"
+#include "engine/passes/5_refine_pixels.h"
+#include "engine/passes/7_resolve.h"
 #include "engine/renderer/state.h"
 
 namespace edgesplat {
@@ -93,7 +95,10 @@ void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& re
         write(commands, targets.tile_finest, of_all);
         const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
         std::ranges::copy(whole, pixels.begin());
-        add_times(draw_times, refine_frame(commands, plan, step));
+        commands.run([&] {
+            commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan), step); });
+        });
+        add_times(draw_times, commands.span_times());
         std::ranges::copy(pixels, whole.begin());
         lists = gpu::read_back<std::uint32_t>(device, commands, targets.tile_pixels, 0, lists.size());
         std::ranges::copy(todo, counts.begin());
@@ -133,7 +138,10 @@ void RendererState::draw_part(passes::TileDraw how) {
     }
     if (exchange->part().index > 0) return;
     std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
-    add_times(draw_times, resolve_frame(commands, plan));
+    commands.run([&] {
+        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+    });
+    add_times(draw_times, commands.span_times());
 }
 
 std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,

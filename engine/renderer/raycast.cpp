@@ -32,7 +32,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     const Settings settings = drawn_as(wanted);
     RenderResult result;
     auto& stats = result.stats;
-    const gpu::CommandCounts commands_before = self.commands.counts();
+    const std::uint64_t submissions_before = self.commands.submissions();
     self.show_whole();
     self.provide_volume();
     const auto add_times = [&](const std::vector<PassTime>& times) {
@@ -58,8 +58,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     result.color = Image(width, height, 4);
     std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
     if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
-    stats.submissions = self.commands.counts().run - commands_before.run;
-    stats.recordings = self.commands.counts().recorded - commands_before.recorded;
+    stats.submissions = self.commands.submissions() - submissions_before;
     stats.device = self.device.info();
     stats.voxels = self.volume->geometry.voxel_count();
     stats.device_bytes = self.device.allocated_bytes();

@@ -6,10 +6,11 @@
 #include <limits>
 #include <optional>
 
-#include "engine/compositors/tiles/tiles.h"
+#include "engine/compositors/tiles/chunks.h"
 #include "engine/forecast/memory.h"
 #include "engine/frame/frame.h"
 #include "engine/raycast/raycast.h"
+#include "engine/renderer.h"
 #include "engine/store/blocks.h"
 #include "engine/store/light.h"
 #include "footprints/cache_folder.h"

@@ -1,7 +1,7 @@
 // RendererState: what a picture is drawn into.
 #include <algorithm>
 
-#include "engine/compositors/tiles/tiles.h"
+#include "engine/compositors/tiles/chunks.h"
 #include "engine/error.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/renderer/state.h"

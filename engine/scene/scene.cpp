@@ -139,4 +139,15 @@ void validate(const Scene& scene) {
     validate(scene.effects);
 }
 
+bool occludes_ambient(const Scene& scene) {
+    return scene.effects.occlusion.has_value() && !scene.lights.empty();
+}
+
+std::vector<std::size_t> shadow_lights(const Scene& scene) {
+    std::vector<std::size_t> numbers;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i)
+        if (scene.lights[i].shadows) numbers.push_back(i);
+    return numbers;
+}
+
 }  // namespace edgesplat

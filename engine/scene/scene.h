@@ -86,4 +86,10 @@ bool only_edges_lit(const Scene& scene, bool edges_drawn);
 /// Checks counts, order, finiteness and ranges. Throws Error naming the field, the value and what was expected.
 void validate(const Scene& scene);
 
+/// Whether ambient light is occluded: the scene asks for it, and is lit at all.
+bool occludes_ambient(const Scene& scene);
+
+/// Numbers of the lights with shadows, at most kMaxShadowLights.
+std::vector<std::size_t> shadow_lights(const Scene& scene);
+
 }  // namespace edgesplat

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/error.h"
-#include "engine/frame/frame.h"
 
 namespace edgesplat {
 namespace {

@@ -6,10 +6,6 @@
 
 #include "engine/error.h"
 #include "engine/passes/2b_occlude_ambient.h"
-#include "engine/passes/2c_sweep_light.h"
-#include "engine/passes/3_select_footprints.h"
-#include "engine/passes/4_sort_sheets.h"
-#include "engine/passes/6_composite_sheet.h"
 
 namespace edgesplat {
 namespace {
@@ -75,24 +71,6 @@ Scene only_matter(const Scene& scene) {
 }
 
 }  // namespace
-
-bool occludes_ambient(const Scene& scene) {
-    return scene.effects.occlusion.has_value() && !scene.lights.empty();
-}
-
-std::vector<std::size_t> shadow_lights(const Scene& scene) {
-    std::vector<std::size_t> numbers;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i)
-        if (scene.lights[i].shadows) numbers.push_back(i);
-    return numbers;
-}
-
-std::uint32_t shadow_channels(const Scene& scene) {
-    std::uint32_t channels = 0, next = 1;
-    for (const std::size_t light : shadow_lights(scene))
-        channels |= next++ << 4 * light;
-    return channels;
-}
 
 Matter::Matter(const Scene& scene) : transfer(scene.transfer), clip(scene.effects.clip) {
     for (const Material& material : scene.materials)
@@ -214,27 +192,6 @@ std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& co
                                                .clip = clip,
                                                .transfer = !plan.matter.transfer.empty()});
         });
-    });
-    return commands.span_times();
-}
-
-std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                      std::uint32_t channel) {
-    const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
-    commands.run([&] {
-        commands.span("2c_sweep_light", [&] {
-            commands.fill(targets.counters, 0);
-            passes::clear_accumulated(commands, targets.accumulated);
-            passes::select_footprints(commands, plan.params.slot_count, plan.variant);
-            passes::sort_sheets(commands, plan.variant, plan.sort_segments);
-            for (std::uint32_t group = 0; group < plan.params.group_count; ++group) {
-                passes::draw_splats(commands, draw, group);
-                passes::sweep_light(commands, plan.params.size, group);
-                passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
-            }
-        });
-        commands.span("2d_shadow_splats",
-                      [&] { passes::shadow_splats(commands, plan.params.splat_count, plan.variant.clip, channel); });
     });
     return commands.span_times();
 }

@@ -3,18 +3,10 @@
 
 #include <vector>
 
-#include "engine/frame/frame.h"
+#include "engine/plan/plan.h"
+#include "engine/plan/resources.h"
 
 namespace edgesplat {
-
-/// Whether ambient light is occluded: the scene asks for it, and is lit at all.
-bool occludes_ambient(const Scene& scene);
-
-/// Numbers of the lights with shadows, at most kMaxShadowLights.
-std::vector<std::size_t> shadow_lights(const Scene& scene);
-
-/// FrameParams::shadow_channels of these lights.
-std::uint32_t shadow_channels(const Scene& scene);
 
 /// What the light has to pass, as far as it can change without other splats being collected.
 struct Matter {
@@ -59,10 +51,5 @@ std::uint64_t light_layer_bytes(const FramePlan& plan);
 /// Pass 2b: allocates and fills VolumeResources::occlusion. The bindings must hold the volume.
 std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                     const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources);
-
-/// Passes 3 to 5 from a light, then 2c and 2d, into half `channel` of VolumeResources::shadows. `targets` are the
-/// picture's own.
-std::vector<PassTime> run_light_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                      std::uint32_t channel);
 
 }  // namespace edgesplat

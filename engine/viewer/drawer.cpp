@@ -179,18 +179,18 @@ void Drawer::failed(const std::string& what) {
     error_ = what;
 }
 
-bool Drawer::is_software() {
-    if (!software_) {
+bool Drawer::is_processor() {
+    if (!on_processor_) {
         spare_ = std::make_unique<Renderer>(options_.device);
-        software_ = spare_->device().type == "Cpu";
+        on_processor_ = spare_->device().is_processor;
     }
-    return *software_;
+    return *on_processor_;
 }
 
 bool Drawer::casts_rays(const DrawRequest& request) {
     using Rays = Options::Rays;
     const bool wanted = options_.rays == Rays::Always || options_.rays == Rays::Cubic ||
-                        (options_.rays == Rays::OnProcessor && is_software());
+                        (options_.rays == Rays::OnProcessor && is_processor());
     return wanted && !request.plain && !request.volume->values.empty() && beyond_ray_casting(request.scene).empty() &&
            request.settings.edges != EdgeEstimator::Off;
 }
@@ -220,7 +220,7 @@ void Drawer::plan(Job& job) {
         volume_ = job.request.volume;
     }
     if (!pace_) {
-        pace_.emplace(options_.target, coarsest_level(*volume_, is_software()));
+        pace_.emplace(options_.target, coarsest_level(*volume_, is_processor()));
         ray_pace_.emplace(options_.target, 0, true);
     }
     forget_unused(job);

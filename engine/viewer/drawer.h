@@ -115,7 +115,7 @@ class Drawer {
     template <typename Unused>
     void drop(const Unused& unused);
     void forget_unused(const Job& job);
-    bool is_software();
+    bool is_processor();
     void plan(Job& job);
     void failed(const std::string& what);
 
@@ -135,7 +135,7 @@ class Drawer {
     mutable std::mutex renderers_mutex_;
     std::map<Key, Held> renderers_;
     std::unique_ptr<Renderer> spare_;  ///< opened to see what device there is
-    std::optional<bool> software_;
+    std::optional<bool> on_processor_;
     std::shared_ptr<const Volume> volume_;
     std::map<int, std::shared_ptr<const Volume>> levels_;
     std::optional<Pace> pace_, ray_pace_;

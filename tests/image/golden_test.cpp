@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
 #include "engine/forecast/effect_table.h"
 #include "engine/image/image_file.h"
+#include "engine/renderer.h"
 #include "tests/image/image_cases.h"
 
 namespace edgesplat::test {
@@ -40,7 +42,9 @@ TEST_P(Golden, IsTheSame) {
     const DeviceInfo& device = test_renderer().device();
     if (device.driver.find("llvmpipe") == std::string::npos)
         GTEST_SKIP() << "goldens come from llvmpipe, this is " << device.driver;
-    const std::filesystem::path folder(EDGESPLAT_PICTURES);
+    // Pictures of a profile that is forced lie apart.
+    const char* profile = std::getenv("EDGESPLAT_DEVICE_PROFILE");
+    const auto folder = std::filesystem::path(EDGESPLAT_PICTURES) / (profile == nullptr ? "" : profile);
     const auto golden = std::filesystem::path(EDGESPLAT_SOURCE_DIR) / "tests/image/golden" / (GetParam().name + ".png");
     const auto actual = folder / (GetParam().name + ".png"), diff = folder / (GetParam().name + ".diff.png");
     std::filesystem::create_directories(folder);

@@ -28,7 +28,8 @@ std::size_t in_chunks(RendererState& state, std::uint64_t limit) {
     const Chunks chunks = plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
                                       state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
     state.provide_chunks(chunks);
-    draw_frame(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()), {});
+    draw_tiles(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()),
+               {.profile = &state.device.profile()});
     return chunks.parts.size();
 }
 

@@ -12,6 +12,7 @@
 #include "engine/error.h"
 #include "engine/forecast/effect_table.h"
 #include "engine/forecast/forecast.h"
+#include "engine/renderer.h"
 #include "engine/store/blocks.h"
 #include "engine/volume/load_volume.h"
 #include "engine/volume/pack_volume.h"

@@ -67,8 +67,7 @@ TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
               "dims",         "voxels",      "size",         "frame_ms",  "processor_ms",     "raycast_ms",
               "ratio",        "wall_ratio",  "passes_ms",    "setup_ms",  "setup_passes_ms",  "setup_ns_per_voxel",
               "cold",         "splats",      "vertices",     "fragments", "shaded_fragments", "sheets",
-              "sheet_groups", "dirty_share", "device_bytes", "memory",    "host_peak_bytes",  "submissions",
-              "recordings"})
+              "sheet_groups", "dirty_share", "device_bytes", "memory",    "host_peak_bytes",  "submissions"})
             EXPECT_TRUE(entry.contains(key) && !entry[key].is_null()) << key;
         for (const char* pass : {"3_select_footprints", "4_sort_sheets", "4_sort_tiles", "5_draw_tiles"})
             EXPECT_TRUE(entry["passes_ms"].contains(pass)) << pass;

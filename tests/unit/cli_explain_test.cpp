@@ -45,6 +45,18 @@ TEST_F(CliExplain, WithAnOutputIsMeasuredToo) {
     EXPECT_TRUE(plan["effects"].contains("light"));
 }
 
+TEST_F(CliExplain, SaysWhichProfileAFrameIsMadeWith) {
+    const ProgramRun forced =
+        run("render builtin:sphere:16 --size 40x30 --explain -o a.png --json a.json -q --device-profile generic");
+    ASSERT_EQ(forced.status, 0) << forced.err;
+    EXPECT_THAT(forced.out, HasSubstr("device profile generic: asked for by --device-profile"));
+    EXPECT_THAT(forced.out, HasSubstr(" GROUP=32"));
+    EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "a.json"))["plan"]["device_profile"], "generic");
+    const ProgramRun wrong = run("render builtin:sphere:16 -o a.png --device-profile fast");
+    EXPECT_EQ(wrong.status, 1);
+    EXPECT_THAT(wrong.err, HasSubstr("device profile `fast`: expected lavapipe, generic or discrete"));
+}
+
 TEST_F(CliExplain, NeitherOutputNorExplainIsAnError) {
     const ProgramRun wrong = run("render builtin:sphere:24");
     EXPECT_EQ(wrong.status, 2);

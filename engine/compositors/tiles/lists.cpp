@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <functional>
 
-#include "engine/compositors/tiles/tiles.h"
+#include "engine/compositors/tiles/chunks.h"
 #include "engine/passes/5_draw_tiles.h"
 
 namespace edgesplat {

@@ -1,11 +1,9 @@
-// The frame whose sheets are summed tile by tile: selection and sort, then chunks of sheets one after another.
+// A tiled picture is drawn in chunks of sheets: which ones, how large its lists are, and what is drawn first.
 #pragma once
 
-#include <functional>
 #include <span>
 #include <vector>
 
-#include "engine/distribute/parts.h"
 #include "engine/passes/5_draw_tiles.h"
 #include "engine/plan/plan.h"
 #include "engine/plan/resources.h"
@@ -48,32 +46,24 @@ Chunks plan_chunks(std::span<const std::uint32_t> pairs, std::span<const std::ui
 std::uint64_t most_column_pairs(const glm::uvec2& part, std::uint32_t columns, std::span<const std::uint32_t> pairs,
                                 std::span<const std::uint32_t> starts);
 
-/// Passes 3 and 4 up to the sheets' order; waits, and says what is to be drawn of the part. Milliseconds are left in
-/// `commands`.
-Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const Division& division = {});
+/// Of each sheet of a picture that was sorted, pairs of a splat and a tile; where each begins in the order, and the
+/// end.
+std::span<const std::uint32_t> sheet_pairs(const FramePlan& plan, const TargetResources& targets);
+std::span<const std::uint32_t> sheet_starts(const FramePlan& plan, const TargetResources& targets);
+
+/// The chunks of such a picture's sheets, half open.
+Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets);
 
 /// Whether drawing some pixels first (FramePlan::refined) saves time: splats are some pixels wide.
 bool worth_refining(const Chunks& chunks);
 
-/// The rest of the frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
-/// With rounds, each chunk is waited for, and each round where `between` is to be called after it (it may throw). Of a
-/// part (`TileDraw::part`) pass 7 is left out.
-std::vector<PassTime> draw_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                 std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between = {});
-
-/// One step of `draw_frame`, without what finishes it: of a refined picture the pixels of `step`, REFINE_STEP first,
-/// then those that refine_frame lists; of any other all, step 1.
-std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                std::uint32_t chunks, passes::TileDraw how, std::uint32_t step);
-
-/// Of a refined picture whose pixels of a step are drawn: those between them, or their lists.
-std::vector<PassTime> refine_frame(gpu::Commands& commands, const FramePlan& plan, std::uint32_t step);
-
 /// The first of a picture's steps; each is half of the one before, the last is 1.
 std::uint32_t first_step(const FramePlan& plan);
 
-/// Pass 7 alone.
-std::vector<PassTime> resolve_frame(gpu::Commands& commands, const FramePlan& plan);
+/// Groups of invocations for the most pixels that a tile draws at once, after that step of a refined picture.
+std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step);
+
+/// How many pixels of each tile are drawn first.
+void fill_todo(const FramePlan& plan, const TargetResources& targets);
 
 }  // namespace edgesplat

@@ -1,0 +1,66 @@
+#include "engine/gpu/device_profile.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+
+#include "engine/error.h"
+
+namespace edgesplat::gpu {
+namespace {
+
+// lavapipe's subgroups are 8 invocations, those of GPUs 32 or 64.
+constexpr std::array kProfiles{
+    DeviceProfile{.name = "lavapipe",
+                  .rounds = true,
+                  .list_group = 16,
+                  .list_parts = 1,
+                  .front_first = true,
+                  .late_timestamps = true},
+    DeviceProfile{.name = "generic", .list_group = 32},
+    DeviceProfile{.name = "discrete", .list_group = 64},
+};
+
+}  // namespace
+
+std::span<const DeviceProfile> device_profiles() {
+    return kProfiles;
+}
+
+const DeviceProfile& profile_named(std::string_view name) {
+    const auto found = std::ranges::find(kProfiles, name, &DeviceProfile::name);
+    if (found == kProfiles.end()) fail("device profile `{}`: expected lavapipe, generic or discrete", name);
+    return *found;
+}
+
+ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const std::string& wanted) {
+    if (!wanted.empty()) return {&profile_named(wanted), "asked for by --device-profile"};
+    const char* variable = std::getenv("EDGESPLAT_DEVICE_PROFILE");
+    if (variable != nullptr && *variable != '\0')
+        return {&profile_named(variable), "asked for by EDGESPLAT_DEVICE_PROFILE"};
+    if (is_processor(device)) return {&profile_named("lavapipe"), "the device is the processor"};
+    if (device.deviceType == vk::PhysicalDeviceType::eDiscreteGpu)
+        return {&profile_named("discrete"), "the device is a GPU with memory of its own"};
+    return {&profile_named("generic"), "of a " + vk::to_string(device.deviceType) + " nothing more is known"};
+}
+
+bool is_processor(const vk::PhysicalDeviceProperties& device) {
+    return device.deviceType == vk::PhysicalDeviceType::eCpu;
+}
+
+int rank_of(const vk::PhysicalDeviceProperties& device) {
+    switch (device.deviceType) {
+        case vk::PhysicalDeviceType::eDiscreteGpu:
+            return 0;
+        case vk::PhysicalDeviceType::eIntegratedGpu:
+            return 1;
+        case vk::PhysicalDeviceType::eVirtualGpu:
+            return 2;
+        case vk::PhysicalDeviceType::eCpu:
+            return 3;
+        default:
+            return kWorstRank;
+    }
+}
+
+}  // namespace edgesplat::gpu

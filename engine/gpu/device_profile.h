@@ -1,0 +1,55 @@
+// What is known of drivers and devices, and what follows from it for a frame. The one place that knows: all else asks
+// here what to do, never which device it is.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vulkan/vulkan_raii.hpp>
+
+namespace edgesplat::gpu {
+
+/// How a frame is made on a kind of device. Pictures are the same with each but for rounding.
+struct DeviceProfile {
+    std::string_view name;
+    /// Lists of tiles are drawn so many entries at a time, and the host looks at them in between: where a driver ends
+    /// all loops of an invocation together after 65535 iterations (shaders/shared/limits.h).
+    bool rounds = false;
+    /// Invocations of a workgroup for lists of pixels, which are of very different length: about a subgroup.
+    std::uint32_t list_group = 64;
+    /// Parts into which a tile's list is divided among the invocations that mark pixels; 1: none.
+    std::uint32_t list_parts = 8;
+    /// A frame is drawn in two parts where what is in front may hide bricks behind it. Waiting in between takes longer
+    /// than it spares where the device is not the processor itself.
+    bool front_first = false;
+    /// Timestamps are written when the device next rasterises, which may be after what was recorded later: barriers
+    /// around them.
+    bool late_timestamps = false;
+};
+
+/// "lavapipe": devices that are the processor; "generic": what runs everywhere else; "discrete": GPUs with memory of
+/// their own. The first is that of forecasts without a device; no list_group is smaller than its own.
+std::span<const DeviceProfile> device_profiles();
+
+/// Throws Error listing the names.
+const DeviceProfile& profile_named(std::string_view name);
+
+/// A device's profile and why it has it.
+struct ChosenProfile {
+    const DeviceProfile* profile;
+    std::string reason;
+};
+
+/// `wanted`: a name, which may be any device's; empty: what the environment variable EDGESPLAT_DEVICE_PROFILE says,
+/// else what the device is.
+ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const std::string& wanted);
+
+/// Whether the device is the processor itself, whatever its profile.
+bool is_processor(const vk::PhysicalDeviceProperties& device);
+
+/// Devices in the order in which one is looked for: the lower the better, up to kWorstRank.
+int rank_of(const vk::PhysicalDeviceProperties& device);
+inline constexpr int kWorstRank = 4;
+
+}  // namespace edgesplat::gpu
