@@ -151,6 +151,7 @@ PassScene cavities() {
 TEST(HiddenBricks, AreNotMissed) {
     PassScene s = cavities();
     RendererState& state = prepared(s);
+    if (!state.device.profile().front_first) GTEST_SKIP() << "frames are not drawn in two parts with this profile";
     ASSERT_TRUE(state.collected->buried);
     const glm::ivec2 size(150, 110);
     const auto pixels = [&](const Camera& camera, std::uint32_t payload, std::uint64_t least) {
