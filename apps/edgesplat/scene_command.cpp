@@ -52,9 +52,11 @@ void run_new(const NewOptions& options) {
         document.transfer = scene.transfer;
         document.materials.clear();
     }
-    // The eye as numbers, which can be changed, and what it looks at.
-    const edgesplat::VolumeGeometry& geometry = volume.geometry;
-    document.camera = {.eye = camera.eye, .target = geometry.center(), .up = camera.up, .fov = camera.fov_y};
+    // The eye as numbers, which can be changed, and what it looks at: as far away as the volume's centre.
+    const glm::dvec3 forward = glm::normalize(camera.direction);
+    const double distance = glm::dot(volume.geometry.center() - camera.eye, forward);
+    document.camera = {
+        .eye = camera.eye, .target = camera.eye + distance * forward, .up = camera.up, .fov = camera.fov_y};
     document.volume.path = path_in_scene(options.volume_path, fs::path(options.output).parent_path());
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
