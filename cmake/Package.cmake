@@ -4,27 +4,28 @@ set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/edgesplat)
 
 foreach(library footprints volume scene reference engine)
     set_target_properties(edgesplat_${library} PROPERTIES EXPORT_NAME ${library})
-    install(TARGETS edgesplat_${library} EXPORT edgesplatTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS edgesplat_${library} EXPORT edgesplatTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+        COMPONENT dev)
 endforeach()
-install(TARGETS edgesplat_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat)
-install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_folder})
+install(TARGETS edgesplat_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat COMPONENT edgesplat)
+install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_folder} COMPONENT dev)
 
 # The library's face; what only its own sources include stays at home.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/engine ${CMAKE_SOURCE_DIR}/footprints
-    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edgesplat FILES_MATCHING PATTERN "*.h"
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edgesplat COMPONENT dev FILES_MATCHING PATTERN "*.h"
     PATTERN gpu EXCLUDE PATTERN passes EXCLUDE PATTERN accuracy EXCLUDE PATTERN bench EXCLUDE PATTERN renderer EXCLUDE
     PATTERN frame EXCLUDE PATTERN plan EXCLUDE PATTERN store EXCLUDE PATTERN culling EXCLUDE PATTERN compositors EXCLUDE
     PATTERN raycast EXCLUDE PATTERN "parts.h" EXCLUDE PATTERN "description*.h" EXCLUDE PATTERN "forecast.h" EXCLUDE
     PATTERN "memory.h" EXCLUDE PATTERN "effect_rows.h" EXCLUDE PATTERN "*_internal.h" EXCLUDE
     PATTERN "load_itk.h" EXCLUDE PATTERN "scene_table.h" EXCLUDE)
 install(FILES ${CMAKE_SOURCE_DIR}/LICENSE ${CMAKE_SOURCE_DIR}/README.md ${CMAKE_SOURCE_DIR}/CHANGELOG.md
-    DESTINATION ${CMAKE_INSTALL_DOCDIR})
+    DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT edgesplat)
 
 configure_package_config_file(${CMAKE_SOURCE_DIR}/cmake/edgesplatConfig.cmake.in
     ${CMAKE_BINARY_DIR}/edgesplatConfig.cmake INSTALL_DESTINATION ${package_folder})
 write_basic_package_version_file(${CMAKE_BINARY_DIR}/edgesplatConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_BINARY_DIR}/edgesplatConfig.cmake ${CMAKE_BINARY_DIR}/edgesplatConfigVersion.cmake
-    DESTINATION ${package_folder})
+    DESTINATION ${package_folder} COMPONENT dev)
 
 # A program of its own, built against an installed copy; sanitized libraries would ask the same of it.
 if(EDGESPLAT_TESTS AND NOT EDGESPLAT_SANITIZE)
@@ -32,3 +33,5 @@ if(EDGESPLAT_TESTS AND NOT EDGESPLAT_SANITIZE)
         -DGENERATOR=${CMAKE_GENERATOR} -DCONFIG=$<CONFIG> -P ${CMAKE_SOURCE_DIR}/tests/package/embed.cmake)
     set_tests_properties(package.embed PROPERTIES LABELS package TIMEOUT 600)
 endif()
+
+include(Debian)

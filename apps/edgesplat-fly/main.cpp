@@ -6,6 +6,8 @@
 
 #include "apps/device_options.h"
 #include "apps/edgesplat-fly/app.h"
+#include "apps/option_pages.h"
+#include "apps/version.h"
 
 namespace {
 
@@ -61,7 +63,9 @@ void add_options(CLI::App& app, AppOptions& options) {
 
 int main(int argc, char** argv) {
     CLI::App app{"Fly through a volume: edge-preserving splatting, interactively"};
-    app.set_version_flag("--version", "edgesplat-fly " EDGESPLAT_VERSION);
+    app.name("edgesplat-fly");
+    app.set_version_flag("--version", version_text("edgesplat-fly"));
+    add_page_options(app, EDGESPLAT_VERSION);
     AppOptions options;
     add_options(app, options);
     try {

@@ -50,7 +50,7 @@ void presets_choice(AppState& state, const char* label, bool transfer,
                 state.session.say(error.what());
             }
     for (const auto& preset : presets) {
-        if (preset.is_transfer() != transfer) continue;
+        if (preset.kind != (transfer ? edgesplat::PresetKind::Transfer : edgesplat::PresetKind::Material)) continue;
         const bool chosen = ImGui::Selectable(preset.name.c_str());
         note(state, preset.name.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.content.about.c_str());

@@ -24,9 +24,10 @@ void add_camera_options(CLI::App& command, DocumentEdits& edits) {
                                                                          fmt::join(views, ", ")));
                     edits.add([text](SceneDocument& d) { d.camera = {.view = text, .fov = d.camera.fov}; });
                 },
-                "A named camera that shows the whole volume; close: near the first surface")
+                "A named camera that shows all that is to be seen; close: near a surface. Default: front of patients "
+                "and "
+                "builtin volumes, else the view along an axis that tells most")
             ->type_name(fmt::format("{}", fmt::join(views, "|")))
-            ->default_str("front")
             ->group(kGroup);
     CLI::Option* eye = add_vector_edit(command, edits, "--eye", "X,Y,Z", "Where the eye is, world mm",
                                        [](SceneDocument& d, const glm::dvec3& p) {

@@ -15,9 +15,12 @@
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/rerun_command.h"
 #include "apps/edgesplat/scene_command.h"
+#include "apps/option_pages.h"
+#include "apps/version.h"
 
 void add_commands(CLI::App& app, const std::string& command_line, int& exit_status) {
-    app.set_version_flag("--version", "edgesplat " EDGESPLAT_VERSION);
+    app.set_version_flag("--version", version_text("edgesplat"));
+    add_page_options(app, EDGESPLAT_VERSION);
     app.formatter(std::make_shared<HelpFormatter>());
     app.require_subcommand(1);
     add_device_list(app);

@@ -208,11 +208,10 @@ void stopped(const fs::path& folder, int& exit_status) {
 void run(const MovieCommand& command, int& exit_status) {
     const Places places = places_of(command);
     std::vector<fs::path> folders;
-    const SceneDocument document = document_of(command, folders);
-    Film film =
-        film_of(document,
-                std::make_shared<const edgesplat::Volume>(load_with_progress(document.volume, folders, command.quiet)),
-                command.seconds);
+    SceneDocument document = document_of(command, folders);
+    edgesplat::Volume volume = load_with_progress(document.volume, folders, command.quiet);
+    recognise_labels(document, volume);
+    Film film = film_of(document, std::make_shared<const edgesplat::Volume>(std::move(volume)), command.seconds);
     const FrameRange range = range_of(command, film);
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(film.volume);

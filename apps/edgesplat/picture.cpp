@@ -13,6 +13,7 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
+#include "engine/plan/plan.h"
 #include "engine/overlays/overlays.h"
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
@@ -52,11 +53,12 @@ void check(const PictureRequest& request) {
     edgesplat::fail("{}", text);
 }
 
-edgesplat::Volume load(const PictureRequest& request) {
+edgesplat::Volume load(PictureRequest& request) {
     edgesplat::Volume volume = load_with_progress(request.document.volume, request.folders, request.quiet);
     if (volume.non_finite_count > 0 && !request.quiet)
         fmt::print(stderr, "edgesplat: warning: {}: {} samples are not finite and taken as {}\n", volume.name,
                    volume.non_finite_count, volume.min_value);
+    recognise_labels(request.document, volume);
     return volume;
 }
 
@@ -112,9 +114,18 @@ std::string scene_of_picture(const PictureRequest& request, const edgesplat::Vol
     return scene_text(document);
 }
 
+/// Nothing but a wall is seen from inside of it.
+void warn_of_eye(const edgesplat::Volume& volume, const edgesplat::Camera& camera) {
+    const glm::ivec3 voxel(glm::round(volume.geometry.to_index(camera.eye)));
+    fmt::print(stderr,
+               "edgesplat: warning: the eye ({:.5g}, {:.5g}, {:.5g} mm) is inside opaque matter: voxel {}, {}, {} has "
+               "the value {:.6g}; move it (--eye), or show a higher surface (--iso)\n",
+               camera.eye.x, camera.eye.y, camera.eye.z, voxel.x, voxel.y, voxel.z, value_at(volume, voxel));
+}
+
 }  // namespace
 
-void make_picture(const PictureRequest& request) {
+void make_picture(PictureRequest request) {
     check(request);
     const edgesplat::OutputChoice& output = request.document.output;
     edgesplat::Settings settings = request.document.quality.settings;
@@ -124,6 +135,7 @@ void make_picture(const PictureRequest& request) {
     if (request.document.quality.max_error) need_samples(*volume, "--max-error");
     const edgesplat::Scene scene = resolve_scene(request.document, *volume);
     const edgesplat::Camera camera = resolve_camera(request.document, *volume, scene);
+    if (!request.quiet && eye_in_opaque(*volume, scene, camera)) warn_of_eye(*volume, camera);
 
     const edgesplat::FrameRequest planned{volume, scene, camera, settings, output.size, aov_request(output.aovs)};
     if (output.file.empty()) {

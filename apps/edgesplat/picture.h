@@ -23,4 +23,4 @@ struct PictureRequest {
 
 /// Checks everything that can be checked before, reads the volume, renders, writes all files or none, and says in one
 /// line what was done. Throws edgesplat::Error.
-void make_picture(const PictureRequest& request);
+void make_picture(PictureRequest request);

@@ -10,6 +10,7 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/image/image_file.h"
+#include "engine/scene/default_materials.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 1> kSceneExtensions{".toml"};
 
 struct NewOptions {
-    std::string volume_path, output;
+    std::string volume_path, output, look;
     VolumeOptions volume;
 };
 
@@ -37,16 +38,25 @@ void run_new(const NewOptions& options) {
     edgesplat::SceneDocument document;
     document.volume.path = options.volume_path;
     apply(options.volume, document.volume);
-    const edgesplat::Volume volume = load_with_progress(document.volume, edgesplat::volume_folders({}), false);
+    if (!options.look.empty()) use_look(document, options.look);
+    edgesplat::Volume volume = load_with_progress(document.volume, edgesplat::volume_folders({}), false);
+    recognise_labels(document, volume);
     document.camera.view = "oblique";
     const edgesplat::Scene scene = resolve_scene(document, volume);
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
-    document.iso_values = scene.iso_values;
-    for (std::size_t m = 1; m < scene.materials.size(); ++m)
-        document.materials.push_back({.color = scene.materials[m].color, .extinction = scene.materials[m].extinction});
-    // The eye as numbers, which can be changed, and what it looks at.
-    const edgesplat::VolumeGeometry& geometry = volume.geometry;
-    document.camera = {.eye = camera.eye, .target = geometry.center(), .up = camera.up, .fov = camera.fov_y};
+    write_out_materials(document, scene);
+    document.iso_sigmas.clear();
+    // What is not the scene's own to say stays open: materials below all surfaces, and colours of labels.
+    if (document.below == choice_of(edgesplat::Material{.color = glm::dvec3(0)})) document.below = {};
+    if (!scene.transfer.empty()) {
+        document.transfer = scene.transfer;
+        document.materials.clear();
+    }
+    // The eye as numbers, which can be changed, and what it looks at: as far away as the volume's centre.
+    const glm::dvec3 forward = glm::normalize(camera.direction);
+    const double distance = glm::dot(volume.geometry.center() - camera.eye, forward);
+    document.camera = {
+        .eye = camera.eye, .target = camera.eye + distance * forward, .up = camera.up, .fov = camera.fov_y};
     document.volume.path = path_in_scene(options.volume_path, fs::path(options.output).parent_path());
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
@@ -72,10 +82,11 @@ void run_check(const std::vector<std::string>& paths, int& exit_status) {
 }
 
 void print_presets() {
+    constexpr std::array<std::string_view, 3> kKinds{"material", "transfer", "look"};
     std::string text;
     for (const std::string& name : edgesplat::scene_preset_names()) {
         const edgesplat::ScenePreset preset = edgesplat::scene_preset(name);
-        text += fmt::format("{:<26}{:<10}{}\n{:26}{}\n", name, preset.is_transfer() ? "transfer" : "material",
+        text += fmt::format("{:<26}{:<10}{}\n{:26}{}\n", name, kKinds.at(static_cast<std::size_t>(preset.kind)),
                             preset.file, "", preset.content.about);
     }
     fmt::print("{}", text);
@@ -93,6 +104,7 @@ void add_scene_command(CLI::App& app, int& exit_status) {
         ->required()
         ->type_name("");
     make.add_option("-o,--output", options->output, "The scene file, .toml; default: it is printed")->type_name("FILE");
+    make.add_option("--look", options->look, "How it looks, by name (`edgesplat scene presets`)")->type_name("NAME");
     add_volume_options(make, options->volume);
     make.callback([options] { run_new(*options); });
 
@@ -108,8 +120,10 @@ void add_scene_command(CLI::App& app, int& exit_status) {
     keys.callback(
         [markdown] { fmt::print("{}", *markdown ? edgesplat::scene_keys_markdown() : edgesplat::scene_keys_text()); });
 
-    CLI::App& presets = *scene.add_subcommand("presets", "List materials and transfer functions that have a name");
+    CLI::App& presets =
+        *scene.add_subcommand("presets", "List looks, materials and transfer functions that have a name");
     presets.footer(
-        "Looked for in the folders in EDGESPLAT_PRESETS, in $XDG_CONFIG_HOME/edgesplat/presets, and in the program.");
+        "--look takes any of them, --material materials, --transfer transfer functions. Looked for in the folders in "
+        "EDGESPLAT_PRESETS, in $XDG_CONFIG_HOME/edgesplat/presets, and in the program.");
     presets.callback(print_presets);
 }

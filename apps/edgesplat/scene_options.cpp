@@ -55,6 +55,36 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
             ->group(kGroup);
         return command.get_option(option);
     };
+    const auto add_named = [&](const char* option, const char* help, const auto& use) {
+        command
+            .add_option_function<std::string>(
+                option,
+                [&edits, option, use](const std::string& name) {
+                    try {
+                        SceneDocument scratch;
+                        use(scratch, name);
+                    } catch (const edgesplat::Error& error) {
+                        throw CLI::ValidationError(option, error.what());
+                    }
+                    edits.add([name, use](SceneDocument& document) { use(document, name); });
+                },
+                help)
+            ->type_name("NAME")
+            ->group(kGroup);
+    };
+    // The first of them, so that whatever the order on the command line the others change it.
+    add_named("--look", "Surfaces, colours and light by name (`edgesplat scene presets`); the options below change it",
+              [](SceneDocument& document, const std::string& name) { edgesplat::use_look(document, name); });
+    add_named("--transfer", "A transfer function by name (`edgesplat scene presets`), in place of materials",
+              [](SceneDocument& document, const std::string& name) {
+                  const edgesplat::ScenePreset preset = edgesplat::scene_preset(name);
+                  if (!preset.is_transfer()) edgesplat::fail("\"{}\" is no transfer function; --look takes it", name);
+                  document.transfer_preset = name;
+                  document.transfer.clear();
+                  document.iso_values.clear();
+                  document.iso_sigmas.clear();
+                  document.materials.clear();
+              });
     command
         .add_option_function<std::vector<std::string>>(
             "--iso",
@@ -66,9 +96,10 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
                     // Other surfaces than the scene's have none of its materials.
                     if (values.size() != document.materials.size()) document.materials.clear();
                     document.iso_values = values;
+                    document.iso_sigmas.clear();
                 });
             },
-            "A surface's value, in the volume's unit; repeatable. Default: a builtin's own, else the strongest "
+            "A surface's value, in the volume's unit; repeatable. Default: a builtin's own, else the first "
             "suggestion of `info`")
         ->type_name("NUMBER")
         ->delimiter(',')
@@ -117,6 +148,18 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
         ->group(kGroup);
     add_flag_edit(command, edits, "--box-filter", "First take the mean over 3x3x3 voxels (after --threshold)",
                   [](SceneDocument& d) { d.volume.box_filter = true; })
+        ->group(kGroup);
+    command
+        .add_option_function<std::string>(
+            "--labels",
+            [&edits](const std::string& text) {
+                if (text != "on" && text != "off")
+                    throw CLI::ValidationError("--labels", fmt::format("'{}' is neither on nor off", text));
+                edits.add([on = text == "on"](SceneDocument& d) { d.volume.labels = on; });
+            },
+            "Whether samples are numbers of things, each drawn in a colour of its own. Default: recognised, unless "
+            "surfaces are given")
+        ->type_name("on|off")
         ->group(kGroup);
 }
 

@@ -10,6 +10,9 @@ namespace edgesplat {
 /// Linear light. By a material's place from the lowest iso-value up, the first is 0; after the sixth they begin anew.
 glm::dvec3 default_color(std::size_t place);
 
+/// Linear light, of a thing by its number in a segmentation, from 1.
+glm::dvec3 default_label_color(std::size_t label);
+
 /// Per mm. `highest`: no iso-value lies above the material's.
 double default_extinction(bool highest, const VolumeGeometry& geometry);
 

@@ -18,7 +18,7 @@
 
 namespace edgesplat {
 
-/// Which samples, and what is done to them first: threshold, box filter, crop, in this order.
+/// Which samples, and what is done to them first: threshold or labels, box filter, crop, in this order.
 struct VolumeSource {
     std::string path;                               ///< file, folder, pattern of slices, or builtin:NAME
     std::string raw, series;                        ///< see LoadOptions; empty: not given
@@ -26,6 +26,7 @@ struct VolumeSource {
     bool resample = false;                          ///< unevenly spaced DICOM slices are interpolated
     std::optional<glm::dvec3> spacing;              ///< mm, instead of the file's
     std::optional<double> threshold;                ///< 1 from this value up, else 0
+    std::optional<bool> labels;                     ///< things by number (drawn_labels); open: `recognise_labels`
     bool box_filter = false;                        ///< mean over 3x3x3 voxels
     std::optional<glm::ivec3> crop_low, crop_high;  ///< first and last voxel kept; both or none
     std::string checksum;  ///< of the samples as drawn, 16 hexadecimal digits; empty: any will do
@@ -116,6 +117,7 @@ struct SceneDocument {
     std::string about;  ///< what is to be seen, in words
     VolumeSource volume;
     std::vector<double> iso_values;         ///< empty: from presets, else chosen from the data
+    std::vector<double> iso_sigmas;         ///< in their place: standard deviations above the mean of all samples
     MaterialChoice below;                   ///< below the lowest iso-value; transparent unless said otherwise
     std::vector<MaterialChoice> materials;  ///< from each iso-value up, in the same order; empty: defaults
     std::vector<TransferPoint> transfer;
@@ -157,16 +159,24 @@ std::string find_volume(const std::string& path, const std::vector<std::filesyst
 Volume load_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
                    const std::function<void(double fraction, std::string_view what)>& progress = {});
 
-/// What `load_source` does to a volume that is read: threshold, box filter, crop, in this order, and the checksum
-/// compared. Throws Error.
+/// What `load_source` does to a volume that is read: threshold or labels, box filter, crop, in this order, and the
+/// checksum compared. Throws Error.
 Volume preprocessed(Volume volume, const VolumeSource& source);
 
-/// The scene for a volume from `load_source`. Iso-values left open: those of the materials' presets, of a builtin
-/// scene, 0.5 after a threshold, else the strongest suggestion for the volume. Extinctions left open: 8 per voxel of
+/// Where a scene says neither what of the volume is to be seen nor whether it is a segmentation, and `volume`, as
+/// `load_source` gave it for the scene, is one of several things: has each drawn in a colour of its own, by setting
+/// `document.volume.labels`, and changes the volume accordingly. Rays are cast through values alone, so a scene that
+/// asks for any is left as it is.
+void recognise_labels(SceneDocument& document, Volume& volume);
+
+/// The scene for a volume from `load_source`. Iso-values left open: from `iso_sigmas`, those of the materials' presets,
+/// of a builtin scene, 0.5 after a threshold, and around labels with a colour for each, else the strongest suggestion
+/// for the volume. Extinctions left open: 8 per voxel of
 /// mean spacing for the highest material, 0.15 for those below; none below the lowest iso-value. Throws Error.
 Scene resolve_scene(const SceneDocument& document, const Volume& volume);
 
-/// The camera, for the size in `document.output`. Throws Error.
+/// The camera, for the size in `document.output`. Where none is asked for: front of a builtin volume and of a patient
+/// (top where that is a slab), else the view that tells most. Throws Error.
 Camera resolve_camera(const SceneDocument& document, const Volume& volume, const Scene& scene);
 
 /// The camera's way through the movie; without one the camera of `start` stands still. Throws Error.

@@ -26,7 +26,7 @@ class SceneFileError : public Error {
 struct SceneTextOptions {
     std::vector<std::filesystem::path> folders;  ///< where its volume is looked for
     bool whole = true;    ///< also what single keys cannot tell is checked: counts, order, files that are there
-    bool preset = false;  ///< it is one: only about, iso_values, materials and transfer, and no volume
+    bool preset = false;  ///< it is one: a part of a scene, without a volume, camera or quality
 };
 
 /// Reads TOML text; `name` is what messages call it. Throws SceneFileError.

@@ -78,6 +78,16 @@ class Checker {
         for (std::size_t i = 1; i < iso.size(); ++i)
             if (!(iso[i] > iso[i - 1]))
                 add("iso_values", "{} is not above {} before it; expected ascending values", iso[i], iso[i - 1]);
+        const auto& sigmas = d_.iso_sigmas;
+        if (!sigmas.empty() && !iso.empty())
+            add("iso_sigmas", "is given together with iso_values; expected one of them");
+        if (sigmas.size() > kMaxIsoValues)
+            add("iso_sigmas", "{} of them: expected at most {}", sigmas.size(), kMaxIsoValues);
+        for (std::size_t i = 1; i < sigmas.size(); ++i)
+            if (!(sigmas[i] > sigmas[i - 1]))
+                add("iso_sigmas", "{} is not above {} before it; expected ascending values", sigmas[i], sigmas[i - 1]);
+        if (d_.volume.labels.value_or(false) && d_.volume.threshold)
+            add("volume.labels", "is given together with volume.threshold; expected one of them");
     }
 
     /// The preset if there is one of that name, else a problem.
@@ -96,9 +106,9 @@ class Checker {
             const MaterialChoice& material = d_.materials[i];
             const std::string path = fmt::format("materials[{}].preset", i);
             const auto preset = material.preset.empty() ? std::nullopt : preset_at(path, material.preset);
-            if (preset && preset->content.materials.size() != 1)
-                add(path, "\"{}\" is a transfer function; expected a material (transfer_preset takes it)",
-                    material.preset);
+            if (preset && preset->kind != PresetKind::Material)
+                add(path, "\"{}\" is a {}; expected a material", material.preset,
+                    preset->is_transfer() ? "transfer function (transfer_preset takes it)" : "look (--look takes it)");
             all_have_iso = all_have_iso && preset && !preset->content.iso_values.empty();
         }
         // Without iso-values presets may bring them, or one is chosen from the data, or a builtin volume has its own.
@@ -106,7 +116,10 @@ class Checker {
         if (given == 0) return;
         if (!d_.iso_values.empty() && given != d_.iso_values.size())
             add("materials", "{} of them for {} iso_values: expected one per iso-value", given, d_.iso_values.size());
-        const bool open = d_.iso_values.empty() && !all_have_iso && d_.transfer.empty() && d_.transfer_preset.empty();
+        if (!d_.iso_sigmas.empty() && given != d_.iso_sigmas.size())
+            add("materials", "{} of them for {} iso_sigmas: expected one per surface", given, d_.iso_sigmas.size());
+        const bool open = d_.iso_values.empty() && d_.iso_sigmas.empty() && !all_have_iso && d_.transfer.empty() &&
+                          d_.transfer_preset.empty();
         if (open && given != 1 && !is_builtin(d_.volume.path))
             add("materials", "{} of them, but no iso_values: expected iso_values, or a preset with one in each", given);
     }
@@ -114,10 +127,10 @@ class Checker {
     void check_transfer() {
         if (!d_.transfer_preset.empty()) {
             const auto preset = preset_at("transfer_preset", d_.transfer_preset);
-            if (preset && preset->content.transfer.empty())
-                add("transfer_preset",
-                    "\"{}\" is a material; expected a transfer function (materials[].preset takes it)",
-                    d_.transfer_preset);
+            if (preset && !preset->is_transfer())
+                add("transfer_preset", "\"{}\" is a {}; expected a transfer function", d_.transfer_preset,
+                    preset->kind == PresetKind::Look ? "look (--look takes it)"
+                                                     : "material (materials[].preset takes it)");
             if (!d_.transfer.empty())
                 add("transfer_preset", "is given together with [[transfer]]; expected one of them");
         }

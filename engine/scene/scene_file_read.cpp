@@ -17,8 +17,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a preset may say.
-constexpr std::array<std::string_view, 4> kPresetKeys{"about", "iso_values", "materials", "transfer"};
+/// What a preset may say; of [volume] only whether it is a segmentation.
+constexpr std::array<std::string_view, 11> kPresetKeys{"about",      "iso_values", "iso_sigmas", "materials",
+                                                       "transfer",   "ambient",    "lit",        "lights",
+                                                       "background", "effects",    "volume"};
+constexpr std::string_view kPresetVolumeKey = "volume.labels";
 
 using Problem = SceneTableProblem;
 
@@ -78,8 +81,9 @@ class Reader {
                    std::size_t line) {
         lines_[concrete] = line;
         const std::string top = generic.substr(0, generic.find_first_of(".["));
-        if (preset_ && std::find(kPresetKeys.begin(), kPresetKeys.end(), top) == kPresetKeys.end() &&
-            (groups_.contains(top) || find_key(top)))
+        const bool for_presets = std::ranges::count(kPresetKeys, std::string_view(top)) > 0 &&
+                                 (top != "volume" || generic == top || generic == kPresetVolumeKey);
+        if (preset_ && !for_presets && (groups_.contains(top) || find_key(top)))
             return add_problem(line, concrete,
                                fmt::format("is not for presets; they have {}", fmt::join(kPresetKeys, ", ")));
         if (const SceneTable* table = find_table(generic)) return read_group(*table, node, concrete, line);

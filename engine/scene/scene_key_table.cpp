@@ -113,6 +113,10 @@ void add_top(Table& t) {
            .help = "Values of the surfaces, ascending, at most 15; may be left out with a transfer function",
            .absent = "those of the materials' presets, a builtin scene's own, or the strongest that `edgesplat info` "
                      "suggests"});
+    t.add("iso_sigmas", MEMBER(iso_sigmas),
+          {.unit = "standard deviations",
+           .help = "In place of iso_values: how far above the mean of all samples, ascending (electron densities)",
+           .absent = "none"});
     t.add("transfer_preset", MEMBER(transfer_preset),
           {.help = "A transfer function by name (`edgesplat scene presets`)", .absent = "none"});
     t.add("ambient", MEMBER(ambient), {.help = "Light from everywhere", .range = kFromZero});
@@ -141,6 +145,9 @@ void add_volume(Table& t) {
           {.unit = "mm", .help = "Voxel spacing along i, j, k", .range = kAboveZero, .absent = "the file's"});
     t.add("volume.threshold", MEMBER(volume.threshold),
           {.unit = "the volume's", .help = "First make it binary: 1 from this value up, else 0", .absent = "none"});
+    t.add("volume.labels", MEMBER(volume.labels),
+          {.help = "Whether samples are numbers of things, each drawn in a colour of its own",
+           .absent = "recognised, where the scene leaves open what is to be seen"});
     t.add("volume.box_filter", MEMBER(volume.box_filter), {.help = "Then take the mean over 3x3x3 voxels"});
     t.add("volume.crop_low", MEMBER(volume.crop_low),
           {.unit = "voxels", .help = "Then keep only voxels from here", .range = {0, 65535}, .absent = "the first"});
@@ -245,9 +252,10 @@ void add_effects(Table& t) {
 void add_camera(Table& t) {
     std::vector<std::string> views(view_names().begin(), view_names().end());
     t.add("camera.view", MEMBER(camera.view),
-          {.help = "A camera by name, which shows the whole volume; close: near the first surface",
+          {.help = "A camera by name, which shows all that the scene shows of the volume; close: near a surface",
            .choices = views,
-           .absent = "front, where neither eye nor direction is given"});
+           .absent = "where neither eye nor direction is given: front of patients and builtin volumes, else the view "
+                     "along an axis that tells most"});
     t.add("camera.eye", MEMBER(camera.eye),
           {.unit = "world mm", .help = "Where the eye is", .absent = "such that all is seen"});
     t.add("camera.target", MEMBER(camera.target),

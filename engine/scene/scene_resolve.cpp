@@ -1,6 +1,7 @@
 // What a scene leaves open is chosen from the volume.
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 
 #include "engine/error.h"
@@ -10,12 +11,15 @@
 #include "engine/scene/views.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/labels.h"
+#include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
 namespace {
 
 constexpr double kOpaquePerVoxel = 8;          ///< default extinction of the highest material
 constexpr double kTranslucentPerVoxel = 0.15;  ///< and of those below it
+constexpr double kLabelSurface = 0.5;          ///< between nothing and any thing of a segmentation
 
 /// Default colours, lowest iso-value first; linear light.
 constexpr std::array<glm::dvec3, 6> kPalette{{{1.0, 0.85, 0.75},
@@ -35,6 +39,50 @@ std::vector<double> chosen_iso_values(const SceneDocument& document, const Volum
     if (suggestions.empty())
         fail("{}: every voxel has the value {}, so there is no surface to show", volume.name, volume.min_value);
     return {suggestions.front().value};
+}
+
+/// So many standard deviations above the mean.
+std::vector<double> iso_values_of_sigmas(const std::vector<double>& sigmas, const Volume& volume) {
+    if (volume.packed)
+        return iso_values_of_sigmas(sigmas,
+                                    load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt)));
+    double sum = 0, squares = 0;
+    for (const float value : volume.values)
+        sum += static_cast<double>(value);
+    const double mean = sum / static_cast<double>(volume.values.size());
+    for (const float value : volume.values)
+        squares += (static_cast<double>(value) - mean) * (static_cast<double>(value) - mean);
+    const double deviation = std::sqrt(squares / static_cast<double>(volume.values.size()));
+    std::vector<double> values;
+    for (const double sigma : sigmas)
+        values.push_back(mean + sigma * deviation);
+    return values;
+}
+
+/// A colour for each number that a thing may have in a volume from drawn_labels.
+std::vector<TransferPoint> label_colors(const Volume& volume) {
+    const double extinction = default_extinction(true, volume.geometry);
+    const auto most = std::lround((static_cast<double>(volume.max_value) - 1) / kLabelStep);
+    // The surface is all things' together: below it is nothing, whatever it is found between.
+    std::vector<TransferPoint> points{{kLabelSurface - kLabelStep, default_label_color(1), 0},
+                                      {kLabelSurface, default_label_color(1), extinction}};
+    for (long label = 1; label <= most; ++label)
+        points.push_back({1 + kLabelStep * static_cast<double>(label),
+                          default_label_color(static_cast<std::size_t>(label)), extinction});
+    return points;
+}
+
+/// The view where none is asked for. Front is front of a patient, unless it sees a slab from its narrow side.
+std::string_view view_by_itself(const ViewRequest& request) {
+    const Volume& volume = *request.volume;
+    if (is_builtin(volume.name)) return "front";
+    if (!volume.in_patient) return telling_view(request);
+    const VolumeGeometry& geometry = volume.geometry;
+    glm::dvec3 size(0);
+    for (int axis = 0; axis < 3; ++axis)
+        size += glm::abs(geometry.index_to_world_axes[axis]) * static_cast<double>(geometry.dims[axis]);
+    constexpr double kSlab = 0.25;
+    return size.z < kSlab * std::min(size.x, size.y) ? "top" : "front";
 }
 
 /// The iso-values that all materials' presets bring; empty where one of them has none.
@@ -71,7 +119,7 @@ Material material_of(const MaterialChoice& choice, const Material& usual) {
     };
     if (!choice.preset.empty()) {
         const ScenePreset preset = scene_preset(choice.preset);
-        if (preset.content.materials.size() != 1) fail("preset '{}' is a transfer function, no material", preset.name);
+        if (preset.kind != PresetKind::Material) fail("preset '{}' is no material", preset.name);
         apply(preset.content.materials.front());
     }
     apply(choice);
@@ -92,6 +140,20 @@ void add_planes(const ClipBox& box, std::vector<Plane>& planes) {
 
 glm::dvec3 default_color(std::size_t place) {
     return kPalette[place % kPalette.size()];
+}
+
+glm::dvec3 default_label_color(std::size_t label) {
+    // Hues a golden ratio of the circle apart, so that neighbouring numbers are told apart; every other one is paler.
+    constexpr double kGolden = 0.6180339887498949;
+    const double turn = std::fmod(0.08 + kGolden * static_cast<double>(label - 1), 1.0);
+    const double pale = label % 2 == 0 ? 0.45 : 0.12, bright = label % 3 == 0 ? 0.6 : 0.85;
+    glm::dvec3 color;
+    for (int channel = 0; channel < 3; ++channel) {
+        const double around = std::abs(std::fmod(turn + (3 - channel) / 3.0, 1.0) * 6 - 3);
+        const double pure = std::clamp(around - 1, 0.0, 1.0);
+        color[channel] = bright * (pale + (1 - pale) * pure);
+    }
+    return color;
 }
 
 double default_extinction(bool highest, const VolumeGeometry& geometry) {
@@ -120,7 +182,12 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
         scene.transfer = preset.content.transfer;
         if (iso.empty()) iso = preset.content.iso_values;
     }
+    if (iso.empty() && !document.iso_sigmas.empty()) iso = iso_values_of_sigmas(document.iso_sigmas, volume);
     if (iso.empty()) iso = preset_iso_values(document.materials);
+    if (iso.empty() && scene.transfer.empty() && document.volume.labels.value_or(false)) {
+        iso = {kLabelSurface};
+        if (document.materials.empty()) scene.transfer = label_colors(volume);
+    }
     if (iso.empty() && scene.transfer.empty()) iso = chosen_iso_values(document, volume);
     check_iso_values(iso, volume);
     if (!document.materials.empty() && document.materials.size() != iso.size())
@@ -153,7 +220,7 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
 Camera resolve_camera(const SceneDocument& document, const Volume& volume, const Scene& scene) {
     const CameraChoice& choice = document.camera;
     const VolumeGeometry& geometry = volume.geometry;
-    const ViewRequest request{&volume, &scene, choice.fov, document.output.size.x, document.output.size.y};
+    const ViewRequest request{&volume, &scene, choice.fov, document.output.size.x, document.output.size.y, true};
     const auto point = [&](const glm::dvec3& p) { return choice.voxel ? geometry.to_world(p) : p; };
     const auto along = [&](const glm::dvec3& v) { return choice.voxel ? volume_axes(geometry) * v : v; };
     for (const auto& [name, vector] : {std::pair{"direction", choice.direction}, {"up", choice.up}})
@@ -171,7 +238,7 @@ Camera resolve_camera(const SceneDocument& document, const Volume& volume, const
         return {eye, direction, up, choice.fov};
     }
     if (choice.direction) return framing_camera(along(*choice.direction), up, request);
-    Camera camera = named_view(choice.view.empty() ? "front" : choice.view, request);
+    Camera camera = named_view(choice.view.empty() ? view_by_itself(request) : choice.view, request);
     if (choice.up) camera.up = up;
     return camera;
 }
@@ -218,6 +285,7 @@ SceneDocument resolved(const SceneDocument& document, const Volume& volume, cons
     SceneDocument result = document;
     result.volume.checksum = fmt::format("{:016x}", volume.checksum);
     write_out_materials(result, scene);
+    result.iso_sigmas.clear();
     result.transfer = scene.transfer;
     result.transfer_preset.clear();
     result.ambient = scene.ambient;

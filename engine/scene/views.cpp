@@ -3,9 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/gtc/constants.hpp>
+#include <limits>
 #include <optional>
+#include <vector>
 
 #include "engine/error.h"
+#include "engine/scene/clip_planes.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
@@ -13,6 +18,7 @@ namespace {
 
 constexpr double kMargin = 1.04;             ///< room around the bounding box
 constexpr double kClosePixelsPerVoxel = 24;  ///< of the `close` view
+constexpr double kClearlyMore = 1.15;        ///< times what front tells makes another view the better one
 
 struct NamedDirection {
     std::string_view name;
@@ -36,27 +42,175 @@ constexpr auto names_of_views() {
 }
 constexpr auto kNames = names_of_views();
 
-/// Distance along the central ray of the camera at which a material that is not transparent begins.
-std::optional<double> first_surface(const Camera& camera, const ViewRequest& request) {
+bool shows(const Scene& scene, double value) {
+    if (!scene.transfer.empty()) return transfer_at(scene.transfer, value).extinction > 0;
+    const auto above = std::ranges::upper_bound(scene.iso_values, value);
+    return scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())].extinction > 0;
+}
+
+/// Points (index space of `volume`) whose hull is that of what is seen: in each row the first and the last cube of
+/// eight voxels that are, so that single noisy ones do not count. Empty where no such cube is.
+std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    const IndexClip clip = index_clip(scene.effects.clip, volume.geometry);
+    const auto seen = [&](int x, int y, int z) {
+        for (int corner = 0; corner < 8; ++corner)
+            if (!shows(scene,
+                       static_cast<double>(volume.at(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2)))))
+                return false;
+        return clip.empty() || !clip.cuts_away(glm::dvec3(x, y, z) + 0.5);
+    };
+    std::vector<glm::dvec3> points;
+    for (int z = 0; z + 1 < dims.z; ++z)
+        for (int y = 0; y + 1 < dims.y; ++y) {
+            int first = 0, last = dims.x - 2;
+            while (first <= last && !seen(first, y, z))
+                ++first;
+            while (last > first && !seen(last, y, z))
+                --last;
+            if (first > last) continue;
+            for (int corner = 0; corner < 4; ++corner) {
+                const double up = (corner & 1) == 0 ? -0.5 : 1.5, far = (corner & 2) == 0 ? -0.5 : 1.5;
+                points.emplace_back(first - 0.5, y + up, z + far);
+                points.emplace_back(last + 1.5, y + up, z + far);
+            }
+        }
+    return points;
+}
+
+/// What must be in the picture, world: the volume's corners, or what is seen of it.
+std::vector<glm::dvec3> framed_points(const ViewRequest& request) {
+    const Volume& volume = *request.volume;
+    std::vector<glm::dvec3> points;
+    if (request.fill && request.scene) {
+        const Volume* looked_at = &volume;
+        Volume level;
+        if (volume.packed) {
+            level = load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt));
+            looked_at = &level;
+        }
+        points = seen_points(*looked_at, *request.scene);
+        for (glm::dvec3& point : points)
+            point = looked_at->geometry.to_world(point);
+    }
+    for (int corner = 0; points.size() < 8 && corner < 8; ++corner) {
+        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
+        points.push_back(volume.geometry.to_world(side * glm::dvec3(volume.geometry.dims) - 0.5));
+    }
+    return points;
+}
+
+/// Where a ray first meets matter.
+struct Meeting {
+    double distance = 0;   ///< mm
+    glm::dvec3 normal{0};  ///< of the surface, unit, towards the eye; world
+};
+
+std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& direction, const ViewRequest& request) {
     const Volume& volume = *request.volume;
     const VolumeGeometry& geometry = volume.geometry;
     const glm::dvec3 spacing = geometry.spacing();
     const double step = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    const glm::dvec3 forward = glm::normalize(camera.direction);
-    const double end = 2 * glm::length(geometry.center() - camera.eye);
+    const double end = 2 * glm::length(geometry.center() - eye);
     const auto count = static_cast<std::int64_t>(end / step);
+    const IndexClip clip = index_clip(request.scene->effects.clip, geometry);
+    const glm::ivec3 last = geometry.dims - 1;
     for (std::int64_t i = 0; i <= count; ++i) {
         const double t = static_cast<double>(i) * step;
-        const glm::ivec3 index(glm::round(geometry.to_index(camera.eye + t * forward)));
-        if (glm::any(glm::lessThan(index, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(index, geometry.dims)))
-            continue;
-        const auto& isos = request.scene->iso_values;
-        const double value = value_at(volume, index);
-        const auto material =
-            static_cast<std::size_t>(std::upper_bound(isos.begin(), isos.end(), value) - isos.begin());
-        if (material < request.scene->materials.size() && request.scene->materials[material].extinction > 0) return t;
+        const glm::dvec3 place = geometry.to_index(eye + t * direction);
+        const glm::ivec3 index(glm::round(place));
+        if (glm::any(glm::lessThan(index, glm::ivec3(0))) || glm::any(glm::greaterThan(index, last))) continue;
+        if (!shows(*request.scene, static_cast<double>(value_at(volume, index))) || clip.cuts_away(place)) continue;
+        glm::dvec3 gradient(0);
+        for (int axis = 0; axis < 3; ++axis) {
+            glm::ivec3 up = index, down = index;
+            up[axis] = std::min(index[axis] + 1, last[axis]);
+            down[axis] = std::max(index[axis] - 1, 0);
+            gradient[axis] = static_cast<double>(value_at(volume, up) - value_at(volume, down));
+        }
+        glm::dvec3 normal = glm::transpose(glm::inverse(geometry.index_to_world_axes)) * gradient;
+        const double length = glm::length(normal);
+        // Matter that the volume's border cuts has none of its own.
+        normal = length > 0 ? normal / length : -direction;
+        return Meeting{t, glm::dot(normal, direction) > 0 ? -normal : normal};
     }
     return std::nullopt;
+}
+
+/// The point that `close` looks at: on the central ray where it meets a surface head on, else on the ray nearest to it
+/// that does. Nothing where no ray meets any.
+std::optional<glm::dvec3> point_to_look_at(const Camera& camera, const ViewRequest& request) {
+    constexpr double kHeadOn = 0.5;  // cosine
+    constexpr int kRings = 12, kAround = 16;
+    const CameraFrame frame = camera_frame(camera);
+    std::optional<glm::dvec3> grazed;
+    for (int ring = 0; ring <= kRings; ++ring)
+        for (int k = 0; k < (ring == 0 ? 1 : kAround); ++k) {
+            const double angle = 2 * glm::pi<double>() * k / kAround;
+            const double radius = 0.9 * frame.tan_half_y * ring / kRings;
+            const glm::dvec3 direction =
+                glm::normalize(frame.forward + radius * (std::cos(angle) * frame.right + std::sin(angle) * frame.up));
+            const auto met = first_surface(camera.eye, direction, request);
+            if (!met) continue;
+            const glm::dvec3 point = camera.eye + met->distance * direction;
+            if (-glm::dot(met->normal, direction) >= kHeadOn) return point;
+            if (!grazed) grazed = point;
+        }
+    return grazed;
+}
+
+/// How much a picture tells of shape: the entropy of the directions that surfaces face in it, by share of the picture.
+/// A wall, however near, tells nothing; a slab from its narrow side is small.
+double told_by(const Camera& camera, const ViewRequest& request) {
+    constexpr int kRays = 40, kBins = 6;  // along a side of the picture; of directions
+    const CameraFrame frame = camera_frame(camera);
+    const double aspect = static_cast<double>(request.width) / request.height;
+    std::array<double, kBins * kBins> faced{};
+    double met = 0;
+    const auto place = [](int i, int count) { return 2 * (i + 0.5) / count - 1; };
+    const auto bin = [](double cosine) { return std::clamp(static_cast<int>((cosine + 1) / 2 * kBins), 0, kBins - 1); };
+    for (int y = 0; y < kRays; ++y)
+        for (int x = 0; x < kRays; ++x) {
+            const glm::dvec3 direction =
+                glm::normalize(frame.forward + place(x, kRays) * frame.tan_half_y * aspect * frame.right +
+                               place(y, kRays) * frame.tan_half_y * frame.up);
+            const auto found = first_surface(camera.eye, direction, request);
+            if (!found) continue;
+            const int column = bin(glm::dot(found->normal, frame.right)), row = bin(glm::dot(found->normal, frame.up));
+            ++faced[static_cast<std::size_t>(row * kBins + column)];
+            ++met;
+        }
+    double entropy = 0;
+    for (const double count : faced)
+        if (count > 0) entropy -= count / met * std::log(count / met);
+    return entropy * met / (kRays * kRays);
+}
+
+Camera camera_around(const std::vector<glm::dvec3>& points, const glm::dvec3& direction, const glm::dvec3& up,
+                     const ViewRequest& request) {
+    const glm::dvec3 center = request.volume->geometry.center();
+    Camera camera{center, direction, up, request.fov_y};
+    const CameraFrame frame = camera_frame(camera);
+    const double tan_y = frame.tan_half_y / kMargin;
+    const double tan_x = tan_y * request.width / request.height;
+    const double infinity = std::numeric_limits<double>::infinity();
+    // How far out the picture's sides must lie where they pass the centre, so that every point is between them.
+    double right = -infinity, left = -infinity, top = -infinity, bottom = -infinity;
+    for (const glm::dvec3& point : points) {
+        const glm::dvec3 p = point - center;
+        const double x = glm::dot(p, frame.right), y = glm::dot(p, frame.up), z = glm::dot(p, frame.forward);
+        right = std::max(right, x - z * tan_x);
+        left = std::max(left, -x - z * tan_x);
+        top = std::max(top, y - z * tan_y);
+        bottom = std::max(bottom, -y - z * tan_y);
+    }
+    if (request.fill) {
+        const double back = std::max((right + left) / tan_x, (top + bottom) / tan_y) / 2;
+        camera.eye = center + (right - left) / 2 * frame.right + (top - bottom) / 2 * frame.up - back * frame.forward;
+    } else {
+        camera.eye = center - std::max(std::max(right, left) / tan_x, std::max(top, bottom) / tan_y) * frame.forward;
+    }
+    return camera;
 }
 
 }  // namespace
@@ -71,22 +225,25 @@ glm::dmat3 volume_axes(const VolumeGeometry& geometry) {
 }
 
 Camera framing_camera(const glm::dvec3& direction, const glm::dvec3& up, const ViewRequest& request) {
-    const VolumeGeometry& geometry = request.volume->geometry;
-    const glm::dvec3 center = geometry.center();
-    Camera camera{center, direction, up, request.fov_y};
-    const CameraFrame frame = camera_frame(camera);
-    const double tan_y = frame.tan_half_y / kMargin;
-    const double tan_x = tan_y * request.width / request.height;
-    double back = 0;  // how far behind the centre the eye must be for every corner of the box to be seen
-    for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 side(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
-        const glm::dvec3 p = geometry.to_world(side * glm::dvec3(geometry.dims) - 0.5) - center;
-        const double spread =
-            std::max(std::abs(glm::dot(p, frame.right)) / tan_x, std::abs(glm::dot(p, frame.up)) / tan_y);
-        back = std::max(back, spread - glm::dot(p, frame.forward));
+    return camera_around(framed_points(request), direction, up, request);
+}
+
+std::string_view telling_view(const ViewRequest& request) {
+    if (request.volume->packed) return "front";
+    const std::vector<glm::dvec3> points = framed_points(request);
+    const auto worth = [&](const NamedDirection& view) {
+        return told_by(camera_around(points, view.direction, view.up, request), request);
+    };
+    const NamedDirection* best = kViews.data();
+    double most = kClearlyMore * worth(*best);
+    for (const NamedDirection& view : kViews) {
+        const double told = &view == kViews.data() || view.direction[0] * view.direction[1] != 0 ? 0 : worth(view);
+        if (told > most) {
+            most = told;
+            best = &view;
+        }
     }
-    camera.eye = center - back * frame.forward;
-    return camera;
+    return best->name;
 }
 
 Camera named_view(std::string_view name, const ViewRequest& request) {
@@ -100,9 +257,8 @@ Camera named_view(std::string_view name, const ViewRequest& request) {
     const double voxel = std::min({spacing.x, spacing.y, spacing.z});
     const double tan_y = std::tan(glm::radians(request.fov_y) / 2);
     const double near = voxel * request.height / (2 * tan_y * kClosePixelsPerVoxel);
-    const double surface =
-        first_surface(camera, request).value_or(glm::length(request.volume->geometry.center() - camera.eye));
-    camera.eye += (surface - near) * glm::normalize(camera.direction);
+    const glm::dvec3 point = point_to_look_at(camera, request).value_or(request.volume->geometry.center());
+    camera.eye = point - near * glm::normalize(camera.direction);
     return camera;
 }
 

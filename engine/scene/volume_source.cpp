@@ -6,6 +6,7 @@
 #include "engine/scene/scene_document.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
 
 namespace edgesplat {
@@ -67,6 +68,7 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
     if (source.threshold) volume = threshold(volume, *source.threshold);
+    if (source.labels.value_or(false)) volume = drawn_labels(volume);
     if (source.box_filter) volume = box_filter(volume);
     if (source.crop_low || source.crop_high)
         volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
@@ -77,6 +79,21 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
         fail("{}: its samples have the checksum {}, but the scene was made for {} (volume.checksum)", volume.name,
              checksum, source.checksum);
     return volume;
+}
+
+void recognise_labels(SceneDocument& document, Volume& volume) {
+    constexpr std::size_t kFewest = 3;  // a mask has one surface as it is
+    const VolumeSource& source = document.volume;
+    const bool open = document.iso_values.empty() && document.iso_sigmas.empty() && document.materials.empty() &&
+                      document.transfer.empty() && document.transfer_preset.empty() && !source.threshold &&
+                      !source.box_filter && !source.labels && !document.quality.max_error;
+    const bool splats = document.output.renderer == RendererKind::Splat && !document.output.compare_raycast;
+    if (!open || !splats || volume.packed || is_builtin(volume.name)) return;
+    const std::size_t count = labels_of(volume).size();
+    if (count < kFewest || count > kMostDrawnLabels + 1) return;
+    volume = drawn_labels(volume);
+    document.volume.labels = true;
+    if (!document.volume.checksum.empty()) document.volume.checksum = fmt::format("{:016x}", volume.checksum);
 }
 
 }  // namespace edgesplat

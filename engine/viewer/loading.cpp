@@ -17,7 +17,9 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
         out.document.volume.path = path;
         out.folders = volume_folders({});
     }
-    out.volume = std::make_shared<const Volume>(load_source(out.document.volume, out.folders, progress));
+    Volume volume = load_source(out.document.volume, out.folders, progress);
+    recognise_labels(out.document, volume);
+    out.volume = std::make_shared<const Volume>(std::move(volume));
     return out;
 }
 

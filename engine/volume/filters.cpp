@@ -25,63 +25,6 @@ Volume like(const Volume& volume) {
 
 using detail::bin_of;
 
-// Gradient magnitude per mm summed over the voxels of each value bin, and how many they were. Axes of one voxel and
-// oblique axes are fine: the differences are taken per voxel and divided by the length of the step.
-struct GradientByValue {
-    std::vector<double> sum;
-    std::vector<std::size_t> count;
-};
-
-GradientByValue gradients_by_value(const Volume& volume, std::size_t bins) {
-    const auto& dims = volume.geometry.dims;
-    const auto spacing = volume.geometry.spacing();
-    const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
-    const double scale = static_cast<double>(bins) / range;
-    GradientByValue result{std::vector<double>(bins, 0.0), std::vector<std::size_t>(bins, 0)};
-    const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y) {
-            const float* line = volume.values.data() + z * slice + y * row;
-            const std::ptrdiff_t up = y + 1 < dims.y ? row : 0, down = y > 0 ? row : 0;
-            const std::ptrdiff_t far = z + 1 < dims.z ? slice : 0, near = z > 0 ? slice : 0;
-            const float by_y =
-                up + down > 0
-                    ? static_cast<float>(static_cast<double>(row) / static_cast<double>(up + down) / spacing.y)
-                    : 0.0F;
-            const float by_z =
-                far + near > 0
-                    ? static_cast<float>(static_cast<double>(slice) / static_cast<double>(far + near) / spacing.z)
-                    : 0.0F;
-            for (int x = 0; x < dims.x; ++x) {
-                const int right = x + 1 < dims.x ? 1 : 0, left = x > 0 ? 1 : 0;
-                const float by_x = right + left > 0 ? static_cast<float>(1.0 / (right + left) / spacing.x) : 0.0F;
-                const float* here = line + x;
-                const float gx = (here[right] - here[-left]) * by_x;
-                const float gy = (here[up] - here[-down]) * by_y;
-                const float gz = (here[far] - here[-near]) * by_z;
-                const auto bin = bin_of(*here, low, scale, bins);
-                result.sum[bin] += static_cast<double>(std::sqrt(gx * gx + gy * gy + gz * gz));
-                ++result.count[bin];
-            }
-        }
-    return result;
-}
-
-// Few distinct values: masks and label volumes. Their surfaces lie halfway between neighbouring values.
-std::vector<IsoSuggestion> between_values(const std::vector<std::size_t>& counts, double low, double width) {
-    std::vector<IsoSuggestion> result;
-    std::size_t last = counts.size();
-    for (std::size_t bin = 0; bin < counts.size(); ++bin) {
-        if (counts[bin] == 0) continue;
-        if (last < counts.size()) {
-            const double middle = (static_cast<double>(last) + static_cast<double>(bin) + 1) / 2;
-            result.push_back({low + middle * width, 1.0 / static_cast<double>(result.size() + 1)});
-        }
-        last = bin;
-    }
-    return result;
-}
-
 }  // namespace
 
 Volume box_filter(const Volume& volume) {
@@ -206,60 +149,6 @@ Histogram histogram(const Volume& volume, int bins) {
     }
     for (const float value : volume.values)
         ++result.counts[bin_of(value, result.low, scale, result.counts.size())];
-    return result;
-}
-
-std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
-    if (volume.packed)
-        return suggest_iso_values(load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt)), count);
-    const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
-    if (!(range > 0) || count < 1) return {};
-    constexpr std::size_t kBins = 256;
-    const double width = range / kBins;
-    const auto gradients = gradients_by_value(volume, kBins);
-    const auto occupied =
-        std::count_if(gradients.count.begin(), gradients.count.end(), [](std::size_t n) { return n > 0; });
-    std::vector<IsoSuggestion> result;
-    if (occupied <= 40) {
-        result = between_values(gradients.count, low, width);
-    } else {
-        // Mean over a window of 9 bins, so that a handful of odd voxels makes no peak.
-        constexpr std::ptrdiff_t kHalfWindow = 4;
-        std::vector<double> mean(kBins, 0.0);
-        const auto enough = std::max<std::size_t>(16, volume.values.size() / 20000);
-        for (std::ptrdiff_t bin = 0; bin < std::ptrdiff_t{kBins}; ++bin) {
-            double sum = 0;
-            std::size_t n = 0;
-            for (auto i = std::max<std::ptrdiff_t>(0, bin - kHalfWindow);
-                 i <= std::min<std::ptrdiff_t>(kBins - 1, bin + kHalfWindow); ++i) {
-                sum += gradients.sum[static_cast<std::size_t>(i)];
-                n += gradients.count[static_cast<std::size_t>(i)];
-            }
-            if (n >= enough) mean[static_cast<std::size_t>(bin)] = sum / static_cast<double>(n);
-        }
-        constexpr std::ptrdiff_t kApart = 10;
-        for (std::ptrdiff_t bin = 1; bin + 1 < std::ptrdiff_t{kBins}; ++bin) {
-            const double here = mean[static_cast<std::size_t>(bin)];
-            bool peak = here > 0;
-            for (auto i = std::max<std::ptrdiff_t>(0, bin - kApart);
-                 peak && i <= std::min<std::ptrdiff_t>(kBins - 1, bin + kApart); ++i) {
-                const double other = mean[static_cast<std::size_t>(i)];
-                peak = i < bin ? other < here : other <= here;
-            }
-            // Rare bright voxels have the steepest gradients, noise in air has the most voxels: the mean times the root
-            // of the count lets neither win.
-            if (peak) {
-                const double voxels = static_cast<double>(gradients.count[static_cast<std::size_t>(bin)]);
-                result.push_back({low + (static_cast<double>(bin) + 0.5) * width, here * std::sqrt(voxels)});
-            }
-        }
-        std::sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.strength > b.strength; });
-        const double strongest = result.empty() ? 1 : result.front().strength;
-        std::erase_if(result, [&](const auto& suggestion) { return !(suggestion.strength > 1e-3 * strongest); });
-        for (auto& suggestion : result)
-            suggestion.strength /= strongest;
-    }
-    if (result.size() > static_cast<std::size_t>(count)) result.resize(static_cast<std::size_t>(count));
     return result;
 }
 

@@ -51,13 +51,14 @@ Histogram histogram(const Volume& volume, int bins);
 
 struct IsoSuggestion {
     double value = 0;     ///< in the volume's unit
-    double strength = 0;  ///< mean gradient magnitude x root of the number of voxels, relative to the strongest, (0, 1]
+    double strength = 0;  ///< how much of it is seen, how steep and how smooth it is, relative to the strongest, (0, 1]
 };
 
-/// Values at which surfaces are likely: peaks of the mean gradient magnitude over the value axis (Kindlmann and Durkin
-/// 1998, in their simplest form); halfway between neighbouring values where there are few (masks, labels).
-/// Strongest first, at most `count`; empty for a constant volume. A packed volume's are those of its finest level of at
-/// most `kMaxVoxelsLookedAt` voxels.
+/// Values at which surfaces are worth looking at: of the surfaces that rays along the axes meet first from outside, the
+/// share of rays that meet one, times its mean gradient magnitude, times the sixth power of how well the gradients on
+/// both sides of it agree in direction; peaks of that over the value axis. What pads a measured cylinder has no
+/// surface. Halfway between neighbouring values where there are few (masks, labels). Strongest first, at most `count`;
+/// empty for a constant volume. A packed volume's are those of its finest level of at most `kMaxVoxelsLookedAt` voxels.
 std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count = 4);
 
 }  // namespace edgesplat

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "engine/error.h"
+
 namespace edgesplat {
 namespace {
 
@@ -48,6 +50,50 @@ std::vector<float> labels_of(const Volume& volume) {
             }
     if (static_cast<double>(between) > kMostBetween * static_cast<double>(apart)) return {};
     return values;
+}
+
+namespace {
+
+/// The label of most voxels of the volume's six sides.
+std::size_t label_around(const Volume& volume, const std::vector<float>& labels) {
+    std::vector<std::size_t> count(labels.size(), 0);
+    const glm::ivec3 dims = volume.geometry.dims;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y) {
+            const bool side = z == 0 || z + 1 == dims.z || y == 0 || y + 1 == dims.y;
+            for (int x = 0; x < dims.x; x += side ? 1 : std::max(dims.x - 1, 1)) {
+                const auto at = std::ranges::lower_bound(labels, volume.at(x, y, z));
+                ++count[static_cast<std::size_t>(at - labels.begin())];
+            }
+        }
+    return static_cast<std::size_t>(std::ranges::max_element(count) - count.begin());
+}
+
+}  // namespace
+
+Volume drawn_labels(const Volume& volume) {
+    const std::vector<float> labels = labels_of(volume);
+    if (labels.empty() || labels.size() > kMostDrawnLabels + 1)
+        fail("{}: volume.labels: expected a segmentation of 2 to {} whole numbers without transitions", volume.name,
+             kMostDrawnLabels + 1);
+    const std::size_t around = label_around(volume, labels);
+    bool numbered = true;
+    for (std::size_t i = 0; i < labels.size(); ++i)
+        numbered = numbered && (i == around || (labels[i] >= 1 && labels[i] <= float{kMostDrawnLabels}));
+    std::vector<float> drawn(labels.size(), 0.0F);
+    std::size_t rank = 0;
+    for (std::size_t i = 0; i < labels.size(); ++i) {
+        if (i == around) continue;
+        const double number = numbered ? static_cast<double>(labels[i]) : static_cast<double>(++rank);
+        drawn[i] = static_cast<float>(1 + kLabelStep * number);
+    }
+    Volume result = volume;
+    for (float& value : result.values)
+        value = drawn[static_cast<std::size_t>(std::ranges::lower_bound(labels, value) - labels.begin())];
+    result.notes.push_back(fmt::format("Drawn as 1 + {} / {}, and 0 where it is {}.", numbered ? "label" : "rank",
+                                       std::lround(1 / kLabelStep), static_cast<double>(labels[around])));
+    finish_volume(result);
+    return result;
 }
 
 }  // namespace edgesplat

@@ -92,6 +92,75 @@ TEST(SceneViews, CloseShowsAVoxelAtTwentyPixelsOrMore) {
     }
 }
 
+/// A small box in a corner of much empty space, a noisy voxel in the other.
+Volume corner_volume() {
+    Volume volume;
+    volume.geometry.dims = {60, 50, 40};
+    volume.name = "corner";
+    volume.values.assign(volume.geometry.voxel_count(), 0.0F);
+    for (int z = 2; z < 10; ++z)
+        for (int y = 3; y < 12; ++y)
+            for (int x = 40; x < 56; ++x)
+                volume.values[static_cast<std::size_t>((z * 50 + y) * 60 + x)] = 1;
+    volume.values.front() = 1;
+    volume.max_value = 1;
+    return volume;
+}
+
+TEST(SceneViews, WhatIsSeenFillsThePicture) {
+    const Volume volume = corner_volume();
+    for (const glm::ivec2 size : {glm::ivec2(512, 512), glm::ivec2(640, 200), glm::ivec2(100, 400)}) {
+        for (const std::string_view name : view_names()) {
+            if (name == "close") continue;
+            ViewRequest request{&volume, &surface_scene(), 40, size.x, size.y, true};
+            const Camera camera = named_view(name, request);
+            glm::dvec2 low(9), high(-9);
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 index = glm::mix(glm::dvec3(39.5, 2.5, 1.5), glm::dvec3(55.5, 11.5, 9.5),
+                                                  glm::dvec3(corner & 1, (corner >> 1) & 1, corner >> 2));
+                const glm::dvec2 p = project(camera, volume.geometry.to_world(index), double(size.x) / size.y);
+                low = glm::min(low, p);
+                high = glm::max(high, p);
+            }
+            EXPECT_GE(std::min(low.x, low.y), -1) << name;
+            EXPECT_LE(std::max(high.x, high.y), 1) << name;
+            EXPECT_GE(std::max(high.x - low.x, high.y - low.y), 1.7) << name << " should fill the picture";
+            EXPECT_NEAR(low.x, -high.x, 0.2) << name << " should be in the middle";
+            EXPECT_NEAR(low.y, -high.y, 0.2) << name;
+            // What is not seen counts no more than what is not asked for.
+            request.fill = false;
+            EXPECT_GT(glm::length(named_view(name, request).eye - volume.geometry.center()),
+                      glm::length(camera.eye - volume.geometry.to_world({47.5, 7, 5.5})));
+        }
+    }
+}
+
+TEST(SceneViews, CloseLooksAtASurfaceWhereTheMiddleHasNone) {
+    // A tube along the line of sight: the central ray meets nothing.
+    Volume volume;
+    volume.geometry.dims = glm::ivec3(40);
+    volume.name = "tube";
+    for (int z = 0; z < 40; ++z)
+        for (int y = 0; y < 40; ++y)
+            for (int x = 0; x < 40; ++x) {
+                const double r = glm::length(glm::dvec2(x, z) - 19.5);
+                volume.values.push_back(y > 4 && y < 35 && r > 6 && r < 15 ? 1.0F : 0.0F);
+            }
+    volume.max_value = 1;
+    const Camera camera = named_view("close", {&volume, &surface_scene(), 45, 300, 300, true});
+    const glm::dvec3 forward = glm::normalize(camera.direction);
+    const double near = 300 / (2 * std::tan(glm::radians(22.5)) * 24);
+    for (double t = 0;; t += 0.1) {
+        ASSERT_LT(t, near + 2) << "the central ray meets nothing";
+        const glm::ivec3 i(glm::round(camera.eye + t * forward));
+        if (glm::any(glm::lessThan(i, glm::ivec3(0))) || glm::any(glm::greaterThan(i, glm::ivec3(39)))) continue;
+        if (volume.at(i.x, i.y, i.z) == 0) continue;
+        EXPECT_NEAR(t, near, 1);
+        EXPECT_EQ(i.y, 5) << "met head on, not at the wall inside";
+        break;
+    }
+}
+
 TEST(SceneViews, UnknownNameListsTheNames) {
     const Volume volume = oblique_volume();
     EXPECT_THAT(

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 
+#include "engine/error.h"
 #include "engine/volume/labels.h"
 
 namespace {
@@ -46,6 +47,21 @@ TEST(Labels, AreNotWhatWasMeasured) {
         << "partial volume, in whole numbers";
     EXPECT_TRUE(labels_of(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
     EXPECT_TRUE(labels_of(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
+}
+
+TEST(Labels, AreDrawnAsNumbersAboveOne) {
+    const edgesplat::Volume drawn = edgesplat::drawn_labels(sampled(organ));
+    EXPECT_EQ(drawn.at(0, 0, 0), 0) << "what is at the border is nothing";
+    EXPECT_FLOAT_EQ(drawn.at(22, 15, 10), 1 + 3.0F / 1024);
+    EXPECT_FLOAT_EQ(drawn.at(15, 15, 10), 1 + 7.0F / 1024);
+    EXPECT_FLOAT_EQ(drawn.at(35, 1, 10), 1 + 250.0F / 1024);
+    // Numbers that cannot stand for themselves are ranks: around is 4 here.
+    const edgesplat::Volume ranked =
+        edgesplat::drawn_labels(sampled([](const glm::dvec3& p) { return organ(p) == 0 ? 4 : -10 * organ(p); }));
+    EXPECT_EQ(ranked.at(0, 0, 0), 0);
+    EXPECT_FLOAT_EQ(ranked.at(35, 1, 10), 1 + 1.0F / 1024);
+    EXPECT_FLOAT_EQ(ranked.at(22, 15, 10), 1 + 3.0F / 1024);
+    EXPECT_THROW(edgesplat::drawn_labels(sampled([](const glm::dvec3& p) { return p.x / 3; })), edgesplat::Error);
 }
 
 }  // namespace
