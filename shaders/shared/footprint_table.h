@@ -14,6 +14,9 @@ EDGESPLAT_CONSTANT uint TABLE_DISTANCES = 33u;   // layers: a set of directions 
 EDGESPLAT_CONSTANT uint TABLE_DIRECTIONS = 25u;
 EDGESPLAT_CONSTANT uint TABLE_LAYERS = 825u;
 
+// Faces bent more than this, 1/voxel, are integrated: within a kernel they leave their tangent plane by a fifth of a voxel and more.
+EDGESPLAT_CONSTANT float TABLE_BENDING = 0.15f;
+
 // A splat's layer: bits 0-9 the first of the four that are blended, 10-19 how far towards the next distance, 20-29 towards the next
 // direction.
 EDGESPLAT_CONSTANT uint TABLE_BLEND_BITS = 10u;
