@@ -10,7 +10,7 @@ namespace edgesplat::test {
 namespace {
 
 constexpr glm::ivec2 kSize{72, 64};
-constexpr std::uint32_t kPlain = 1U << 30U, kBlend = 1023;
+constexpr std::uint32_t kPlain = 1U << 31U, kIntegrated = 1U << 30U, kBlend = 1023;
 
 PassScene with_table(PassScene s) {
     s.settings.footprints = FootprintMode::Table;
@@ -48,12 +48,15 @@ TEST(SelectLayers, AsTheReferenceDoesForBothWaysOfDrawing) {
                 const bool is_plain = (got[i].x & kPlain) != 0;
                 ++(is_plain ? plain_ones : cut);
                 EXPECT_EQ(is_plain, oracle.selected[i].axis == glm::dvec3(0)) << "splat " << i;
-                const auto layer = decode_footprint_layer(got[i].x & ~kPlain, face_depth(s.scene, s.volume.geometry));
+                EXPECT_EQ((got[i].x & kIntegrated) == 0, oracle.footprints.tabulated(records[i].edge)) << "splat " << i;
+                const auto layer =
+                    decode_footprint_layer(got[i].x & ~(kPlain | kIntegrated), face_depth(s.scene, s.volume.geometry));
                 EXPECT_NEAR(layer.middle, want.middle, 1e-3) << "splat " << i;
                 EXPECT_NEAR(layer.cosine, want.cosine, 1e-3) << "splat " << i;
                 other += (layer.code & kBlend) != (want.code & kBlend) ? 1U : 0U;
                 // Along the normal any axis will do.
-                if (want.cosine < 0.99) EXPECT_LT(glm::length(axis_of(got[i]) - oracle.selected[i].axis), 2e-3) << i;
+                const double turned = glm::length(axis_of(got[i]) - oracle.selected[i].axis);
+                EXPECT_LT(want.cosine < 0.99 ? turned : 0, 2e-3) << "splat " << i;
             }
             EXPECT_GT(cut, 100U);
             EXPECT_LE(other, cut / 100) << "of " << cut;
