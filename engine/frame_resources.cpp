@@ -26,7 +26,7 @@ gpu::ImageShape footprint_table_shape() {
             .size = {static_cast<int>(shader::TABLE_WIDTH), static_cast<int>(shader::TABLE_ROWS), 1},
             .layers = static_cast<int>(shader::TABLE_LAYERS),
             .array = true,
-            .usage = Usage::eSampled | Usage::eTransferDst};
+            .usage = Usage::eSampled | Usage::eTransferDst | Usage::eTransferSrc};
 }
 
 Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : set_(device, pipelines) {

@@ -327,12 +327,13 @@ std::vector<ImageCase> golden_cases() {
     Shot hole = builtin("cube-hole", glm::ivec3(28));
     from(hole, "oblique", 35);
     cases.push_back({"cube_hole", hole});
+    Shot looked_up = torus_shot();
+    looked_up.settings.sheet_format = SheetFormat::Layers;
+    cases.push_back({"torus_from_the_table_in_layers", with(looked_up, FootprintMode::Table)});
     cases.push_back({"orbital", oblique_orbital()});
     Shot plates = builtin("plates", glm::ivec3(48));
     from(plates, "oblique", 35);
     cases.push_back({"plates", plates});
-    plates.settings.footprints = FootprintMode::Table;
-    cases.push_back({"plates_from_the_table", plates});
     Shot phantom = builtin("phantom", {48, 56, 48}, 0.6);
     from(phantom, "front", 40);
     cases.push_back({"phantom", phantom});
