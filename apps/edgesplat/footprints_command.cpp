@@ -12,6 +12,7 @@
 
 #include "apps/plots/paper_curves.h"
 #include "footprints/footprint_integral.h"
+#include "footprints/footprint_table.h"
 #include "footprints/kernel.h"
 #include "footprints/plane_face.h"
 
@@ -63,8 +64,13 @@ void report(const Options& options) {
             return FacePath(plane_face(ray, d), plane_cut(d)).footprint(nodes).integral;
         };
     };
+    const Footprint table = [](const Ray& ray, double d) {
+        const double sine = std::sqrt(std::max(1 - ray.un * ray.un, 0.0)), x = sine > 0 ? ray.pn / sine : 0;
+        return kept_footprint_table(kFaceDepth)
+            .lookup(select_footprint_layer(d, ray.un, kFaceDepth), x, std::sqrt(std::max(ray.rho2 - x * x, 0.0)));
+    };
     print_accuracy("cut at plane faces", kKernelRadius + kFaceDepth, options.samples, face(32),
-                   {plain, {"procedural", face(6)}});
+                   {plain, {"table", table}, {"procedural", face(6)}});
     print_accuracy("warped by the paper's curve", kKernelRadius, options.samples,
                    [](const Ray& ray, double d) {
                        return exact_footprint(ray, PaperEdge{d, {}});

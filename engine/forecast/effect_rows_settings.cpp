@@ -61,6 +61,19 @@ std::vector<Effect> settings_effects() {
                     .base = cut_at_faces,
                     .resources = {"B-spline coefficients"},
                     .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 2}}});
+    rows.push_back({.name = "footprint table",
+                    .help = "footprints of plane faces are looked up in layers that pass 3 selects and turns",
+                    .call = "settings.footprints = \"table\"; --footprints table",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return draws_table(drawn_settings(r)) ? "footprints come from the `table`" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.footprints = FootprintMode::Table; },
+                    .base = cut_at_faces,
+                    .resources = {"footprint table", "selected footprints"},
+                    .resized = {"prepared splats", "tile entries", "marks of tile entries"},
+                    .record = {{"footprint", 8}},
+                    .constants = {{shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS", shader::PROCEDURAL}},
+                    .frame_fields = {"footprints"}});
     rows.push_back({.name = "sliced sheets",
                     .help = "kernels are cut at the planes between sheets, so that nothing pops as the eye moves",
                     .call = "settings.sheets = \"sliced\"; --sheets sliced",

@@ -121,6 +121,15 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
     }
 }
 
+void add_table(const FrameForecast& f, std::vector<PlannedResource>& out) {
+    if (f.draws.front().plan.variant.footprints != FootprintMode::Table) return;
+    out.push_back(image("footprint table", footprint_table_shape(), "(layers, y, x) footprints", "host", "5"));
+    out.back().held = Held::Drawing;
+    out.push_back(growing(
+        buffer("selected footprints", f.splats.splats * sizeof(glm::uvec2), "(splats) layers, rotation", "3", "4, 5")));
+    out.back().held = Held::Drawing;
+}
+
 /// What of the light reaches each splat, and what that is found with.
 void add_reach(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const std::uint64_t bytes = f.splats.splats * sizeof(std::uint32_t);
@@ -251,6 +260,7 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<PlannedResource> out;
     add_volume_resources(forecast, out);
+    add_table(forecast, out);
     add_reach(forecast, out);
     std::vector<FramePlan> draws;
     for (const ForecastDraw& draw : forecast.draws)

@@ -12,6 +12,7 @@ std::uint32_t prepared_stride(const DrawVariant& variant) {
     if (variant.sliced) vectors += 1;
     if (variant.clip.keep + variant.clip.remove > 0) vectors += 2;
     if (variant.antialias) vectors += 2;
+    if (variant.footprints == FootprintMode::Table) vectors += 2;
     return vectors;
 }
 

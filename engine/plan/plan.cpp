@@ -152,6 +152,7 @@ constexpr bool is(Enum value, std::uint32_t constant) {
 static_assert(is(EdgeEstimator::Taylor, shader::TAYLOR) && is(EdgeEstimator::March, shader::MARCH));
 static_assert(is(EdgeEstimator::Cubic, shader::CUBIC) && is(FootprintMode::Isotropic, shader::ISOTROPIC));
 static_assert(is(FootprintMode::Warp2d, shader::WARP2D) && is(FootprintMode::Procedural, shader::PROCEDURAL));
+static_assert(is(FootprintMode::Table, shader::TABLE));
 static_assert(is(WarpFamily::Paper, shader::PAPER) && is(WarpFamily::Face, shader::FACE));
 
 }  // namespace

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "shaders/shared/footprint_table.h"
+
 namespace edgesplat {
 namespace {
 
@@ -19,10 +21,20 @@ gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool vol
 
 }  // namespace
 
+gpu::ImageShape footprint_table_shape() {
+    return {.format = vk::Format::eR16Sfloat,
+            .size = {static_cast<int>(shader::TABLE_WIDTH), static_cast<int>(shader::TABLE_ROWS), 1},
+            .layers = static_cast<int>(shader::TABLE_LAYERS),
+            .array = true,
+            .usage = Usage::eSampled | Usage::eTransferDst | Usage::eTransferSrc};
+}
+
 Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : set_(device, pipelines) {
     vk::SamplerCreateInfo sampler;
     sampler.setAddressModeU(vk::SamplerAddressMode::eClampToEdge).setAddressModeV(vk::SamplerAddressMode::eClampToEdge);
     nearest_ = vk::raii::Sampler(device.handle(), sampler);
+    sampler.setMinFilter(vk::Filter::eLinear).setMagFilter(vk::Filter::eLinear);
+    linear_ = vk::raii::Sampler(device.handle(), sampler);
     no_scalar_ = placeholder(device, vk::Format::eR32Sfloat, true, false, Usage::eStorage);
     no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
     no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
@@ -52,6 +64,7 @@ void Bindings::write(const VolumeResources& volume, const TargetResources& targe
     set_.put_image(shader::BIND_PREPARED, targets.prepared ? targets.prepared : no_records_);
     set_.put_image(shader::BIND_SHEETS, targets.sheets ? targets.sheets : no_array_, *nearest_);
     set_.put_image(shader::BIND_ACCUMULATED, targets.accumulated ? targets.accumulated : no_picture_, *nearest_);
+    set_.put_image(shader::BIND_TABLE, targets.footprint_table ? targets.footprint_table : no_array_, *linear_);
     const std::array texels{
         std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
         std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},

@@ -35,9 +35,12 @@ struct VolumeResources {
 /// What stands until the picture's size, the number of sheets or of splats changes. A picture whose sheets are layers
 /// has the first three, `groups` and `draws`, one that is summed tile by tile what is of tiles.
 struct TargetResources {
-    gpu::GpuImage sheets;       ///< (sheets_per_group, height, width) rgba32f; 5 -> 6
-    gpu::GpuImage depth;        ///< (sheets_per_group, height, width) d16; 5a -> 5b
-    gpu::GpuImage accumulated;  ///< (height, width) rgba32f; 6 -> 5a, 7
+    gpu::GpuImage sheets;           ///< (sheets_per_group, height, width) rgba32f; 5 -> 6
+    gpu::GpuImage depth;            ///< (sheets_per_group, height, width) d16; 5a -> 5b
+    gpu::GpuImage accumulated;      ///< (height, width) rgba32f; 6 -> 5a, 7
+    gpu::GpuImage footprint_table;  ///< (layers, y, x) r16f; host -> 5; footprints from a table only, as is
+    gpu::Buffer footprints;         ///< (splat_count) uvec2: FrameParams::footprints; 3 -> 4, 5
+    double table_depth = 0;         ///< the table's, voxels
     gpu::GpuImage prepared;   ///< rgba32f, PREPARED_ROW wide: records of a chunk's splats (prepared_splat.glsl); 4 -> 5
     gpu::Buffer batches;      ///< (splat_count / SPLAT_BATCH + 1) uvec2, mapped: FrameParams::batches; host -> 3, 4
     gpu::Buffer sheet_of;     ///< (splat_count) uint: of slots; 3 -> 4, 5
@@ -81,11 +84,14 @@ class Bindings {
 
   private:
     gpu::DescriptorSet set_;
-    vk::raii::Sampler nearest_ = nullptr;
+    vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
     gpu::GpuImage no_scalar_, no_edges_, no_mask_, no_records_, no_array_, no_picture_;
     gpu::Buffer no_block_;
     gpu::Buffer no_texels_, no_counts_, no_entries_;
 };
+
+/// The image that holds the layers of footprints.
+gpu::ImageShape footprint_table_shape();
 
 /// Size of the staging buffer that upload_image uses for such an image.
 std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_bytes);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "footprints/kernel.h"
 
@@ -136,6 +137,7 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         s.z = view.depth(x);
         s.support = {x, footprints.reach(records[i].edge)};
         SplatSupport drawn = s.support;
+        if (draws_table(settings)) std::tie(s.layer, s.axis) = footprints.select(records[i].edge, x - view.eye_index);
         s.filter = pixel_filter(view, records[i], x, footprints);
         if (s.filter.share > 0) drawn.radius = std::max(drawn.radius, s.filter.reach);
         s.box = screen_box(view, drawn);

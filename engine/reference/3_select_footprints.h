@@ -69,6 +69,8 @@ struct Selected {
     SplatSupport support;
     PixelFilter filter;
     PixelBox box;
+    FootprintLayer layer;  ///< of the table, where footprints come from there, and how it is turned
+    glm::dvec3 axis{0};
 };
 
 /// Thickness of a sheet, mm along the view axis.

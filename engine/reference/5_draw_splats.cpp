@@ -94,7 +94,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     if (footprints.cuts(edge)) {
         const FaceFootprint seen = plain ? FaceFootprint{} : footprints.at_face(edge, p, u, slice);
         z = seen.entry;
-        outward = face_sight(edge, p, u).outward(z, seen.from_behind);
+        outward = face_sight(drawn_edge(edge, settings), p, u).outward(z, seen.from_behind);
         // Both faces of a layer between two iso-values face the lower values.
         const glm::dvec3 a = glm::abs(edge.n);
         const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
@@ -148,14 +148,19 @@ double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec
     const VoxelEdge& edge = records_[splat].edge;
     const PixelFilter& filter = selected_[splat].filter;
     double own = 0;
-    if (filter.share < 1 && footprints_.cuts(edge)) {
+    Slice piece = slice.value_or(Slice{});
+    if (footprints_.cuts(edge)) {
         const double eye = glm::dot(view_.eye_index - glm::dvec3(field_.voxel(records_[splat].voxel)), u);
         const VolumePiece inside = piece_in_volume(view_, u).seen_from(eye);
-        const Slice piece = slice.value_or(Slice{});
-        own = footprints_.along_slice(edge, p, u, {std::max(piece.low, inside.low), std::min(piece.high, inside.high)});
-    } else if (filter.share < 1) {
-        own = slice ? footprints_.along_slice(edge, p, u, *slice) : footprints_.along_ray(edge, p, u);
+        piece = {std::max(piece.low, inside.low), std::min(piece.high, inside.high)};
     }
+    const double reach = footprints_.reach(edge), half = std::sqrt(std::max(reach * reach - glm::dot(p, p), 0.0));
+    if (filter.share < 1 && footprints_.tabulated(edge) && piece.low <= -half && piece.high >= half)
+        own = half > 0 ? footprints_.looked_up(selected_[splat].layer, selected_[splat].axis, p) : 0;
+    else if (filter.share < 1 && (slice || footprints_.cuts(edge)))
+        own = footprints_.along_slice(edge, p, u, piece);
+    else if (filter.share < 1)
+        own = footprints_.along_ray(edge, p, u);
     if (filter.share == 0) return own;
     // The pixel's filter lies across the view, and so its kernels keep their depths.
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);

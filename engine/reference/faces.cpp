@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "shaders/shared/footprint_table.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -382,13 +383,33 @@ dmat3 quantise_bending(const dmat3& bending) {
     return stored;
 }
 
-FaceCut cut_of(const VoxelEdge& edge, double deepest) {
+namespace {
+
+/// Frobenius.
+double norm_of(const dmat3& h) {
     double norm2 = 0;
     for (int i = 0; i < 3; ++i)
-        norm2 += glm::dot(edge.bending[i], edge.bending[i]);
+        norm2 += glm::dot(h[i], h[i]);
+    return std::sqrt(norm2);
+}
+
+}  // namespace
+
+FaceCut cut_of(const VoxelEdge& edge, double deepest) {
     const bool wall = edge.D2 < kKernelRadius + kDeepFaceDepth;
     const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
-    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), std::sqrt(norm2), thickness, deepest);
+    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), norm_of(edge.bending), thickness, deepest);
+}
+
+bool is_in_table(const VoxelEdge& edge, const Settings& settings) {
+    return draws_table(settings) && edge.D2 >= edge_reach(settings) &&
+           norm_of(edge.bending) <= static_cast<double>(shader::TABLE_BENDING);
+}
+
+VoxelEdge drawn_edge(const VoxelEdge& edge, const Settings& settings) {
+    VoxelEdge drawn = edge;
+    if (is_in_table(edge, settings)) drawn.bending = dmat3(0);
+    return drawn;
 }
 
 FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {

@@ -22,6 +22,12 @@ glm::dmat3 quantise_bending(const glm::dmat3& bending);
 /// How the edge's face cuts its kernel; the edge has one. `deepest` as in face_cut().
 FaceCut cut_of(const VoxelEdge& edge, double deepest);
 
+/// Whether the table has the edge's face: one, and bent so little that it is taken for plane.
+bool is_in_table(const VoxelEdge& edge, const Settings& settings);
+
+/// The edge as the settings draw it: in the table faces are plane.
+VoxelEdge drawn_edge(const VoxelEdge& edge, const Settings& settings);
+
 /// What the ray p + z u sees of a face; p is its point nearest to the voxel, relative to it.
 struct FaceSight {
     FaceRay ray;

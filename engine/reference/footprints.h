@@ -1,10 +1,13 @@
 // One splat's kernel, at a point and along a ray: footprints/ behind the settings' choice of warp and mode.
 #pragma once
 
+#include <utility>
+
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/scene/settings.h"
 #include "footprints/face.h"
 #include "footprints/footprint_integral.h"
+#include "footprints/footprint_table.h"
 
 namespace edgesplat::reference {
 
@@ -32,6 +35,12 @@ class Footprints {
     /// What a ray passes of it.
     FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
     FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
+
+    /// Whether the table has it: whole kernels, plain or cut at one face. Then its layers, and the axis (unit, across
+    /// the view; 0 of a plain kernel) that x lies along there, for rays along `to_voxel`.
+    bool tabulated(const VoxelEdge& edge) const;
+    std::pair<FootprintLayer, glm::dvec3> select(const VoxelEdge& edge, const glm::dvec3& to_voxel) const;
+    double looked_up(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const;
 
     /// Whether the point p + z u of a ray, as in `along_ray`, is inside the voxel's matter: in its kernel, and on the
     /// voxel's own side of its edge. (With `paper` the kernel is taken as the ball that holds it.)

@@ -142,6 +142,7 @@ struct RendererState : DeviceState, SplatSet {
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
     void provide_layers(FramePlan& plan);
+    void provide_footprints(FramePlan& plan);
     void provide_tiles(FramePlan& plan);
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);

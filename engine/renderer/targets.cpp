@@ -5,6 +5,8 @@
 #include "engine/error.h"
 #include "engine/passes/4_prepare_splats.h"
 #include "engine/renderer/state.h"
+#include "footprints/face.h"
+#include "footprints/footprint_table.h"
 
 namespace edgesplat {
 namespace {
@@ -40,6 +42,7 @@ void RendererState::need_layers(const Scene& scene, const Settings& settings) co
 
 void RendererState::provide_targets(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
+    provide_footprints(plan_in_use);
     grow(device, targets.batches, (p.splat_count / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2), Place::Host,
          "batches of splats");
     std::ranges::copy(plan_in_use.batches, targets.batches.mapped<glm::uvec2>(plan_in_use.batches.size()).begin());
@@ -70,6 +73,24 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
         provide_layers(plan_in_use);
     targets.frame.mapped<shader::FrameParams>(1)[0] = p;
     bindings.write(volume_resources, targets);
+}
+
+void RendererState::provide_footprints(FramePlan& plan_in_use) {
+    auto& p = plan_in_use.params;
+    if (plan_in_use.variant.footprints != FootprintMode::Table) {
+        targets.footprints = {};
+        targets.footprint_table = {};
+        return;
+    }
+    grow(device, targets.footprints, p.splat_count * sizeof(glm::uvec2), Place::Device, "selected footprints");
+    p.footprints = targets.footprints.address();
+    const double depth = p.face_depth > static_cast<float>(kFaceDepth) ? kDeepFaceDepth : kFaceDepth;
+    if (targets.footprint_table && targets.table_depth == depth) return;
+    targets.footprint_table = {};
+    targets.footprint_table = gpu::GpuImage(device, footprint_table_shape(), "footprint table");
+    upload_image(commands, device, targets.footprint_table, kept_footprint_table(depth).texels().data(),
+                 sizeof(std::uint16_t));
+    targets.table_depth = depth;
 }
 
 void RendererState::provide_layers(FramePlan& plan_in_use) {

@@ -61,9 +61,10 @@ std::vector<Knob> make_ladder() {
                      .matters = draws_warped});
     knobs.push_back(
         {.name = "footprints",
-         .help = "How a kernel's footprint is evaluated at an edge; warp2d is the paper's, for warp = paper",
+         .help = "How a kernel's footprint is evaluated at an edge: looked up in layers of a table, which has whole "
+                 "kernels at plane faces, or integrated; warp2d is the paper's, for warp = paper",
          .kind = KnobKind::Method,
-         .steps = {"isotropic", "procedural"},
+         .steps = {"isotropic", "table", "procedural"},
          .others = {"warp2d"},
          .get = get_name<&Settings::footprints>,
          .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },

@@ -18,14 +18,13 @@ constexpr std::array kRemoved{
     Removed{"edge-strength", "", kNoBand},
     Removed{"edge-shape", "", "faces are as curved as the surface: leave it out"},
     Removed{"normalise", "", "kernels that are cut at faces take no weights: leave it out"},
-    Removed{"table-size", "", "footprints come from no table: leave it out"},
+    Removed{"table-size", "", "the table of footprints has one size: leave it out"},
     Removed{"accumulation", "", "pictures are summed in 32 bits a channel: leave it out"},
     Removed{"sheet-format", "half", "write layers"},
     Removed{"sheet-format", "float", "write layers"},
     Removed{"warp", "edge", "write face"},
     Removed{"edges", "quadratic", "write march"},
-    Removed{"footprints", "table", "write procedural"},
-    Removed{"footprints", "table-lerp", "write procedural"},
+    Removed{"footprints", "table-lerp", "write table"},
     Removed{"renderer", "raycast-warped", "write raycast, with the filter cubic for surfaces nearer to the truth"},
 };
 

@@ -13,9 +13,9 @@ namespace edgesplat {
 
 namespace {
 
-// In the order of the enums, which is from cheapest to best.
+// In the order of the enums.
 constexpr std::array<std::string_view, 4> kEdgeEstimators{"off", "taylor", "march", "cubic"};
-constexpr std::array<std::string_view, 3> kFootprintModes{"isotropic", "warp2d", "procedural"};
+constexpr std::array<std::string_view, 4> kFootprintModes{"isotropic", "warp2d", "procedural", "table"};
 constexpr std::array<std::string_view, 2> kWarpFamilies{"paper", "face"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
 constexpr std::array<std::string_view, 2> kSheetFormats{"layers", "tiles"};
@@ -108,6 +108,10 @@ bool draws_faces(const Settings& settings) {
     return draws_warped(settings) && settings.warp == WarpFamily::Face;
 }
 
+bool draws_table(const Settings& settings) {
+    return settings.footprints == FootprintMode::Table && draws_faces(settings) && settings.sheets == SheetCut::Whole;
+}
+
 double edge_reach(const Settings& settings) {
     return kKernelRadius + (settings.warp == WarpFamily::Face ? kDeepFaceDepth : 0);
 }
@@ -132,7 +136,8 @@ Settings drawn_as(const Settings& settings) {
         s.footprints = FootprintMode::Isotropic;
         s.warp = usual.warp;
     }
-    if (draws_faces(s)) s.footprints = FootprintMode::Procedural;
+    const bool short_cut = s.footprints == FootprintMode::Warp2d && s.warp == WarpFamily::Paper;
+    if (draws_warped(s) && !short_cut && !draws_table(s)) s.footprints = FootprintMode::Procedural;
     if (s.sheet_format != SheetFormat::Tiles) s.pixels = usual.pixels;
     return s;
 }

@@ -11,7 +11,7 @@ struct Scene;
 /// Where the surface next to a voxel is: nowhere, a step along the voxel's own gradient away, or found by going there
 /// on the trilinear field or on the cubic B-spline.
 enum class EdgeEstimator { Off, Taylor, March, Cubic };
-enum class FootprintMode { Isotropic, Warp2d, Procedural };
+enum class FootprintMode { Isotropic, Warp2d, Procedural, Table };
 /// How a kernel ends at an edge: warped around its plane as in the paper, or cut at a face.
 enum class WarpFamily { Paper, Face };
 enum class SheetCut { Whole, Sliced };  ///< a kernel lies in one sheet whole, or is cut at the sheets' planes
@@ -69,8 +69,11 @@ double kernel_reach(const Settings& settings);
 /// What the paper did, where `base` says nothing else: Taylor estimates, its own curve, warped in two dimensions.
 Settings papers_own(Settings base = {});
 
+/// Whether footprints come from a table: of kernels that a plane face cuts, whole ones.
+bool draws_table(const Settings& settings);
+
 /// The same picture with every knob that has no say in it at its default, and with the footprints that are really
-/// evaluated: what a face cuts is integrated.
+/// evaluated: what a face cuts is integrated, but for whole kernels from a table.
 Settings drawn_as(const Settings& settings);
 
 /// Likewise for a scene: without iso-values there are no edges.

@@ -109,6 +109,7 @@ EDGESPLAT_CONSTANT uint CUBIC = 3u;
 EDGESPLAT_CONSTANT uint ISOTROPIC = 0u;
 EDGESPLAT_CONSTANT uint WARP2D = 1u;
 EDGESPLAT_CONSTANT uint PROCEDURAL = 2u;
+EDGESPLAT_CONSTANT uint TABLE = 3u;
 
 // WarpFamily
 EDGESPLAT_CONSTANT uint PAPER = 0u;  // kernels at edges are warped by the paper's curve

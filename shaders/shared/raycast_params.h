@@ -8,7 +8,7 @@ EDGESPLAT_SHARED_BEGIN
 EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x), bricks to the nearest one that is not transparent
 EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 4u;  // r8ui, while distances are found
 
-EDGESPLAT_CONSTANT uint BIND_RAYS = 8u;          // RaycastBlock
+EDGESPLAT_CONSTANT uint BIND_RAYS = 9u;          // RaycastBlock
 
 EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured best on lavapipe, 8^3 takes 5-13 % longer
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this

@@ -16,6 +16,7 @@ layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(push_constant) uniform Push { uint group; };
 
 layout(location = 0) in vec3 offset;
@@ -31,10 +32,15 @@ layout(location = 9) flat in vec4 face_slope;
 layout(location = 10) flat in vec4 face_diagonal;
 layout(location = 11) flat in vec4 face_mixed;
 layout(location = 12) flat in float face_reach2;
+layout(location = 13) flat in vec4 first_selected;
+layout(location = 14) flat in vec4 second_selected;
 layout(location = 0) out vec4 sheet;
 
 #include "shaders/footprints/face_form.glsl"
 FaceForm face_form;
+#include "shaders/edges/edge_record.glsl"
+#include "shaders/footprints/selected_footprint.glsl"
+SelectedFootprint selected_footprint;
 
 #include "shaders/splats/splat_value.glsl"
 
@@ -42,6 +48,7 @@ void main() {
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
                              FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0));
+    if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);

@@ -35,6 +35,8 @@ layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm 
 layout(location = 10) flat out vec4 face_diagonal; // depth last
 layout(location = 11) flat out vec4 face_mixed;    // thickness last
 layout(location = 12) flat out float face_reach2;
+layout(location = 13) flat out vec4 first_selected;   // with a table only, SelectedFootprint in two parts
+layout(location = 14) flat out vec4 second_selected;
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -81,6 +83,10 @@ void main() {
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
         face_reach2 = s.face.cut.reach2;
+    }
+    if (FOOTPRINTS == TABLE) {
+        first_selected = first_texel(s.selected);
+        second_selected = second_texel(s.selected);
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) matter = s.matter;
     if (CLIP_KEEP + CLIP_REMOVE > 0u || FACES) number_material = s.number_material;

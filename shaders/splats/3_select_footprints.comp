@@ -1,5 +1,5 @@
 // For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels
-// its sheet group.
+// its sheet group; and of a table of footprints, its layers and how they are turned.
 // docs/method.md, pass 3.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -17,6 +17,7 @@ layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/splats/splat_projection.glsl"
+#include "shaders/footprints/selected_footprint.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 
@@ -53,11 +54,15 @@ void main() {
         i = batch.x + min(slot % SPLAT_BATCH, batch.y - 1u);
     }
     Splat splat = SplatsRef(params.frame.splats).at[i];
-    Projection p = place_splat(i, splat.voxel, unpack_edge(splat.normal, splat.edge));
+    Edge e = unpack_edge(splat.normal, splat.edge);
+    Projection p = place_splat(i, splat.voxel, e);
     project_support(p);
     ivec4 box = pixel_box(p);
     bool drawn = there && p.visible && box.x < box.z && box.y < box.w;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
+    if (FOOTPRINTS == TABLE && drawn)
+        PairsRef(params.frame.footprints).at[i] =
+            select_footprint(e, is_in_table(i, e), p.position - params.frame.eye, params.frame.face_depth);
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
         // Depths relative to the first sheet, where a far eye costs no digits.

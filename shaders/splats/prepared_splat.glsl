@@ -39,7 +39,8 @@ const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
 const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
-const uint PREPARED_STRIDE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
+const uint PREPARED_TABLE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
+const uint PREPARED_STRIDE = PREPARED_TABLE + (FOOTPRINTS == TABLE ? 2u : 0u);
 
 // Entries of a chunk are consecutive and no more than there are slots.
 uint prepared_slot(uint entry) { return (entry & params.frame.prepared_mask) * PREPARED_STRIDE; }
@@ -73,6 +74,10 @@ void keep_prepared(uint entry, PreparedSplat s) {
     if (ANTIALIAS == 1u) {
         imageStore(prepared, prepared_texel(at + PREPARED_FILTER), vec4(s.slopes, 0.0, 0.0));
         imageStore(prepared, prepared_texel(at + PREPARED_FILTER + 1u), s.inputs.filtered);
+    }
+    if (FOOTPRINTS == TABLE) {
+        imageStore(prepared, prepared_texel(at + PREPARED_TABLE), first_texel(s.inputs.selected));
+        imageStore(prepared, prepared_texel(at + PREPARED_TABLE + 1u), second_texel(s.inputs.selected));
     }
 }
 
@@ -111,6 +116,8 @@ void load_kernel(uint entry, inout PreparedSplat s) {
         s.slopes = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER)).xy;
         s.inputs.filtered = imageLoad(prepared, prepared_texel(at + PREPARED_FILTER + 1u));
     }
+    if (FOOTPRINTS == TABLE)
+        s.inputs.selected = from_texels(imageLoad(prepared, prepared_texel(at + PREPARED_TABLE)), imageLoad(prepared, prepared_texel(at + PREPARED_TABLE + 1u)));
 }
 #endif
 #endif

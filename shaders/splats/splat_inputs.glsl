@@ -2,6 +2,7 @@
 // shaders/splats/splat_projection.glsl, shading.glsl and transfer.glsl.
 #ifndef EDGESPLAT_SPLAT_INPUTS_GLSL
 #define EDGESPLAT_SPLAT_INPUTS_GLSL
+#include "shaders/footprints/selected_footprint.glsl"
 
 struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
@@ -12,6 +13,7 @@ struct SplatInputs {
     uvec2 number_material; // of the splat, likewise or with faces, and how its surface is lit
     FaceForm face;         // with faces only: light falls where a ray meets it, and color_sigma has the colour before light
     vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
+    SelectedFootprint selected;  // with a table only
 };
 
 SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
@@ -50,7 +52,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         Bending h = Bending(vec3(0.0), vec3(0.0));
         s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
         for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
-            h = bending_of(number);
+            h = bending_of(number, e);
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
@@ -60,6 +62,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         }
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }
+    if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.face_depth);
     if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;
     s.normal_distance = vec4(e.n, e.d);
     bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < (FACES ? params.frame.support + params.frame.face_depth : params.frame.band);

@@ -5,6 +5,7 @@
 #include "shaders/footprints/antialias.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/footprints/face_form.glsl"
+#include "shaders/shared/footprint_table.h"
 #include "shaders/shared/frame_params.h"
 
 struct Projection {
@@ -25,10 +26,14 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-Bending bending_of(uint number) {
+// In the table faces are plane: what bends so little is taken for that. It has no walls.
+Bending bending_of(uint number, Edge e) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
-    return Bending(unpack_bending(code.x), unpack_bending(code.y));
+    Bending h = Bending(unpack_bending(code.x), unpack_bending(code.y));
+    if (FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(h) <= TABLE_BENDING) h = Bending(vec3(0.0), vec3(0.0));
+    return h;
 }
+bool is_in_table(uint number, Edge e) { return e.d2 >= params.frame.band && bending_norm(bending_of(number, e)) == 0.0; }
 
 FaceCut cut_of(Edge e, Bending h) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
@@ -88,7 +93,7 @@ Projection place_splat(uint number, uint voxel, Edge e) {
     bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
     vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
     for (uint run = FACES && cut_or_warped ? 1u : 0u; run > 0u; --run) {
-        FaceCut cut = cut_of(e, bending_of(number));
+        FaceCut cut = cut_of(e, bending_of(number, e));
         support = vec2(cut.shift, cut.radius);
     }
     p.centre = support.x * e.n;

@@ -107,15 +107,24 @@ vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead, boo
                          away * way, -normalize(way), depth));
 }
 
+// What is left of the kernel on the ray: between `slice`, and of one that is cut, within `inside`.
+FaceFootprint cut_footprint(FaceSight sight, bool plain, Slice inside, Slice slice) {
+    FaceFootprint f = footprint_face(sight.ray, face_form.cut, inside);
+    f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
+    f.entry = plain ? 0.0 : f.entry;
+    f.side = plain ? 1.0 : f.side;
+    return f;
+}
+#include "shaders/footprints/tabulated_footprint.glsl"
+
 // (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
 vec4 face_value(FaceSight sight, vec3 u, float ahead, float z, Slice slice) {
     bool plain = face_form.cut.depth < 0.0;
     float border = volume_piece.low - ahead;
     Slice inside = Slice(max(slice.low, border), min(slice.high, volume_piece.high - ahead));
-    FaceFootprint f = footprint_face(sight.ray, face_form.cut, inside);
-    f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
-    f.entry = plain ? 0.0 : f.entry;
-    f.side = plain ? 1.0 : f.side;
+    FaceFootprint f;
+    if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, plain, inside, slice);
+    else f = cut_footprint(sight, plain, inside, slice);
     bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry;
     f.entry = at_border ? border : f.entry;
     if (ANTIALIAS == 1u) {
@@ -173,6 +182,7 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
 vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     Slice slice = Slice(-1e9, 1e9);
     float in_front = 1.0;
+    if (FOOTPRINTS == TABLE) along_axis = dot(p, selected_footprint.axis);
     if (SLICED == 1u) {
         float depth_along = dot(params.frame.view_z, u);
         vec2 z = (shape.yz - dot(params.frame.view_z, p)) / depth_along;

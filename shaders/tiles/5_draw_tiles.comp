@@ -27,6 +27,7 @@ layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
+layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
 layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
 layout(binding = BIND_TILE_MARKS, r32ui) uniform readonly uimageBuffer marks;
@@ -50,6 +51,7 @@ vec3 matter;
 uvec2 number_material;
 vec4 filtered;
 FaceForm face_form;
+SelectedFootprint selected_footprint;
 #define CLIP_PARAMS params.frame
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/splats/prepared_splat.glsl"
@@ -154,6 +156,7 @@ void main() {
                     face_form = h.inputs.face;
                     number_material = h.inputs.number_material;
                 }
+                if (FOOTPRINTS == TABLE) selected_footprint = h.inputs.selected;
                 if (CLIP_KEEP + CLIP_REMOVE > 0u) {
                     from_eye = h.inputs.from_eye;
                     matter = h.inputs.matter;

@@ -211,6 +211,29 @@ std::vector<ImageCase> sampling_cases() {
     return cases;
 }
 
+/// Footprints from the table, and what it does not have: walls, kernels at clip planes and at the border.
+std::vector<ImageCase> table_cases() {
+    using F = FootprintMode;
+    std::vector<ImageCase> cases;
+    Shot hole = builtin("cube-hole", glm::ivec3(28));
+    from(hole, "oblique");
+    cases.push_back({"cube with a hole, from the table", with(small(hole), F::Table)});
+    const Shot torus = with(small(torus_shot()), F::Table);
+    cases.push_back({"torus, from the table", torus});
+    cases.push_back({"torus, from the table, normals", torus, Output::Normal});
+    cases.push_back(
+        {"oblique orbital, from the table, optical depth", with(small(oblique_orbital()), F::Table), Output::Tau});
+    Shot wall = with(small(near_wall()), F::Table);
+    cases.push_back({"near wall, from the table", wall});
+    wall.settings.sheet_format = SheetFormat::Layers;
+    cases.push_back({"near wall, from the table, in layers", wall});
+    cases.push_back({"cut cavity, from the table", with(small(cut_cavity()), F::Table)});
+    cases.push_back({"orbital, far, antialiased, from the table", with(far_orbital(), F::Table)});
+    for (ImageCase& c : cases)
+        c.smallest_psnr = c.output == Output::Normal ? 50 : 65;
+    return cases;
+}
+
 std::vector<ImageCase> shading_cases() {
     std::vector<ImageCase> cases;
     Shot glossy = torus_shot();
@@ -293,6 +316,8 @@ std::vector<ImageCase> reference_cases() {
         cases.push_back(std::move(c));
     for (ImageCase& c : sampling_cases())
         cases.push_back(std::move(c));
+    for (ImageCase& c : table_cases())
+        cases.push_back(std::move(c));
     return cases;
 }
 
@@ -302,6 +327,9 @@ std::vector<ImageCase> golden_cases() {
     Shot hole = builtin("cube-hole", glm::ivec3(28));
     from(hole, "oblique", 35);
     cases.push_back({"cube_hole", hole});
+    Shot looked_up = torus_shot();
+    looked_up.settings.sheet_format = SheetFormat::Layers;
+    cases.push_back({"torus_from_the_table_in_layers", with(looked_up, FootprintMode::Table)});
     cases.push_back({"orbital", oblique_orbital()});
     Shot plates = builtin("plates", glm::ivec3(48));
     from(plates, "oblique", 35);

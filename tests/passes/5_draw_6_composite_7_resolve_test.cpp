@@ -68,7 +68,8 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
 INSTANTIATE_TEST_SUITE_P(All, DrawSplats,
                          testing::Values(Variant{FootprintMode::Isotropic, WarpFamily::Paper},
                                          Variant{FootprintMode::Warp2d, WarpFamily::Paper},
-                                         Variant{FootprintMode::Procedural, WarpFamily::Paper}),
+                                         Variant{FootprintMode::Procedural, WarpFamily::Paper},
+                                         Variant{FootprintMode::Table, WarpFamily::Face}),
                          [](const auto& test) { return std::string(name_of(test.param.mode)); });
 
 class DrawSlices : public testing::TestWithParam<Variant> {};

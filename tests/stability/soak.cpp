@@ -122,7 +122,8 @@ class Shots {
     Settings settings() {
         Settings s;
         s.edges = one_of({EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic});
-        s.footprints = one_of({FootprintMode::Isotropic, FootprintMode::Warp2d, FootprintMode::Procedural});
+        s.footprints =
+            one_of({FootprintMode::Isotropic, FootprintMode::Warp2d, FootprintMode::Procedural, FootprintMode::Table});
         s.warp = one_of({WarpFamily::Paper, WarpFamily::Face});
         s.sheets = one_of({SheetCut::Whole, SheetCut::Sliced});
         s.sheet_format = one_of({SheetFormat::Layers, SheetFormat::Tiles});

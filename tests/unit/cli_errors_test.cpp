@@ -101,7 +101,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"RemovedFootprints",
                "render builtin:sphere -o a.png --footprints table-lerp",
                2,
-               {"--footprints", "write procedural"}},
+               {"--footprints", "write table"}},
         Misuse{"EyeAndView", "render builtin:sphere -o a.png --eye 0,0,0 --view front", 2, {"--view", "--eye"}},
         Misuse{"UnknownAov", "render builtin:sphere -o a.png --aov tau,colour", 2, {"--aov", "colour", "tau"}},
         Misuse{"Extension", "render builtin:sphere -o a.jpg", 1, {"a.jpg", ".png or .exr"}},

@@ -8,7 +8,9 @@
 #include <random>
 
 #include "footprints/face.h"
+#include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
+#include "shaders/shared/footprint_table.h"
 #include "tests/unit/footprints_samples.h"
 
 // What GLSL brings: float functions.
@@ -41,6 +43,9 @@ inline float floor(float v) {
 inline float mix(float a, float b, bool second) {
     return second ? b : a;
 }
+inline float mix(float a, float b, float t) {
+    return a + (b - a) * t;
+}
 inline float inversesqrt(float v) {
     return 1 / std::sqrt(v);
 }
@@ -59,6 +64,22 @@ const uint NODES = 4;
 // After what it needs.
 const uint FACE_PIECES = 2;
 #include "shaders/footprints/face.glsl"
+
+// Of the table's layers, what a sampler with linear filter makes of them.
+const std::uint16_t* layers = nullptr;
+using namespace edgesplat::shader;
+inline float table_texel(float x, float y, float layer) {
+    const auto texel = [&](float column, float row) {
+        const auto at = ((static_cast<std::size_t>(layer) * TABLE_ROWS + static_cast<std::size_t>(row)) * TABLE_WIDTH);
+        return edgesplat::float_from_half(layers[at + static_cast<std::size_t>(column)]);
+    };
+    const float i = min(floor(x), TABLE_WIDTH - 2.0f), j = min(floor(y), TABLE_ROWS - 2.0f);
+    return mix(mix(texel(i, j), texel(i + 1, j), x - i), mix(texel(i, j + 1), texel(i + 1, j + 1), x - i), y - j);
+}
+#include "shaders/footprints/footprint_layer.glsl"
+
+// After what it needs.
+#include "shaders/footprints/footprint_table.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
@@ -140,6 +161,34 @@ TEST(FootprintShader, MirrorsFaces) {
     // Where a ray but touches a face, rounding decides whether it meets it.
     EXPECT_LE(entries, cut / 500);
     EXPECT_LE(error.percentile(99.5), 1e-3);
+}
+
+TEST(FootprintShader, MirrorsTheTable) {
+    namespace four = glsl::nodes4;
+    const auto f = [](double v) { return static_cast<float>(v); };
+    for (const double depth : {kFaceDepth, kDeepFaceDepth}) {
+        const FootprintTable& table = kept_footprint_table(depth);
+        four::layers = table.texels().data();
+        Errors error;
+        int other = 0;
+        for (const auto& [distance, ray] : rays(20000, -1, 3.2, 25)) {
+            const FootprintLayer want = select_footprint_layer(distance, ray.un, depth);
+            // A blend next to the middle between two of its steps is rounded either way.
+            other += four::select_footprint_layer(f(distance), f(ray.un), f(depth)) != want.code ? 1 : 0;
+            const four::FootprintLayer got = four::decode_footprint_layer(want.code, f(depth));
+            EXPECT_NEAR(static_cast<double>(got.middle), want.middle, 1e-6);
+            EXPECT_NEAR(static_cast<double>(got.cosine), want.cosine, 1e-6);
+            EXPECT_NEAR(static_cast<double>(got.rim2), want.rim2, 3e-6);
+            const double sine = std::sqrt(1 - ray.un * ray.un), x = sine > 0 ? ray.pn / sine : 0;
+            const double y = std::sqrt(std::max(ray.rho2 - x * x, 0.0));
+            error.add(static_cast<double>(four::footprint_looked_up(got, f(x), f(x * x + y * y))),
+                      table.lookup(want, x, y));
+        }
+        std::printf("table, float32 against double, %% of the peak: 99.5 %% %.4f, largest %.4f\n",
+                    100 * error.percentile(99.5), 100 * error.largest());
+        EXPECT_LE(other, 60);
+        EXPECT_LE(error.percentile(99.5), 1e-4);
+    }
 }
 
 TEST(FootprintShader, MirrorsThePapersWarp) {

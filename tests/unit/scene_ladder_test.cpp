@@ -94,8 +94,7 @@ TEST(Ladder, StepsThatAreNoMoreSayWhatToWrite) {
                                               {"edges", "quadratic", "write march"},
                                               {"sheet-format", "half", "write layers"},
                                               {"sheet-format", "float", "write layers"},
-                                              {"footprints", "table", "write procedural"},
-                                              {"footprints", "table-lerp", "write procedural"}}) {
+                                              {"footprints", "table-lerp", "write table"}}) {
         Settings settings;
         EXPECT_THAT(refusal([&] { knob_named(knob).set(settings, step); }),
                     AllOf(HasSubstr(step), HasSubstr("is no more"), HasSubstr(instead)));
@@ -228,6 +227,21 @@ TEST(DrawnAs, TheShortCutIsThePapersAlone) {
     EXPECT_EQ(drawn_as(settings), settings) << "and it is sliced as it is";
     settings.warp = WarpFamily::Face;
     EXPECT_EQ(drawn_as(settings).footprints, FootprintMode::Procedural);
+}
+
+TEST(DrawnAs, TheTableHasWholeKernelsAtFaces) {
+    Settings settings;
+    settings.footprints = FootprintMode::Table;
+    EXPECT_TRUE(draws_table(settings));
+    EXPECT_EQ(drawn_as(settings), settings);
+    Settings sliced = settings;
+    sliced.sheets = SheetCut::Sliced;
+    Settings paper = settings;
+    paper.warp = WarpFamily::Paper;
+    for (const Settings& other : {sliced, paper}) {
+        EXPECT_FALSE(draws_table(other));
+        EXPECT_EQ(drawn_as(other).footprints, FootprintMode::Procedural);
+    }
 }
 
 TEST(DrawnAs, KnobsWithoutASayAreDropped) {
