@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <string_view>
 
 #include "engine/scene/views.h"
 #include "tests/properties/scenes.h"
@@ -49,7 +50,11 @@ TEST_P(TableOfBuiltins, QuadsInLayersAndTilesAreOnePicture) {
         std::printf("%-10s %-8s layers against tiles %.1f dB\n", GetParam(), view, same);
         EXPECT_GE(same, 60);
         EXPECT_GT(evenness(tiles).mean * evenness(tiles).variation, 0.01) << "an empty picture shows nothing";
-        EXPECT_LT(psnr(tiles, render(integrated(shot)).color), 90) << "integrated, not looked up";
+        // Walls and faces that bend much are not in the table; of these scenes the last three have nothing else.
+        const std::string_view name = GetParam();
+        const bool looked_up = name == "box" || name == "cube-hole" || name == "ellipsoid";
+        const double as_integrated = psnr(tiles, render(integrated(shot)).color);
+        EXPECT_EQ(as_integrated < 90, looked_up) << as_integrated << " dB from what is integrated";
     }
     EXPECT_EQ(test_renderer().validation_messages(), 0U);
 }
