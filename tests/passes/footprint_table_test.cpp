@@ -1,8 +1,8 @@
 // Footprints from the table: what pass 3 selects, and pictures of both ways of drawing that read it.
 #include <cstdio>
 
-#include "engine/plan/resources.h"
 #include "engine/image/image_compare.h"
+#include "engine/plan/resources.h"
 #include "footprints/footprint_table.h"
 #include "tests/passes/pass_fixture.h"
 
