@@ -208,7 +208,7 @@ std::string zsh_completion(const CLI::App& app) {
                 std::string value;
                 if (takes_value(*option))
                     value = choices.empty() ? ":value:_files" : fmt::format(":value:({})", fmt::join(choices, " "));
-                text += fmt::format(" \\\n            {}", in_quotes("*" + n + "[" + help + "]" + value));
+                text += fmt::format(" \\\n            {}", in_quotes(fmt::format("*{}[{}]{}", n, help, value)));
             }
         return text;
     };
@@ -219,7 +219,7 @@ std::string zsh_completion(const CLI::App& app) {
         std::string names;
         for (const CLI::App* inner : commands_of(*command)) {
             const auto [n, help] = described(inner->get_name(), inner->get_description());
-            names += " " + in_quotes(n + ":" + help);
+            names += " " + in_quotes(fmt::format("{}:{}", n, help));
         }
         if (!names.empty())
             names = fmt::format("            local -a commands=({})\n            _describe command commands\n", names);

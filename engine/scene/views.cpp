@@ -195,15 +195,13 @@ Camera camera_around(const std::vector<glm::dvec3>& points, const glm::dvec3& di
     const double tan_x = tan_y * request.width / request.height;
     const double infinity = std::numeric_limits<double>::infinity();
     // How far out the picture's sides must lie where they pass the centre, so that every point is between them.
-    double right = -infinity, left = -infinity, top = -infinity, bottom = -infinity;
+    glm::dvec4 most(-infinity);  // right, left, top, bottom
     for (const glm::dvec3& point : points) {
         const glm::dvec3 p = point - center;
         const double x = glm::dot(p, frame.right), y = glm::dot(p, frame.up), z = glm::dot(p, frame.forward);
-        right = std::max(right, x - z * tan_x);
-        left = std::max(left, -x - z * tan_x);
-        top = std::max(top, y - z * tan_y);
-        bottom = std::max(bottom, -y - z * tan_y);
+        most = glm::max(most, glm::dvec4(x - z * tan_x, -x - z * tan_x, y - z * tan_y, -y - z * tan_y));
     }
+    const double right = most.x, left = most.y, top = most.z, bottom = most.w;
     if (request.fill) {
         const double back = std::max((right + left) / tan_x, (top + bottom) / tan_y) / 2;
         camera.eye = center + (right - left) / 2 * frame.right + (top - bottom) / 2 * frame.up - back * frame.forward;
