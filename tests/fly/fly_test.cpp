@@ -62,9 +62,9 @@ TEST_F(FlyTest, PicksAndMeasuresTheSurface) {
 }
 
 TEST_F(FlyTest, ADoubleClickFliesThereAndHomeComesBack) {
-    fly("settle\nexpect eye.y < -30\ndouble 360 147\nframes 90\nsettle\nexpect eye.y > -20\nkey Home\nframes "
+    fly("settle\nexpect eye.y < -22\ndouble 360 147\nframes 90\nsettle\nexpect eye.y > -15\nkey Home\nframes "
         "120\nsettle\n"
-        "expect eye.y < -30\nexpect finished == yes\n",
+        "expect eye.y < -22\nexpect finished == yes\n",
         "builtin:sphere:64");
 }
 
