@@ -117,8 +117,9 @@ void RendererState::release_unused(const Settings& drawn) {
 FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, const Settings& settings,
                                       const glm::ivec2& size, std::uint32_t payload) const {
     const double reach = kernel_reach(settings);
-    FramePlan out = plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
-                               volume_resources.box_low, volume_resources.box_high, reach);
+    FramePlan out =
+        plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
+                   volume_resources.box_low, volume_resources.box_high, reach, volume_resources.crease_splat_count > 0);
     if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, out.variant.antialias});
     return out;
 }

@@ -72,13 +72,24 @@ FaceCut face_cut(double distance, double bend, double norm, double thickness, do
     return cut;
 }
 
+void add_crease(FaceCut& cut, const FaceCut::Crease& crease) {
+    if (!(crease.distance < kKernelRadius + cut.depth)) return;
+    cut.crease = crease;
+    // As far as what is moved by one and the other may come from.
+    const double further = std::max((2 * crease.distance - cut.depth) * cut.depth, 0.0);
+    cut.reach = std::min(std::sqrt(cut.reach * cut.reach + further), kKernelRadius + kDeepFaceDepth);
+}
+
 double FacePlane::beyond(double z) const {
     const double t = at(z), held = std::min(t, level);
     return z * z - t * t + held * held;
 }
 
 FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
-    : rho2_(ray.rho2), half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))) {
+    : rho2_(ray.rho2),
+      half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))),
+      crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
+      facing_(cut.crease.facing) {
     const bool wall = cut.thickness < kInfinity;
     const Roots face = roots(ray.phi, 0);
     const Roots behind = wall ? roots(ray.phi, cut.thickness) : Roots{};
@@ -88,6 +99,9 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     const Roots outer = opens ? face : (wall ? behind : everywhere);
     const Roots inner = opens ? behind : face;
     if (!outer.real) return;
+    const double distance = cut.crease.distance, p = ray.crease.p;
+    const double way = std::abs(ray.crease.u) < kStraight ? std::copysign(kStraight, ray.crease.u) : ray.crease.u;
+    const double begin = way < 0 ? (distance - p) / way : -kInfinity, end = way > 0 ? (distance - p) / way : kInfinity;
     const End front, back{cut.thickness, -1};
     const End outer_end = opens || !wall ? front : back, inner_end = opens ? back : front;
     const auto add = [&](double low, double high, const End& entry, const End& leave) {
@@ -95,7 +109,12 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
         const bool meets = low > -kNowhere || high < kNowhere;
         const double turn = -0.5 * ray.phi.b / std::min(ray.phi.a, -kStraight);
         const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
-        pieces_.at(count_++) = {low, high, entry.side < 0, plane_at(ray, cut.depth, held(meets ? low : turn), entry),
+        const double from = std::max(low, begin);
+        pieces_.at(count_++) = {from,
+                                std::max(std::min(high, end), from),
+                                entry.side < 0 && begin <= low,
+                                begin > low,
+                                plane_at(ray, cut.depth, held(meets ? low : turn), entry),
                                 plane_at(ray, cut.depth, held(meets ? high : turn), leave)};
     };
     add(outer.low, inner.real ? inner.low : outer.high, outer_end, inner.real ? inner_end : outer_end);
@@ -110,10 +129,17 @@ double FacePath::overlap(const FacePiece& piece) const {
     return std::min(piece.high, half_chord_) - std::max(piece.low, -half_chord_);
 }
 
+double FacePath::sampled_at(const FacePiece& piece, double z) const {
+    const FacePlane& plane = piece.plane(z);
+    const double moved = std::min(plane.level - plane.at(z), 0.0);
+    const double t = crease_.at(z) + moved * facing_, held = std::min(t, crease_.level);
+    return std::max(rho2_ + plane.beyond(z) + held * held - t * t, 0.0);
+}
+
 double FacePath::kernel_at(double z) const {
     if (!(std::abs(z) < half_chord_)) return 0;
     for (const FacePiece& piece : pieces())
-        if (z >= piece.low && z <= piece.high) return kernel(std::max(rho2_ + piece.plane(z).beyond(z), 0.0));
+        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z));
     return 0;
 }
 
@@ -123,13 +149,13 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
     for (const FacePiece& piece : pieces()) {
         // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-        const double low = piece.entry.is_deep(-plain) ? -plain : -half_chord_;
-        const double high = piece.leave.is_deep(plain) ? plain : half_chord_;
+        const double low = piece.entry.is_deep(-plain) && crease_.is_deep(-plain) ? -plain : -half_chord_;
+        const double high = piece.leave.is_deep(plain) && crease_.is_deep(plain) ? plain : half_chord_;
         const double begin = std::max({piece.low, low, slice.low}), end = std::min({piece.high, high, slice.high});
         double sum = 0;
         for (std::size_t k = 0; begin < end && k < rule.size(); ++k) {
             const double z = begin + (end - begin) * rule.nodes[k];
-            sum += rule.weights[k] * kernel(std::max(rho2_ + piece.plane(z).beyond(z), 0.0));
+            sum += rule.weights[k] * kernel(sampled_at(piece, z));
         }
         out.integral += std::max(end - begin, 0.0) * sum;
         // Slices of a kernel show what its whole shows: the first piece within its reach, else the last.
@@ -137,6 +163,7 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
         if (&piece != &pieces().front() && overlap(pieces().front()) > 0) continue;
         out.entry = std::clamp(piece.low, -half_chord_, half_chord_);
         out.from_behind = piece.from_behind && piece.low > -half_chord_;
+        out.from_crease = piece.from_crease;
     }
     return out;
 }

@@ -7,7 +7,8 @@
 // everything that counts is quadratic in z, and vectors are left to the caller. There x is moved along the normal of
 // the face where the ray meets it, on the way in or on the way out, whichever is nearer: kernels of one surface then
 // share one map on one ray, and nothing of it is more than a plane. Lengths are voxels, index space, relative to the
-// voxel's centre.
+// voxel's centre. At a crease another plane ends the matter: it cuts a kernel likewise, and x is moved along its
+// normal, too, after it was moved along the face's.
 #pragma once
 
 #include <array>
@@ -32,6 +33,10 @@ struct FaceRay {
     Quadratic slope2;   ///< |grad phi|^2
     double across = 0;  ///< p . grad phi at p
     double turn = 0;    ///< p . Hu
+    struct Crease {
+        double p = 0, u = 0;  ///< n . p, n . u
+    };
+    Crease crease;  ///< of the plane in the cut
 };
 
 /// How a face cuts a kernel, whatever the ray.
@@ -39,6 +44,12 @@ struct FaceCut {
     double depth = 0.8;                                          ///< where it is sampled at least, > 0
     double thickness = std::numeric_limits<double>::infinity();  ///< of the wall, > 0
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
+    /// Another plane that ends the matter; none at infinity.
+    struct Crease {
+        double distance = std::numeric_limits<double>::infinity();  ///< from the voxel's centre
+        double facing = 0;                                          ///< cosine of its normal with the face's
+    };
+    Crease crease;
 };
 
 /// How deep under a face kernels are sampled where there is room. Of opaque matter most of the sum of kernels is enough
@@ -52,6 +63,10 @@ inline constexpr int kFewNodes = 6, kManyNodes = 10;
 /// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn
 /// there, `norm` the Frobenius norm of H, 1/voxel, `deepest` kFaceDepth or kDeepFaceDepth.
 FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth);
+
+/// Adds a plane that may cut the kernel, and by as much as it is moved along it lets the kernel reach further: no
+/// further than the deepest face does, which costs edges that one sees through a little of their outermost matter.
+void add_crease(FaceCut& cut, const FaceCut::Crease& crease);
 
 /// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n . x
 /// along the ray, and from which value on x is moved along n.
@@ -67,7 +82,7 @@ struct FacePlane {
 /// by the face behind; or nowhere (at -1e9).
 struct FacePiece {
     double low = 0, high = 0;
-    bool from_behind = false;
+    bool from_behind = false, from_crease = false;
     FacePlane entry, leave;
     /// The plane that the point z of the ray is sampled by: that of the nearer end.
     const FacePlane& plane(double z) const { return z > 0.5 * (low + high) ? leave : entry; }
@@ -78,6 +93,7 @@ struct FaceFootprint {
     double integral = 0;
     double entry = 0;          ///< z of the light: where the ray enters, or where it comes within the kernel's reach
     bool from_behind = false;  ///< it enters by the wall's other face
+    bool from_crease = false;  ///< it enters by the crease's plane
 };
 
 /// Which of a ray's two pieces count. Of opaque matter what lies behind the first is not seen, and a kernel has most of
@@ -101,8 +117,12 @@ class FacePath {
 
   private:
     double overlap(const FacePiece& piece) const;
+    /// |x|^2 of where the kernel is sampled for the point z of the ray.
+    double sampled_at(const FacePiece& piece, double z) const;
 
     double rho2_, half_chord_;
+    FacePlane crease_;
+    double facing_;  ///< of the crease with the face
     std::array<FacePiece, 2> pieces_;
     std::size_t count_ = 0;
 };

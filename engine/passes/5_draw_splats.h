@@ -26,6 +26,7 @@ struct DrawVariant {
     bool fog = false;
     ClipCount clip{};        ///< kernels are cut at planes
     bool opaque = false;     ///< of a ray's two pieces in a cut kernel the longer counts
+    bool creases = false;    ///< planes beside faces cut kernels, too
     bool antialias = false;  ///< no footprint is narrower than a pixel
     bool tiles = false;      ///< sheets are summed tile by tile, not in layers
     bool culled = false;     ///< splats are gone through in batches, those of bricks in view

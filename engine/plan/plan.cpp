@@ -255,7 +255,7 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach) {
+                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach, bool creases) {
     const auto& geometry = volume.geometry;
     const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
     const CameraFrame view = camera_frame(camera);
@@ -278,6 +278,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                         sliced && settings.sheet_spacing <= kThinSlice                               ? kSliceNodes
                         : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kFewNodes
                                                                                                      : kManyNodes)};
+    plan.variant.creases = creases && draws_faces(settings);
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
     plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&

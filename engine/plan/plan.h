@@ -76,10 +76,12 @@ void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& v
 void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers);
 
 /// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
-/// come from the collection; no kernel reaches further than `farthest_reach` voxels.
+/// come from the collection; no kernel reaches further than `farthest_reach` voxels. Without `creases` no splat has
+/// any.
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0);
+                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0,
+                     bool creases = true);
 
 /// Counters of the tiles' histogram that can be scanned: 256 invocations go through all of them, twice.
 inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::MOST_ITERATIONS;

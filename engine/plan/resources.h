@@ -20,14 +20,14 @@ struct VolumeResources {
     gpu::GpuImage edges;         ///< (z, y, x) rg32ui; 1 -> 2; absent without edges and light
     gpu::GpuImage buried;        ///< (z, y, x) r8ui; 2a -> 2b; absent where nothing is buried
     gpu::Buffer scene;           ///< SceneParams; host -> 1, 2
-    gpu::Buffer run_offsets;     ///< (runs + 1) uint, mapped; 2 <-> host
+    gpu::Buffer run_offsets;     ///< (runs + 2) uint, mapped; 2 <-> host
     gpu::Buffer splats;          ///< (splat_count) Splat, 12 bytes each; 2 -> 3, 5
-    gpu::Buffer traits;          ///< (splat_count) uvec2: second derivatives of its face; 2 -> 5; only with faces
+    gpu::Buffer traits;          ///< (splat_count) uvec2: what else its face has; 2 -> 5; only with faces
     gpu::Buffer occlusion;       ///< (splat_count) uint: ambient light that reaches it; 2b -> 5; only with occlusion
     gpu::Buffer shadows;         ///< (splat_count) uint: light that reaches it; 2d -> 5; only with shadow lights
     gpu::Buffer transfer;  ///< (TRANSFER_ROWS + 1) TransferRow, mapped; host -> 2, 5; only with a transfer function
     gpu::Buffer values;    ///< (splat_count) float: what each splat is classified by; 2 -> 5; likewise
-    std::uint64_t splat_count = 0, edge_splat_count = 0;
+    std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
     SplatBricks bricks;                  ///< of the list
 };

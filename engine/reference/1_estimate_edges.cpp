@@ -116,6 +116,7 @@ VoxelEdge quantise(const VoxelEdge& edge) {
     if (edge.has_normal) stored.n = through_octahedron(edge.n);
     stored.D = 4 * snorm16(edge.D / 4);
     stored.bending = quantise_bending(edge.bending);
+    if (edge.crease.D < kInfinity) stored.crease = {through_octahedron(edge.crease.n), 4 * snorm16(edge.crease.D / 4)};
     stored.D2 = edge.D2 >= 4 ? kInfinity : std::round(std::max(edge.D2, 0.0) / 4 * 1022) / 1022 * 4;
     return stored;
 }

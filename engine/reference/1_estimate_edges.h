@@ -16,6 +16,12 @@ struct VoxelEdge {
     glm::dvec3 n{0};  ///< unit, from the voxel's own side across the edge; without an edge along -gradient
     double D = 0;     ///< distance to the edge along n
     double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to the second edge
+    /// Another plane that ends the matter: n . x = D, n away from the matter.
+    struct Crease {
+        glm::dvec3 n{0};
+        double D = std::numeric_limits<double>::infinity();
+    };
+    Crease crease;          ///< of a face
     glm::dmat3 bending{0};  ///< of a face: second derivatives of its quadric, 1/voxel, symmetric
     bool has_normal = false;
     bool has_edge = false;

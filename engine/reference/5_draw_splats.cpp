@@ -95,6 +95,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
         const FaceFootprint seen = plain ? FaceFootprint{} : footprints.at_face(edge, p, u, slice);
         z = seen.entry;
         outward = face_sight(drawn_edge(edge, settings), p, u).outward(z, seen.from_behind);
+        if (seen.from_crease) outward = edge.crease.n;
         // Both faces of a layer between two iso-values face the lower values.
         const glm::dvec3 a = glm::abs(edge.n);
         const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);

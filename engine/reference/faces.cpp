@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <span>
 
-#include "shaders/shared/footprint_table.h"
+#include "engine/reference/creases.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -23,7 +24,7 @@ constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
 constexpr auto kOwnShare = static_cast<double>(shader::FIT_OWN);
 constexpr auto kWell = static_cast<double>(shader::FIT_WELL);
 constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
-constexpr auto kBendingUnit = static_cast<double>(shader::BENDING_UNIT);
+constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
 
 VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
     VoxelEdge edge;
@@ -55,13 +56,6 @@ Crossed crossed_around(const Field& field, const glm::ivec3& i, double low, doub
     }
     return crossed;
 }
-
-struct Surfel {
-    dvec3 at{0};  ///< relative to the voxel
-    dvec3 n{0};   ///< out of the voxel's material
-    bool upper = false;
-    bool border = false;  ///< of the volume
-};
 
 /// What voxel j found, where it bounds material m.
 std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
@@ -249,6 +243,26 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
     return wrong;
 }
 
+/// What planes at a crease make of a voxel whose best quadric leaves `error`; nothing unless they leave less
+/// than half of it.
+std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i,
+                                 std::span<const Surfel> surfels, const Surfel& nearest, double error) {
+    if (!(error > kCreaseFrom)) return std::nullopt;
+    const CreasePlanes planes = crease_planes(surfels, nearest.at, nearest.n, nearest.upper);
+    if (planes.count < 2) return std::nullopt;
+    double off = wrong_sides(field, scene, i, [&](const dvec3& r) { return planes.off(r); });
+    for (const Surfel& s : surfels)
+        off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * std::pow(planes.off(s.at), 2);
+    if (!(off < kOwnShare * error)) return std::nullopt;
+    VoxelEdge edge;
+    edge.has_edge = edge.has_normal = true;
+    edge.upper = nearest.upper;
+    edge.n = planes.planes[0].n;
+    edge.D = planes.planes[0].D;
+    edge.crease = planes.planes[1];
+    return edge;
+}
+
 }  // namespace
 
 VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
@@ -303,31 +317,33 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const glm::ivec3 center = i + glm::ivec3(glm::roundEven(middle));
     Moments all, same;
     double mixed = 0;
+    std::vector<Surfel> seen;
     around(center, [&](const Surfel& s) {
-        if (s.border) return;
+        if (!s.border) seen.push_back(s);
+    });
+    for (const Surfel& s : seen) {
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n);
         all.add(r, s.n, w);
         if (glm::dot(s.n, n) > 0) same.add(r, s.n, w);
         if (glm::dot(s.n, n) < 0) mixed += s.upper != nearest.upper ? w : -w;
-    });
+    }
     const Quadric one = quadric_of(all), wall = quadric_of(same);
     const double iso = nearest.upper ? scene.upper(m) : scene.lower(std::max(m, 1));
     const Quadric own = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
     double of_one = 0, of_own = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
-    around(center, [&](const Surfel& s) {
-        if (s.border) return;
+    for (const Surfel& s : seen) {
         const dvec3 r = s.at - middle;
         const double w = surfel_weight(r, n, s.n), facing = glm::dot(s.n, n), level = wall.at(r);
         of_one += w * std::pow(off_of(one, r), 2);
         of_own += w * std::pow(off_of(own, s.at), 2);
         if (facing > 0) of_same += w * level * level;
         if (facing <= 0 && facing >= -0.5) of_same += w;
-        if (facing >= -0.5) return;
+        if (facing >= -0.5) continue;
         opposite += w;
         sum += w * level;
         sum2 += w * level * level;
-    });
+    }
     // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
     const double level = sum / std::max(opposite, 1e-20);
     const double of_wall = of_same + std::max(sum2 - sum * level, 0.0);
@@ -344,6 +360,9 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     // voxel.
     const bool is_own = !found || (error > kWell && own_error < kOwnShare * error);
     is_wall = is_wall && !is_own;
+    if (found) {
+        if (const auto edge = creased(field, scene, i, seen, nearest, is_own ? own_error : error)) return *edge;
+    }
     const Quadric& q = is_own ? own : (is_wall ? wall : one);
     const dvec3 about = is_own ? dvec3(0) : middle;
     dvec3 begin(0);
@@ -368,64 +387,6 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     if (real) edge.bending = q.h / steep;
     if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     return edge;
-}
-
-dmat3 quantise_bending(const dmat3& bending) {
-    const auto through = [](double h) {
-        const double root = std::clamp(std::sqrt(std::abs(h) / kBendingUnit), 0.0, 1.0);
-        const double code = std::copysign(std::round(root * 511) / 511, h);
-        return code * std::abs(code) * kBendingUnit;
-    };
-    dmat3 stored;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            stored[i][j] = through(0.5 * (bending[i][j] + bending[j][i]));
-    return stored;
-}
-
-namespace {
-
-/// Frobenius.
-double norm_of(const dmat3& h) {
-    double norm2 = 0;
-    for (int i = 0; i < 3; ++i)
-        norm2 += glm::dot(h[i], h[i]);
-    return std::sqrt(norm2);
-}
-
-}  // namespace
-
-FaceCut cut_of(const VoxelEdge& edge, double deepest) {
-    const bool wall = edge.D2 < kKernelRadius + kDeepFaceDepth;
-    const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
-    return face_cut(edge.D, glm::dot(edge.n, edge.bending * edge.n), norm_of(edge.bending), thickness, deepest);
-}
-
-bool is_in_table(const VoxelEdge& edge, const Settings& settings) {
-    return draws_table(settings) && edge.D2 >= edge_reach(settings) &&
-           norm_of(edge.bending) <= static_cast<double>(shader::TABLE_BENDING);
-}
-
-VoxelEdge drawn_edge(const VoxelEdge& edge, const Settings& settings) {
-    VoxelEdge drawn = edge;
-    if (is_in_table(edge, settings)) drawn.bending = dmat3(0);
-    return drawn;
-}
-
-FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
-    const dmat3& h = edge.bending;
-    const dvec3 at_foot = h * (edge.D * edge.n);
-    const double value = -edge.D + 0.5 * edge.D * glm::dot(edge.n, at_foot);
-    const dvec3 own = edge.n - at_foot, hp = h * p, hu = h * u, slope = own + hp;
-    FaceSight sight;
-    sight.slope = slope;
-    sight.turn = hu;
-    sight.ray.rho2 = glm::dot(p, p);
-    sight.ray.phi = {value + 0.5 * glm::dot(own + slope, p), glm::dot(slope, u), 0.5 * glm::dot(u, hu)};
-    sight.ray.slope2 = {glm::dot(slope, slope), 2 * glm::dot(slope, hu), glm::dot(hu, hu)};
-    sight.ray.across = glm::dot(p, slope);
-    sight.ray.turn = glm::dot(p, hu);
-    return sight;
 }
 
 }  // namespace edgesplat::reference

@@ -172,11 +172,12 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
     params.splats = lists.splats.address();
     if (lists.traits) params.traits = lists.traits.address();
     if (lists.values) params.values = lists.values.address();
-    lists.splat_count = lists.edge_splat_count = 0;
+    lists.splat_count = lists.edge_splat_count = lists.crease_splat_count = 0;
     for (const std::size_t i : kept) {
         residence->held[i]->first = lists.splat_count;
         lists.splat_count += residence->held[i]->count;
         lists.edge_splat_count += residence->held[i]->with_edge;
+        lists.crease_splat_count += residence->held[i]->with_crease;
     }
     index_held_blocks();
     return true;

@@ -116,12 +116,12 @@ void prepare_collection(const gpu::Device& device, gpu::Commands& commands, Bind
     resources.scene = {};
     resources.transfer = {};
     resources.values = {};
-    resources.splat_count = resources.edge_splat_count = 0;
+    resources.splat_count = resources.edge_splat_count = resources.crease_splat_count = 0;
     resources.bricks.clear();
     resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
     resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
     resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), Place::Host, "scene parameters");
-    resources.run_offsets = gpu::Buffer(device, (passes::collect_runs(largest.core_size) + 1) * sizeof(std::uint32_t),
+    resources.run_offsets = gpu::Buffer(device, (passes::collect_runs(largest.core_size) + 2) * sizeof(std::uint32_t),
                                         Place::Host, "run offsets");
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     params = plan.params;
@@ -182,20 +182,22 @@ std::optional<CollectedBlock> list_block(const gpu::Device& device, gpu::Command
     const std::uint64_t room = resources.splats ? resources.splats.bytes() / sizeof(shader::Splat) : 0;
     if (exact || total > room)
         reserve(device, commands, plan, exact ? total : std::min(std::max(total, 2 * room), most_splats), resources);
-    // Behind the runs' offsets one more word.
+    // Behind the runs' offsets two more words.
     const std::uint64_t runs = passes::collect_runs(block.core_size);
-    std::uint32_t& with_edge = resources.run_offsets.mapped<std::uint32_t>(runs + 1).back();
-    with_edge = 0;
+    const std::span<std::uint32_t> counts = resources.run_offsets.mapped<std::uint32_t>(runs + 2).subspan(runs);
+    std::ranges::fill(counts, 0U);
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
     params.list_first = static_cast<std::uint32_t>(out.first);
     params.list_count = static_cast<std::uint32_t>(out.count);
     params.edge_count_at = static_cast<std::uint32_t>(runs);
     commands.run(
         [&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect, out.count); }); });
-    out.with_edge = with_edge;
+    out.with_edge = counts[0];
+    out.with_crease = counts[1];
     out.times = commands.span_times();
     resources.splat_count = total;
     resources.edge_splat_count += out.with_edge;
+    resources.crease_splat_count += out.with_crease;
     return out;
 }
 
@@ -239,7 +241,7 @@ std::vector<PassTime> renew_collection(const gpu::Device& device, gpu::Commands&
                                        const CollectionPlan& plan, const VoxelBox& changed,
                                        VolumeResources& resources) {
     const CollectionBlock whole = whole_block(plan.dims);
-    resources.splat_count = resources.edge_splat_count = 0;
+    resources.splat_count = resources.edge_splat_count = resources.crease_splat_count = 0;
     resources.bricks.clear();
     bindings.write(resources, {});
     place_block(plan, whole, resources);

@@ -155,9 +155,9 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
     const double thickness = (farthest - std::max(nearest, 0.0)) / (shadows.quality.layers - 1);
     settings.sheet_spacing = std::max(settings.sheet_spacing, thickness / voxel);
 
-    FramePlan plan =
-        plan_frame(volume, only_matter(scene), view, settings, glm::ivec2(shadows.quality.resolution),
-                   shader::PAYLOAD_COLOR, resources.splat_count, resources.box_low, resources.box_high, reach);
+    FramePlan plan = plan_frame(volume, only_matter(scene), view, settings, glm::ivec2(shadows.quality.resolution),
+                                shader::PAYLOAD_COLOR, resources.splat_count, resources.box_low, resources.box_high,
+                                reach, resources.crease_splat_count > 0);
     plan.variant.payload = shader::PAYLOAD_TAU;
     plan.variant.nodes = kNodes;
     plan.params.saturation = kDark;

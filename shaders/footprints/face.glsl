@@ -28,6 +28,7 @@ struct FaceFootprint {
     float integral;
     float entry;
     float side;  // -1: the ray enters by the wall's other face, else 1
+    bool from_crease;  // it enters by the crease's plane
 };
 
 struct FaceRoots {
@@ -69,18 +70,27 @@ FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side)
     return plane;
 }
 
-// |x|^2 of where a point of the ray is sampled, less rho2.
-float face_beyond(FacePlane plane, float z) {
-    float t = plane.p + z * plane.u;
-    float held = min(t, plane.level);
-    return z * z - t * t + held * held;
-}
-
 bool is_deep(FacePlane plane, float z) { return plane.p + z * plane.u <= plane.level; }
+
+// Where a ray enters and leaves what lies inside of a crease's plane.
+struct CreaseEnds {
+    float low;
+    float high;
+};
+
+CreaseEnds crease_ends(FaceCrease crease) {
+    float u = abs(crease.u) < FACE_STRAIGHT ? (crease.u < 0.0 ? -FACE_STRAIGHT : FACE_STRAIGHT) : crease.u;
+    float z = (crease.distance - crease.p) / u;
+    CreaseEnds ends;
+    ends.low = u < 0.0 ? z : -FACE_NOWHERE;
+    ends.high = u < 0.0 ? FACE_NOWHERE : z;
+    return ends;
+}
 
 // The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
 // and mapped near each by the plane that touches it there.
-float face_piece(FaceRay ray, FaceCut cut, float from, float to, bool from_behind, bool to_behind, float half_chord, Slice slice) {
+float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, CreaseEnds ends, float from, float to, bool from_behind,
+                 bool to_behind, float half_chord, Slice slice) {
     // A ray that meets no face is nearest to it where phi turns.
     bool meets = from > -FACE_NOWHERE || to < FACE_NOWHERE;
     float turn = -0.5 * ray.phi.b / min(ray.phi.a, -FACE_STRAIGHT);
@@ -90,10 +100,20 @@ float face_piece(FaceRay ray, FaceCut cut, float from, float to, bool from_behin
                                  to_behind ? -1.0 : 1.0);
     float plain = sqrt(max(KERNEL_R2 - ray.rho2, 0.0));
     float core = 1.0 - ray.rho2 * KERNEL_INVERSE_R2;
+    FacePlane edge;
+    if (creased) {
+        edge.p = crease.p;
+        edge.u = crease.u;
+        edge.level = crease.distance - cut.depth;
+        from = max(from, ends.low);
+        to = max(min(to, ends.high), from);
+    }
     float middle = 0.5 * (from + to);
     // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-    float begin = max(max(from, is_deep(entry, -plain) ? -plain : -half_chord), slice.low);
-    float len = max(min(min(to, is_deep(leave, plain) ? plain : half_chord), slice.high) - begin, 0.0);
+    bool deep_before = is_deep(entry, -plain) && (!creased || is_deep(edge, -plain));
+    bool deep_behind = is_deep(leave, plain) && (!creased || is_deep(edge, plain));
+    float begin = max(max(from, deep_before ? -plain : -half_chord), slice.low);
+    float len = max(min(min(to, deep_behind ? plain : half_chord), slice.high) - begin, 0.0);
     float sum = 0.0;
     for (int k = 0; k < FOOTPRINT_NODES; ++k) {
         float z = begin + len * FOOTPRINT_NODE[FOOTPRINT_RULE + k];
@@ -102,14 +122,25 @@ float face_piece(FaceRay ray, FaceCut cut, float from, float to, bool from_behin
         plane.p = late ? leave.p : entry.p;
         plane.u = late ? leave.u : entry.u;
         plane.level = late ? leave.level : entry.level;
-        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * kernel_at(core - face_beyond(plane, z) * KERNEL_INVERSE_R2);
+        float t = plane.p + z * plane.u;
+        float held = min(t, plane.level);
+        float beyond = z * z - t * t + held * held;
+        if (creased) {
+            float across = edge.p + z * edge.u + (held - t) * crease.facing;
+            float kept = min(across, edge.level);
+            beyond += kept * kept - across * across;
+            // A face bends: what is moved along two normals may seem to come nearer than the voxel.
+            beyond = max(beyond, -ray.rho2);
+        }
+        sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * kernel_at(core - beyond * KERNEL_INVERSE_R2);
     }
     return len * sum;
 }
 
-// Without a loop that depends on the splat: lavapipe would keep nothing in registers across it. The including shader declares
+// `creased` is a constant wherever it is handed over: without creases nothing is done for them. Without a loop that depends on the
+// splat: lavapipe would keep nothing in registers across it. The including shader declares
 // FACE_PIECES: 2, or 1 where matter is opaque; of two pieces the longer counts then.
-FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
+FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Slice slice) {
     float half_chord = sqrt(max(cut.reach2 - ray.rho2, 0.0));
     bool wall = cut.thickness < FACE_NO_WALL;
     // Along the ray phi has a least value between its zeros, or a largest.
@@ -124,22 +155,36 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, Slice slice) {
     bool has_inner = opens ? behind.real : face.real;
     float inner_low = has_inner ? (opens ? behind.low : face.low) : outer_high;
     float inner_high = has_inner ? (opens ? behind.high : face.high) : outer_high;
-    float before = min(inner_low, half_chord) - max(outer_low, -half_chord);
-    float after = min(outer_high, half_chord) - max(inner_high, -half_chord);
+    CreaseEnds ends;
+    float least = -half_chord;
+    float most = half_chord;
+    if (creased) {
+        ends = crease_ends(crease);
+        least = max(least, ends.low);
+        most = min(most, ends.high);
+    }
+    float before = min(inner_low, most) - max(outer_low, least);
+    float after = min(outer_high, most) - max(inner_high, least);
     bool first = !has_inner || (FACE_PIECES == 1u ? before > after : before > 0.0);
     float from = first ? outer_low : inner_high;
     float to = first ? inner_low : outer_high;
     FaceFootprint result;
     bool outer_behind = !opens && wall, from_behind = first ? outer_behind : opens;
     bool to_behind = first && has_inner ? opens : outer_behind;
-    result.integral = face_piece(ray, cut, from, to, from_behind, to_behind, half_chord, slice);
+    result.integral = face_piece(ray, cut, creased, crease, ends, from, to, from_behind, to_behind, half_chord, slice);
     if (FACE_PIECES == 2u) {
-        float other = face_piece(ray, cut, inner_high, outer_high, opens, outer_behind, half_chord, slice);
+        float other = face_piece(ray, cut, creased, crease, ends, inner_high, outer_high, opens, outer_behind, half_chord, slice);
         result.integral += first && has_inner ? other : 0.0;
     }
     result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
-    result.entry = clamp(from, -half_chord, half_chord);
     result.side = from_behind && from > -half_chord ? -1.0 : 1.0;
+    result.from_crease = false;
+    if (creased) {
+        result.from_crease = ends.low > from;
+        result.side = result.from_crease ? 1.0 : result.side;
+        from = max(from, ends.low);
+    }
+    result.entry = clamp(from, -half_chord, half_chord);
     return result;
 }
 #endif

@@ -3,6 +3,7 @@
 #ifndef EDGESPLAT_FACE_CUT_GLSL
 #define EDGESPLAT_FACE_CUT_GLSL
 
+const float FACE_FARTHEST = KERNEL_R + 1.4;  // R + kDeepFaceDepth: no kernel reaches further
 const float FACE_NO_WALL = 1e8;  // a face without another behind it has a larger thickness
 
 struct FaceCut {
@@ -43,6 +44,23 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     bool shifted = !wall && KERNEL_R + shift < most;
     cut.shift = shifted ? shift : 0.0;
     cut.radius = shifted ? KERNEL_R + shift : sqrt(cut.reach2);
+    return cut;
+}
+
+// Another plane that ends the matter, at a crease, as a ray sees it; mirrors FaceRay::Crease and FaceCut::Crease.
+struct FaceCrease {
+    float p;         // n . p
+    float u;         // n . u
+    float distance;  // from the voxel's centre; beyond FACE_NO_WALL there is none
+    float facing;    // cosine of its normal with the face's
+};
+
+// By as much as it lets the kernel reach further.
+FaceCut with_crease(FaceCut cut, float distance) {
+    float further = distance < KERNEL_R + cut.depth ? max((2.0 * distance - cut.depth) * cut.depth, 0.0) : 0.0;
+    cut.reach2 = min(cut.reach2 + further, FACE_FARTHEST * FACE_FARTHEST);
+    cut.shift = further > 0.0 ? 0.0 : cut.shift;
+    cut.radius = further > 0.0 ? sqrt(cut.reach2) : cut.radius;
     return cut;
 }
 #endif

@@ -14,6 +14,7 @@ struct FaceForm {
     vec3 slope;   // its gradient there
     Bending h;
     FaceCut cut;  // depth < 0: the kernel is plain
+    vec4 crease;  // normal and distance of another plane that cuts it, CREASE_NONE without
 };
 
 const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // of SplatInputs::number_material.y

@@ -11,12 +11,12 @@ float table_texel(float x, float y, float layer) {
 float along_axis;  // of the ray, from the voxel; set by splat_value()
 
 // What pass 3 says is not in the table, and rays on which the volume's border or a clip plane cuts the kernel, are integrated.
-FaceFootprint tabulated_footprint(FaceSight sight, bool plain, Slice inside, Slice slice) {
+FaceFootprint tabulated_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice inside, Slice slice) {
     float half_chord = sqrt(max(face_form.cut.reach2 - sight.ray.rho2, 0.0));
     Slice own = Slice(plain ? slice.low : inside.low, plain ? slice.high : inside.high);
     bool whole = (selected_footprint.layer.code & INTEGRATED) == 0u && own.low <= -half_chord && own.high >= half_chord;
-    FaceFootprint f = FaceFootprint(0.0, 0.0, 1.0);
-    for (uint run = whole ? 0u : 1u; run > 0u; --run) f = cut_footprint(sight, plain, inside, slice);
+    FaceFootprint f = FaceFootprint(0.0, 0.0, 1.0, false);
+    for (uint run = whole ? 0u : 1u; run > 0u; --run) f = cut_footprint(sight, p, u, plain, inside, slice);
     float looked_up = half_chord > 0.0 ? footprint_looked_up(selected_footprint.layer, along_axis, sight.ray.rho2) : 0.0;
     // Where the ray comes through the face, or within the kernel's reach.
     float entry = sight.ray.phi.b < 0.0 ? -sight.ray.phi.c / min(sight.ray.phi.b, -FACE_STRAIGHT) : -half_chord;

@@ -21,6 +21,14 @@ EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave
 EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
 EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
 EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept
+// Creases: planes fitted to surfels whose normals differ.
+EDGESPLAT_CONSTANT float CREASE_RADIUS = 2.2f;  // voxels around the nearest surfel
+EDGESPLAT_CONSTANT float CREASE_TURNED = 0.6f;  // cosine: normals of two planes are less alike
+EDGESPLAT_CONSTANT float CREASE_ALIKE = 0.93f;  // cosine: those of one plane's surfels are more alike
+EDGESPLAT_CONSTANT float CREASE_BEHIND = 0.1f;  // voxels that one plane's surfels lie inside of another plane
+EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // in which a plane's normal settles
+EDGESPLAT_CONSTANT float CREASE_FROM = 1e-3f;   // voxels^2, summed: where a quadric leaves less none is looked for
+EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // planes further off cut no kernel
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 8), 1/voxel
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
@@ -95,7 +103,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; t
     X(SPEC_PIECES, 34u)       /* of a ray in a cut kernel that count: 2, or 1 where matter is opaque */ \
     X(SPEC_SKIP, 35u)         /* 1: transparent bricks are leapt over */ \
     X(SPEC_RAY_LIGHT, 36u)    /* 0 without light, else 1 + Light::Kind */ \
-    X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */
+    X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */ \
+    X(SPEC_CREASES, 38u)      /* 1: planes beside faces cut kernels, too */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -34,6 +35,7 @@ layout(location = 11) flat in vec4 face_mixed;
 layout(location = 12) flat in float face_reach2;
 layout(location = 13) flat in vec4 first_selected;
 layout(location = 14) flat in vec4 second_selected;
+layout(location = 15) flat in vec4 crease;
 layout(location = 0) out vec4 sheet;
 
 #include "shaders/footprints/face_form.glsl"
@@ -47,7 +49,7 @@ SelectedFootprint selected_footprint;
 void main() {
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
-                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0));
+                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0), crease);
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;

@@ -7,6 +7,7 @@
 
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
@@ -37,6 +38,7 @@ layout(location = 11) flat out vec4 face_mixed;    // thickness last
 layout(location = 12) flat out float face_reach2;
 layout(location = 13) flat out vec4 first_selected;   // with a table only, SelectedFootprint in two parts
 layout(location = 14) flat out vec4 second_selected;
+layout(location = 15) flat out vec4 crease;
 
 void main() {
     SheetGroup sheets = GroupsRef(params.frame.groups).at[group];
@@ -83,6 +85,7 @@ void main() {
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
         face_reach2 = s.face.cut.reach2;
+        if (CREASES == 1u) crease = s.face.crease;
     }
     if (FOOTPRINTS == TABLE) {
         first_selected = first_texel(s.selected);

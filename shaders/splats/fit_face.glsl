@@ -2,6 +2,7 @@
 // faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims` and
 // `material_at(ivec3)`.
 #include "shaders/edges/edge_record.glsl"
+#include "shaders/splats/crease_record.glsl"
 #include "shaders/footprints/face_record.glsl"
 
 struct Surfel {
@@ -120,6 +121,8 @@ struct Face {
     Edge edge;
     Bending h;
     bool mixed;  // what faces the other way around is the other end of the material's interval
+    bool creased;
+    vec4 crease;
 };
 
 // How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
@@ -211,9 +214,11 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
     return wrong;
 }
 
+#include "shaders/splats/fit_crease.glsl"
+
 // Without a surface in reach: no edge.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false);
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = FACE_SEARCH;
     uint state = EDGE_LOWER;
@@ -271,6 +276,18 @@ Face fit_face(ivec3 p, uint material) {
         // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a voxel.
         bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < FIT_OWN * error);
         is_wall = is_wall && !is_own;
+        float best = is_own ? e.own + wrong.z : error;
+        for (int run = found && best > CREASE_FROM ? 1 : 0; run > 0; --run) {
+            CreaseFit crease = fit_crease(p, material, middle, state, n);
+            float left = crease.found ? crease_error(p, material, middle, n, crease) : 1e9;
+            face.creased = left < FIT_OWN * best;
+            face.crease = crease.second;
+            face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
+        }
+        if (face.creased) {
+            face.mixed = false;
+            return face;
+        }
         Quadric q = one;
         if (is_wall) q = wall;
         if (is_own) {

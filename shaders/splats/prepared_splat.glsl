@@ -35,7 +35,8 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
 }
 
 const uint PREPARED_KERNEL = 2u;
-const uint PREPARED_START = FACES ? 6u : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
+const uint PREPARED_CREASE = 6u;
+const uint PREPARED_START = FACES ? 6u + CREASES : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
 const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
@@ -59,6 +60,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
                    vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), 0.0));
+        if (CREASES == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CREASE), f.crease);
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL), s.inputs.normal_distance);
@@ -94,8 +96,10 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     if (FACES) {
         vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
-        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0));
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0),
+                                 CREASE_NONE);
         s.inputs.number_material = uvec2(floatBitsToUint(d.y), floatBitsToUint(d.z));
+        if (CREASES == 1u) s.inputs.face.crease = imageLoad(prepared, prepared_texel(at + PREPARED_CREASE));
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));

@@ -50,15 +50,19 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
-        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0));
+        s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
+                          CREASE_NONE);
         for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
-            h = bending_of(number, e);
+            FaceTraits traits = traits_of(number, e);
+            FaceCut cut = cut_of(e, traits);
+            h = traits.h;
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
-            s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
+            uint code = BendingsRef(params.frame.traits).at[number].x;
+            s.number_material.y |= (code & (FACE_MIXED | FACE_CREASED)) == FACE_MIXED ? IS_MIXED : 0u;
             vec3 at_foot = bent(h, e.d * e.n);
-            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut_of(e, h));
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
         }
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }

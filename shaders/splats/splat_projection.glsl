@@ -4,6 +4,7 @@
 #define EDGESPLAT_SPLAT_PROJECTION_GLSL
 #include "shaders/footprints/antialias.glsl"
 #include "shaders/edges/edge_record.glsl"
+#include "shaders/splats/crease_record.glsl"
 #include "shaders/footprints/face_form.glsl"
 #include "shaders/shared/footprint_table.h"
 #include "shaders/shared/frame_params.h"
@@ -26,18 +27,40 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-// In the table faces are plane: what bends so little is taken for that. It has no walls.
-Bending bending_of(uint number, Edge e) {
-    uvec2 code = BendingsRef(params.frame.traits).at[number];
-    Bending h = Bending(unpack_bending(code.x), unpack_bending(code.y));
-    if (FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(h) <= TABLE_BENDING) h = Bending(vec3(0.0), vec3(0.0));
-    return h;
-}
-bool is_in_table(uint number, Edge e) { return e.d2 >= params.frame.band && bending_norm(bending_of(number, e)) == 0.0; }
+// What is known of a face beside its normal and distance.
+struct FaceTraits {
+    Bending h;
+    vec4 crease;
+};
 
-FaceCut cut_of(Edge e, Bending h) {
+FaceTraits traits_of(uint number, Edge e) {
+    uvec2 code = BendingsRef(params.frame.traits).at[number];
+    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE);
+    if (CREASES == 1u) {
+        bool creased = (code.x & FACE_CREASED) != 0u;
+        t.crease = creased ? unpack_crease(code) : t.crease;
+        t.h = Bending(creased ? vec3(0.0) : t.h.diagonal, creased ? vec3(0.0) : t.h.mixed);
+    }
+    // In the table faces are plane: what bends so little is taken for that. It has no walls.
+    bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.w >= CREASE_REACH;
+    t.h = Bending(flat_enough ? vec3(0.0) : t.h.diagonal, flat_enough ? vec3(0.0) : t.h.mixed);
+    return t;
+}
+
+bool is_in_table(uint number, Edge e) {
+    FaceTraits t = traits_of(number, e);
+    return e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.w >= CREASE_REACH;
+}
+
+FaceCut cut_of(Edge e, inout FaceTraits t) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
-    return face_cut(e.d, dot(e.n, bent(h, e.n)), bending_norm(h), thickness, params.frame.face_depth);
+    FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, params.frame.face_depth);
+    if (CREASES == 1u) {
+        // A plane that cuts nothing is none.
+        t.crease = t.crease.w < params.frame.support + cut.depth ? t.crease : CREASE_NONE;
+        cut = with_crease(cut, t.crease.w);
+    }
+    return cut;
 }
 
 // Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from
@@ -93,7 +116,8 @@ Projection place_splat(uint number, uint voxel, Edge e) {
     bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
     vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
     for (uint run = FACES && cut_or_warped ? 1u : 0u; run > 0u; --run) {
-        FaceCut cut = cut_of(e, bending_of(number, e));
+        FaceTraits traits = traits_of(number, e);
+        FaceCut cut = cut_of(e, traits);
         support = vec2(cut.shift, cut.radius);
     }
     p.centre = support.x * e.n;

@@ -86,10 +86,16 @@ VolumePiece piece_in_volume(vec3 u) {
     return VolumePiece(low, min(far.x, min(far.y, far.z)), normalize(params.frame.normal_to_world * out_of));
 }
 
+FaceCrease crease_seen(vec3 p, vec3 u) {
+    vec4 plane = face_form.crease;
+    return FaceCrease(dot(plane.xyz, p), dot(plane.xyz, u), plane.w, dot(plane.xyz, face_form.slope));
+}
+
 // What the surface shows where the ray meets it, z from p; `at_border`: it enters the volume there. `ahead`: of the eye's way to p.
-vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead, bool at_border) {
+vec3 face_payload(FaceSight sight, float z, float side, bool from_crease, vec3 u, float ahead, bool at_border) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
     vec3 slope = sight.slope + z * sight.turn;
+    if (CREASES == 1u) slope = from_crease ? face_form.crease.xyz : slope;
     // Both faces of a layer between two iso-values face the lower values.
     uint axis = number_material.y >> MAIN_AXIS_AT;
     float along = (axis & 3u) == 0u ? slope.x : (axis & 3u) == 1u ? slope.y : slope.z;
@@ -108,30 +114,33 @@ vec3 face_payload(FaceSight sight, float z, float side, vec3 u, float ahead, boo
 }
 
 // What is left of the kernel on the ray: between `slice`, and of one that is cut, within `inside`.
-FaceFootprint cut_footprint(FaceSight sight, bool plain, Slice inside, Slice slice) {
-    FaceFootprint f = footprint_face(sight.ray, face_form.cut, inside);
+FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice inside, Slice slice) {
+    FaceCrease crease;
+    if (CREASES == 1u) crease = crease_seen(p, u);
+    FaceFootprint f = footprint_face(sight.ray, face_form.cut, CREASES == 1u, crease, inside);
     f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
     f.entry = plain ? 0.0 : f.entry;
     f.side = plain ? 1.0 : f.side;
+    f.from_crease = !plain && f.from_crease;
     return f;
 }
 #include "shaders/footprints/tabulated_footprint.glsl"
 
 // (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
-vec4 face_value(FaceSight sight, vec3 u, float ahead, float z, Slice slice) {
+vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice slice) {
     bool plain = face_form.cut.depth < 0.0;
     float border = volume_piece.low - ahead;
     Slice inside = Slice(max(slice.low, border), min(slice.high, volume_piece.high - ahead));
     FaceFootprint f;
-    if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, plain, inside, slice);
-    else f = cut_footprint(sight, plain, inside, slice);
+    if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, p, u, plain, inside, slice);
+    else f = cut_footprint(sight, p, u, plain, inside, slice);
     bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry;
     f.entry = at_border ? border : f.entry;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;
     }
-    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, u, ahead, at_border);
+    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, f.from_crease, u, ahead, at_border);
     return f.integral * vec4(payload, 1.0);
 }
 
@@ -158,7 +167,8 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
                    is_in_matter(matter2, t, normal_distance.w, FOOTPRINTS == ISOTROPIC || shape.x < 0.0, params.frame.footprint);
         if (FACES) {
             bool plain = face_form.cut.depth < 0.0;
-            bool inside = footprint_face(sight.ray, face_form.cut, Slice(piece.low, piece.low + 1e-3)).integral > 0.0;
+            Slice here = Slice(piece.low, piece.low + 1e-3);
+            bool inside = cut_footprint(sight, p, u, plain, here, here).integral > 0.0;
             cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 && (plain ? matter2 < KERNEL_R2 : inside);
         }
         vec3 payload = color_sigma.rgb;
@@ -167,7 +177,7 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
         cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
         if (FACES) {
             vec4 value = vec4(0.0);
-            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, u, ahead, z, cut);
+            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, p, u, ahead, z, cut);
             sum += vec4(cap ? value.a * payload : value.rgb, value.a);
             continue;
         }
@@ -193,7 +203,7 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, ahead, slice);
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
-    if (FACES) return color_sigma.a * mm * in_front * face_value(face_sight(p, u), u, ahead, z, slice);
+    if (FACES) return color_sigma.a * mm * in_front * face_value(face_sight(p, u), p, u, ahead, z, slice);
     float value = drawn_footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), z, slice);
     float tau = color_sigma.a * mm * value * in_front;
     return vec4(tau * color_sigma.rgb, tau);

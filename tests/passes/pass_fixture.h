@@ -168,10 +168,16 @@ inline std::vector<reference::SplatRecord> device_records(RendererState& state) 
             records[i].classified = transfer_at(points, static_cast<double>(values[i]));
     }
     if (!state.volume_resources.traits) return records;
-    const auto bendings = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
+    const auto traits = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
-        records[i].edge.bending = decode_bending(bendings[i]);
-        records[i].edge.mixed = (bendings[i].x >> 30U & 1U) != 0;
+        reference::VoxelEdge& edge = records[i].edge;
+        if (traits[i].x >> 31U != 0) {
+            const auto plane = decode_edge(traits[i].y, (traits[i].x & 0xffffU) | shader::EDGE_LOWER << 26U);
+            edge.crease = {plane.n, plane.D};
+            continue;
+        }
+        edge.bending = decode_bending(traits[i]);
+        edge.mixed = (traits[i].x >> 30U & 1U) != 0;
     }
     return records;
 }

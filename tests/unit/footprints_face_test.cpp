@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/glm.hpp>
 #include <limits>
 #include <random>
 
@@ -50,6 +51,65 @@ TEST(Face, NothingLiesBeyondAFace) {
     const FaceCut at = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     EXPECT_EQ(FacePath(plane_ray(0.5, 0, 0.51, 0), at).footprint(8).integral, 0);
     EXPECT_GT(FacePath(plane_ray(0.5, 0, 0.49, 0), at).footprint(8).integral, 0.1);
+}
+
+/// The sum of kernels of all voxels of a corner x < a, y < b at the point x (z 0), along the y axis's rays.
+double sum_in_corner(const glm::dvec2& corner, const glm::dvec2& x) {
+    double sum = 0;
+    for (int i = -6; i <= 6; ++i)
+        for (int j = -6; j <= 6; ++j)
+            for (int k = -4; k <= 4; ++k) {
+                const glm::dvec2 distance(corner.x - i, corner.y - j);
+                if (distance.x < 0 || distance.y < 0) continue;
+                // The nearer plane is the face, as it is of voxels; the ray runs along y.
+                const bool first = distance.x <= distance.y;
+                FaceCut cut = face_cut(first ? distance.x : distance.y, 0, 0, std::numeric_limits<double>::infinity());
+                add_crease(cut, {first ? distance.y : distance.x, 0});
+                const glm::dvec2 p(x.x - i, -k);
+                FaceRay ray;
+                ray.rho2 = p.x * p.x + p.y * p.y;
+                ray.phi = first ? Quadratic{p.x - distance.x, 0, 0} : Quadratic{-distance.y, 1, 0};
+                ray.slope2 = {1, 0, 0};
+                ray.across = first ? p.x : 0;
+                ray.crease = first ? FaceRay::Crease{0, 1} : FaceRay::Crease{p.x, 0};
+                sum += FacePath(ray, cut).kernel_at(x.y - j);
+            }
+    return sum;
+}
+
+TEST(Face, AtACreaseTheSumIsThePlateau) {
+    // Beside both planes of a corner, and next to one of them, as deep in the matter; nothing beyond.
+    const glm::dvec2 corner(0.3, 0.6);
+    double least = 1e9, most = 0;
+    for (double x = -3; x < 0.3; x += 0.31)
+        for (double y = -3; y < 0.6; y += 0.29) {
+            const double sum = sum_in_corner(corner, {x, y});
+            least = std::min(least, sum);
+            most = std::max(most, sum);
+        }
+    // .8 of a voxel behind a plane lattices leave .82 at least; behind two of them the product.
+    EXPECT_GT(least, 0.67);
+    EXPECT_LT(most, 1.02);
+    EXPECT_EQ(sum_in_corner(corner, {0.31, 0}), 0);
+    EXPECT_EQ(sum_in_corner(corner, {0, 0.61}), 0);
+}
+
+TEST(Face, ACreaseIsWhereTheRayEnters) {
+    FaceCut cut = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
+    add_crease(cut, {0.7, 0});
+    FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face
+    ray.crease = {0, -1};
+    const FaceFootprint entered = FacePath(ray, cut).footprint(8);
+    EXPECT_TRUE(entered.from_crease);
+    EXPECT_NEAR(entered.entry, -0.7, 1e-12);
+    ray.crease = {0, 1};
+    EXPECT_FALSE(FacePath(ray, cut).footprint(8).from_crease);
+    // Out of the other plane's reach nothing is cut.
+    FaceCut plain = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
+    const double reach = plain.reach;
+    add_crease(plain, {4, 0});
+    EXPECT_FALSE(plain.crease.distance < 1e9);
+    EXPECT_EQ(plain.reach, reach);
 }
 
 TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {

@@ -143,15 +143,26 @@ TEST(FootprintShader, MirrorsFaces) {
                           glm::dot(p, turn)};
         const double thickness = i % 3 == 0 ? distance + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
         const double deepest = i % 2 == 0 ? kFaceDepth : kDeepFaceDepth;
-        const FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest);
-        const four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
-                                                 thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
+        FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest);
+        four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
+                                           thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
+        const auto plane = [&] { return glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))); };
+        const glm::dvec3 normal = plane();
+        const double beside = i % 4 == 1 ? uniform(0.1, 2) : 9;
+        FaceRay creased = ray;
+        creased.crease = {glm::dot(normal, p), glm::dot(normal, u)};
+        add_crease(want, {beside, glm::dot(normal, own)});
+        got = four::with_crease(got, f(beside));
+        const bool cuts = want.crease.distance < 9;
+        const four::FaceCrease crease{f(creased.crease.p), f(creased.crease.u), cuts ? f(beside) : 1e9F,
+                                      f(glm::dot(normal, own))};
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
         EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
         EXPECT_GE(static_cast<double>(got.shift + got.radius), 1.59);
-        const FaceFootprint a = FacePath(ray, want).footprint(4);
-        const four::FaceFootprint b = four::footprint_face(
-            {f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), f(ray.across), f(ray.turn)}, got, {-1e9F, 1e9F});
+        const FaceFootprint a = FacePath(creased, want).footprint(4);
+        const four::FaceFootprint b =
+            four::footprint_face({f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), f(ray.across), f(ray.turn)},
+                                 got, true, crease, {-1e9F, 1e9F});
         error.add(static_cast<double>(b.integral), a.integral);
         if (!(a.integral > 1e-3)) continue;
         ++cut;

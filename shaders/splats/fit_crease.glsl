@@ -1,0 +1,116 @@
+// A crease beside a splat: up to three planes between which its matter lies, where no quadric fits. docs/method.md, pass 2,
+// creases; mirrored by engine/reference/creases.h. In shaders/splats/fit_face.glsl.
+
+// No array: what a loop indexes of one in a struct came out wrong on lavapipe 22.3.
+struct CreaseFit {
+    bool found;
+    vec4 first;  // n, distance from the voxel; the nearest
+    vec4 second;
+    vec4 third;  // CREASE_NONE: there are but two
+};
+
+float crease_weight(Surfel s, vec3 middle, uint state) {
+    vec3 r = s.at - middle;
+    float w = max(1.0 - dot(r, r) / (CREASE_RADIUS * CREASE_RADIUS), 0.0);
+    return s.there && !s.border && s.state == state ? w * w : 0.0;
+}
+
+// Of the surfels around the one at `middle`: the normal that is least like both; 0 where all are like one.
+vec3 most_different(ivec3 p, uint material, vec3 middle, uint state, vec3 a, vec3 b) {
+    ivec3 around = p + ivec3(round(middle));
+    vec3 best = vec3(0.0);
+    float least = CREASE_TURNED;
+    for (int i = 0; i < 125; ++i) {
+        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        float like = max(dot(s.n, a), dot(s.n, b));
+        // Of what differs as much the first is taken, whichever way numbers are rounded.
+        bool better = crease_weight(s, middle, state) > 0.02 && like < least - 1e-4;
+        least = better ? like : least;
+        best = better ? s.n : best;
+    }
+    return best;
+}
+
+struct PlaneFit {
+    vec3 n;  // 0: none
+    vec3 place;
+};
+
+PlaneFit fit_plane(ivec3 p, uint material, vec3 middle, uint state, vec3 seed) {
+    ivec3 around = p + ivec3(round(middle));
+    PlaneFit fit = PlaneFit(seed, vec3(0.0));
+    for (int step = 0; step < CREASE_STEPS; ++step) {
+        vec3 normals = vec3(0.0), places = vec3(0.0);
+        float sum = 0.0;
+        for (int i = 0; i < 125; ++i) {
+            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+            float w = crease_weight(s, middle, state) * max(dot(s.n, fit.n) - CREASE_ALIKE, 0.0) / (1.0 - CREASE_ALIKE);
+            normals += w * s.n;
+            places += w * s.at;
+            sum += w;
+        }
+        fit.n = sum > 0.05 ? normalize(normals) : vec3(0.0);
+        fit.place = places / max(sum, 1e-9);
+    }
+    return fit;
+}
+
+// Whether the plane of one cuts what the other lies on: matter lies inside of all of them, and where a crease is hollow it does not.
+// Planes that face away from each other are a wall's.
+bool cuts_other(PlaneFit fit, PlaneFit other) {
+    return dot(fit.n, other.place - fit.place) > -CREASE_BEHIND || dot(fit.n, other.n) < -0.5;
+}
+
+vec4 plane_of(PlaneFit fit) { return dot(fit.n, fit.n) > 0.0 ? vec4(fit.n, dot(fit.n, fit.place)) : CREASE_NONE; }
+
+// The nearer comes first.
+void order_planes(inout vec4 a, inout vec4 b) {
+    bool nearer = b.w < a.w - 1e-4;
+    vec4 other = b;
+    b = nearer ? a : b;
+    a = nearer ? other : a;
+}
+
+CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 n) {
+    vec3 a = most_different(p, material, middle, state, n, n);
+    vec3 b = most_different(p, material, middle, state, a, a);
+    vec3 c = most_different(p, material, middle, state, a, b);
+    bool third = dot(c, c) > 0.0;
+    PlaneFit one = fit_plane(p, material, middle, state, a), two = fit_plane(p, material, middle, state, b);
+    PlaneFit three = fit_plane(p, material, middle, state, c);
+    bool some = dot(a, a) > 0.0 && dot(b, b) > 0.0 && dot(one.n, one.n) > 0.0 && dot(two.n, two.n) > 0.0;
+    some = some && !cuts_other(one, two) && !cuts_other(two, one) && (!third || dot(three.n, three.n) > 0.0);
+    bool cut = cuts_other(one, three) || cuts_other(two, three) || cuts_other(three, one) || cuts_other(three, two);
+    some = some && !(third && cut);
+    CreaseFit found = CreaseFit(some, plane_of(one), plane_of(two), plane_of(three));
+    order_planes(found.first, found.second);
+    order_planes(found.second, found.third);
+    order_planes(found.first, found.second);
+    return found;
+}
+
+// How far a point lies outside.
+float off_crease(CreaseFit crease, vec3 r) {
+    float two = max(dot(crease.first.xyz, r) - crease.first.w, dot(crease.second.xyz, r) - crease.second.w);
+    return max(two, dot(crease.third.xyz, r) - crease.third.w);
+}
+
+// Squared, summed over the surfels around, by weight, and over samples that lie on the wrong side.
+float crease_error(ivec3 p, uint material, vec3 middle, vec3 n, CreaseFit crease) {
+    float error = 0.0;
+    ivec3 around = p + ivec3(round(middle));
+    for (int i = 0; i < 125; ++i) {
+        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        float off = off_crease(crease, s.at);
+        error += s.there && !s.border ? surfel_weight(s.at - middle, n, s.n) * off * off : 0.0;
+    }
+    for (int i = 0; i < 27; ++i) {
+        ivec3 q = p + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+        bool there = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
+        bool inside = there && material_at(clamp(q, ivec3(0), dims - 1)) == material;
+        float off = off_crease(crease, vec3(q - p));
+        off = min(max(inside ? off : -off, 0.0), 1.0);
+        error += off * off;
+    }
+    return error;
+}
