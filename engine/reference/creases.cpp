@@ -101,8 +101,8 @@ CreasePlanes crease_planes(std::span<const Surfel> surfels, const dvec3& middle,
         fits.at(count) = fit.plane(seed);
         if (!fits.at(count++).found) return {};
     }
-    // Matter lies inside of all of them: where a crease is hollow, a plane cuts what is there. Planes that face away from
-    // each other are a wall's.
+    // Matter lies inside of all of them: where a crease is hollow, a plane cuts what is there. Planes that face away
+    // from each other are a wall's.
     for (std::size_t k = 0; k < count; ++k)
         for (std::size_t l = 0; l < count; ++l) {
             if (k == l) continue;
