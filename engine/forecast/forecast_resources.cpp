@@ -109,7 +109,7 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
     }
     out.push_back(on_host(buffer("scene parameters", sizeof(shader::SceneParams), "(1) SceneParams", "host", "1, 2")));
     out.push_back(on_host(buffer("run offsets", (passes::collect_runs(largest.core_size) + 2) * sizeof(std::uint32_t),
-                                 "(runs + 1) uint", "2, host", "2, host")));
+                                 "(runs + 2) uint", "2, host", "2, host")));
     if (!plan.transfer.empty()) {
         out.push_back(on_host(buffer("transfer function", plan.transfer.size() * sizeof(shader::TransferRow),
                                      "(rows) TransferRow", "host", "2, 5")));

@@ -5,10 +5,17 @@
 
 namespace edgesplat::passes {
 
+namespace {
+
+bool cuts_at_faces(const DrawVariant& variant) {
+    return variant.footprints != FootprintMode::Isotropic && variant.warp == WarpFamily::Face;
+}
+
+}  // namespace
+
 std::uint32_t prepared_stride(const DrawVariant& variant) {
     std::uint32_t vectors = 4;  // conic, start, colour
-    const bool faces = variant.footprints != FootprintMode::Isotropic && variant.warp == WarpFamily::Face;
-    if (variant.footprints != FootprintMode::Isotropic) vectors += faces ? 4 : 2;
+    if (variant.footprints != FootprintMode::Isotropic) vectors += cuts_at_faces(variant) ? 4 : 2;
     if (variant.creases) vectors += 1;
     if (variant.sliced) vectors += 1;
     if (variant.clip.keep + variant.clip.remove > 0) vectors += 2;
@@ -20,7 +27,7 @@ std::uint32_t prepared_stride(const DrawVariant& variant) {
 gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots) {
     // Whether there are creases is known only when splats are: there is room for them wherever there are faces.
     DrawVariant roomy = variant;
-    roomy.creases = variant.footprints != FootprintMode::Isotropic && variant.warp == WarpFamily::Face;
+    roomy.creases = cuts_at_faces(variant);
     const std::uint32_t rows = (slots * prepared_stride(roomy) + shader::PREPARED_ROW - 1) / shader::PREPARED_ROW;
     return {.format = vk::Format::eR32G32B32A32Sfloat,
             .size = {static_cast<int>(shader::PREPARED_ROW), static_cast<int>(rows), 1},

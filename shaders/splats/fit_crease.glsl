@@ -15,20 +15,29 @@ float crease_weight(Surfel s, vec3 middle, uint state) {
     return s.there && !s.border && s.state == state ? w * w : 0.0;
 }
 
-// Of the surfels around the one at `middle`: the normal that is least like both; 0 where all are like one.
+// The normal, of those seen, that is least like some; 0 where all are like one of them.
+struct Different {
+    vec3 n;
+    float like;
+};
+
+Different none_different() { return Different(vec3(0.0), CREASE_TURNED); }
+
+// Of what differs as much the first is taken, whichever way numbers are rounded.
+void see_different(inout Different most, Surfel s, vec3 middle, uint state, float like) {
+    bool better = crease_weight(s, middle, state) > 0.02 && like < most.like - 1e-4;
+    most.like = better ? like : most.like;
+    most.n = better ? s.n : most.n;
+}
+
 vec3 most_different(ivec3 p, uint material, vec3 middle, uint state, vec3 a, vec3 b) {
     ivec3 around = p + ivec3(round(middle));
-    vec3 best = vec3(0.0);
-    float least = CREASE_TURNED;
+    Different most = none_different();
     for (int i = 0; i < 125; ++i) {
         Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
-        float like = max(dot(s.n, a), dot(s.n, b));
-        // Of what differs as much the first is taken, whichever way numbers are rounded.
-        bool better = crease_weight(s, middle, state) > 0.02 && like < least - 1e-4;
-        least = better ? like : least;
-        best = better ? s.n : best;
+        see_different(most, s, middle, state, max(dot(s.n, a), dot(s.n, b)));
     }
-    return best;
+    return most.n;
 }
 
 struct PlaneFit {
@@ -71,21 +80,26 @@ void order_planes(inout vec4 a, inout vec4 b) {
     a = nearer ? other : a;
 }
 
-CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 n) {
-    vec3 a = most_different(p, material, middle, state, n, n);
-    vec3 b = most_different(p, material, middle, state, a, a);
-    vec3 c = most_different(p, material, middle, state, a, b);
-    bool third = dot(c, c) > 0.0;
-    PlaneFit one = fit_plane(p, material, middle, state, a), two = fit_plane(p, material, middle, state, b);
-    PlaneFit three = fit_plane(p, material, middle, state, c);
-    bool some = dot(a, a) > 0.0 && dot(b, b) > 0.0 && dot(one.n, one.n) > 0.0 && dot(two.n, two.n) > 0.0;
-    some = some && !cuts_other(one, two) && !cuts_other(two, one) && (!third || dot(three.n, three.n) > 0.0);
-    bool cut = cuts_other(one, three) || cuts_other(two, three) || cuts_other(three, one) || cuts_other(three, two);
-    some = some && !(third && cut);
-    CreaseFit found = CreaseFit(some, plane_of(one), plane_of(two), plane_of(three));
-    order_planes(found.first, found.second);
-    order_planes(found.second, found.third);
-    order_planes(found.first, found.second);
+// `a`: the normal least like that of the surfel at `middle`.
+CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 a) {
+    CreaseFit found = CreaseFit(false, CREASE_NONE, CREASE_NONE, CREASE_NONE);
+    // Where all normals are alike, as nearly everywhere, nothing else is looked for.
+    for (int run = dot(a, a) > 0.0 ? 1 : 0; run > 0; --run) {
+        vec3 b = most_different(p, material, middle, state, a, a);
+        vec3 c = most_different(p, material, middle, state, a, b);
+        bool third = dot(c, c) > 0.0;
+        PlaneFit one = fit_plane(p, material, middle, state, a), two = fit_plane(p, material, middle, state, b);
+        PlaneFit three = PlaneFit(vec3(0.0), vec3(0.0));
+        for (int more = third ? 1 : 0; more > 0; --more) three = fit_plane(p, material, middle, state, c);
+        bool some = dot(b, b) > 0.0 && dot(one.n, one.n) > 0.0 && dot(two.n, two.n) > 0.0;
+        some = some && !cuts_other(one, two) && !cuts_other(two, one) && (!third || dot(three.n, three.n) > 0.0);
+        bool cut = cuts_other(one, three) || cuts_other(two, three) || cuts_other(three, one) || cuts_other(three, two);
+        some = some && !(third && cut);
+        found = CreaseFit(some, plane_of(one), plane_of(two), plane_of(three));
+        order_planes(found.first, found.second);
+        order_planes(found.second, found.third);
+        order_planes(found.first, found.second);
+    }
     return found;
 }
 

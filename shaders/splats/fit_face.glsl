@@ -251,6 +251,7 @@ Face fit_face(ivec3 p, uint material) {
     for (int run = found || crossed.x || crossed.y ? 1 : 0; run > 0; --run) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
+        Different different = none_different();
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
             Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
@@ -259,6 +260,7 @@ Face fit_face(ivec3 p, uint material) {
             add_surfel(all, r, s.n, w);
             add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
             mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
+            see_different(different, s, middle, state, dot(s.n, n));
         }
         // Where none is seen a layer ends at its lower values.
         face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
@@ -278,16 +280,14 @@ Face fit_face(ivec3 p, uint material) {
         is_wall = is_wall && !is_own;
         float best = is_own ? e.own + wrong.z : error;
         for (int run = found && best > CREASE_FROM ? 1 : 0; run > 0; --run) {
-            CreaseFit crease = fit_crease(p, material, middle, state, n);
-            float left = crease.found ? crease_error(p, material, middle, n, crease) : 1e9;
+            CreaseFit crease = fit_crease(p, material, middle, state, different.n);
+            float left = 1e9;
+            for (int tried = crease.found ? 1 : 0; tried > 0; --tried) left = crease_error(p, material, middle, n, crease);
             face.creased = left < FIT_OWN * best;
             face.crease = crease.second;
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
         }
-        if (face.creased) {
-            face.mixed = false;
-            return face;
-        }
+        if (face.creased) return face;
         Quadric q = one;
         if (is_wall) q = wall;
         if (is_own) {

@@ -59,8 +59,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
-            uint code = BendingsRef(params.frame.traits).at[number].x;
-            s.number_material.y |= (code & (FACE_MIXED | FACE_CREASED)) == FACE_MIXED ? IS_MIXED : 0u;
+            s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
             vec3 at_foot = bent(h, e.d * e.n);
             s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
         }
