@@ -114,6 +114,8 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
                                 std::max(std::min(high, end), from),
                                 entry.side < 0 && begin <= low,
                                 begin > low,
+                                leave.side < 0 && end >= high,
+                                end < high,
                                 plane_at(ray, cut.depth, held(meets ? low : turn), entry),
                                 plane_at(ray, cut.depth, held(meets ? high : turn), leave)};
     };
@@ -158,12 +160,14 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
             sum += rule.weights[k] * kernel(sampled_at(piece, z));
         }
         out.integral += std::max(end - begin, 0.0) * sum;
-        // Slices of a kernel show what its whole shows: the first piece within its reach, else the last.
-        if (&piece != &pieces().back() && !(overlap(piece) > 0)) continue;
-        if (&piece != &pieces().front() && overlap(pieces().front()) > 0) continue;
-        out.entry = std::clamp(piece.low, -half_chord_, half_chord_);
-        out.from_behind = piece.from_behind && piece.low > -half_chord_;
-        out.from_crease = piece.from_crease;
+        // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where
+        // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
+        const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();
+        const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
+        if (first ? last || overlap(piece) > 0 : !(overlap(pieces().front()) > 0))
+            out.entry = {held(piece.low), piece.from_behind && piece.low > -half_chord_, piece.from_crease};
+        if (first || overlap(piece) > 0 || !(overlap(pieces().front()) > 0))
+            out.leave = {held(piece.high), piece.to_behind && piece.high < half_chord_, piece.to_crease};
     }
     return out;
 }

@@ -83,17 +83,23 @@ struct FacePlane {
 struct FacePiece {
     double low = 0, high = 0;
     bool from_behind = false, from_crease = false;
+    bool to_behind = false, to_crease = false;
     FacePlane entry, leave;
     /// The plane that the point z of the ray is sampled by: that of the nearer end.
     const FacePlane& plane(double z) const { return z > 0.5 * (low + high) ? leave : entry; }
 };
 
-/// The integral of a cut kernel along a ray, per voxel, and where the matter was entered.
+/// An end of the ray's way through a kernel's matter: at a face, or where it comes within the kernel's reach.
+struct FaceEnd {
+    double z = 0;
+    bool behind = false;  ///< the wall's other face
+    bool crease = false;  ///< the crease's plane
+};
+
+/// The integral of a cut kernel along a ray, per voxel, where the ray enters its matter first, and leaves it last.
 struct FaceFootprint {
     double integral = 0;
-    double entry = 0;          ///< z of the light: where the ray enters, or where it comes within the kernel's reach
-    bool from_behind = false;  ///< it enters by the wall's other face
-    bool from_crease = false;  ///< it enters by the crease's plane
+    FaceEnd entry, leave;
 };
 
 /// Which of a ray's two pieces count. Of opaque matter what lies behind the first is not seen, and a kernel has most of

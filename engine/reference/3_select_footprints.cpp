@@ -32,11 +32,16 @@ VolumePiece piece_in_volume(const View& view, const glm::dvec3& u) {
         const double way = std::abs(u[axis]) < 1e-8 ? 1e-8 : u[axis];
         const double a = (-0.5 - view.eye_index[axis]) / way;
         const double b = (view.geometry.dims[axis] - 0.5 - view.eye_index[axis]) / way;
-        piece.high = std::min(piece.high, std::max(a, b));
-        if (!(std::min(a, b) > piece.low)) continue;
-        piece.low = std::min(a, b);
-        piece.normal = glm::dvec3(0);
-        piece.normal[axis] = way > 0 ? -1 : 1;
+        glm::dvec3 out(0);
+        out[axis] = way > 0 ? 1 : -1;
+        if (std::max(a, b) < piece.high) {
+            piece.high = std::max(a, b);
+            piece.far_normal = out;
+        }
+        if (std::min(a, b) > piece.low) {
+            piece.low = std::min(a, b);
+            piece.normal = -out;
+        }
     }
     return piece;
 }

@@ -37,9 +37,10 @@ struct View {
 /// it misses it.
 struct VolumePiece {
     double low = 0, high = 0;
-    glm::dvec3 normal{0};  ///< of the border where the ray enters, out of the volume; index space, unit
+    glm::dvec3 normal{0};      ///< of the border where the ray enters, out of the volume; index space, unit
+    glm::dvec3 far_normal{0};  ///< where it leaves
     /// Counted from a point that the eye lies `eye` from, along the ray.
-    VolumePiece seen_from(double eye) const { return {low + eye, high + eye, normal}; }
+    VolumePiece seen_from(double eye) const { return {low + eye, high + eye, normal, far_normal}; }
 };
 
 /// Along the unit vector `u`, index space.

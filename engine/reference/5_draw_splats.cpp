@@ -83,46 +83,83 @@ glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::d
     return world_normal(view.geometry, face);
 }
 
+namespace {
+
+/// A splat as a ray p + z u sees it.
+struct SeenSplat {
+    const SplatRecord& record;
+    const Scene& scene;
+    const View& view;
+    const Settings& settings;
+    glm::dvec3 center, p, u;
+    FaceSight sight;  ///< of what is cut at a face
+    bool cut = false;
+
+    /// What it shows at an end of the ray's way through its matter: `border`: the volume's normal where that ends
+    /// there, else 0.
+    glm::dvec3 at(const FaceEnd& end, const glm::dvec3& border, Payload payload) const {
+        const VoxelEdge& edge = record.edge;
+        glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
+        bool upper = edge.upper;
+        if (cut) {
+            outward = sight.outward(end.z, end.behind);
+            if (end.crease) outward = edge.crease.n;
+            // Both faces of a layer between two iso-values face the lower values.
+            const glm::dvec3 a = glm::abs(edge.n);
+            const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
+            upper = upper != (edge.mixed && outward[axis] * edge.n[axis] < 0);
+        }
+        if (border != glm::dvec3(0)) {
+            outward = border;
+            upper = false;
+        }
+        // What the eye is in is seen right before it.
+        const double eye = glm::dot(view.eye_index - center - p, u);
+        const glm::dvec3 at = center + p + std::max(end.z, eye + 1e-4) * u;
+        const bool faceless = glm::length(outward) == 0;
+        const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, upper ? -outward : outward);
+        if (payload == Payload::Depth) return {view.depth(at), 0, 0};
+        if (payload == Payload::Normal) return normal;
+        const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
+        return shade(scene,
+                     {.color = record.color(scene),
+                      .response = scene.materials[record.material].response,
+                      .normal = unlit ? glm::dvec3(0) : normal,
+                      .position = view.geometry.to_world(at),
+                      .depth = view.depth(at)},
+                     view.frame.eye);
+    }
+};
+
+}  // namespace
+
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                         const Settings& settings, Payload payload, const Footprints& footprints, const glm::dvec3& p,
                         const glm::dvec3& u, const Slice& slice, bool plain) {
     const VoxelEdge& edge = record.edge;
     if (payload == Payload::Distance) return payload_of(record, field, scene, view, settings, payload);
-    glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
-    double z = 0;
-    bool upper = edge.upper;
-    if (footprints.cuts(edge)) {
-        const FaceFootprint seen = plain ? FaceFootprint{} : footprints.at_face(edge, p, u, slice);
-        z = seen.entry;
-        outward = face_sight(drawn_edge(edge, settings), p, u).outward(z, seen.from_behind);
-        if (seen.from_crease) outward = edge.crease.n;
-        // Both faces of a layer between two iso-values face the lower values.
-        const glm::dvec3 a = glm::abs(edge.n);
-        const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
-        upper = upper != (edge.mixed && outward[axis] * edge.n[axis] < 0);
-    }
-    // What the eye is in is seen right before it.
-    const glm::dvec3 on_ray = glm::dvec3(field.voxel(record.voxel)) + p;
-    const double eye = glm::dot(view.eye_index - on_ray, u);
+    SeenSplat seen{
+        record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, {}, footprints.cuts(edge)};
+    if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
+    seen.sight = face_sight(drawn_edge(edge, settings), p, u);
+    if (plain) return seen.at({}, glm::dvec3(0), payload);
+    FaceFootprint f = footprints.at_face(edge, p, u, slice);
+    const double eye = glm::dot(view.eye_index - seen.center - p, u);
     const VolumePiece inside = piece_in_volume(view, u).seen_from(eye);
-    if (footprints.cuts(edge) && !plain && inside.low > std::max(z, eye)) {
-        z = inside.low;
-        outward = inside.normal;
-        upper = false;
-    }
-    const glm::dvec3 at = on_ray + std::max(z, eye + 1e-4) * u;
-    const bool faceless = glm::length(outward) == 0;
-    const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, upper ? -outward : outward);
-    if (payload == Payload::Depth) return {view.depth(at), 0, 0};
-    if (payload == Payload::Normal) return normal;
-    const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
-    return shade(scene,
-                 {.color = record.color(scene),
-                  .response = scene.materials[record.material].response,
-                  .normal = unlit ? glm::dvec3(0) : normal,
-                  .position = view.geometry.to_world(at),
-                  .depth = view.depth(at)},
-                 view.frame.eye);
+    const bool at_border = inside.low > std::max(f.entry.z, eye);
+    const glm::dvec3 normal = at_border ? inside.normal : glm::dvec3(0);
+    if (at_border) f.entry.z = inside.low;
+    if (payload != Payload::Color || !footprints.lit_in_depth()) return seen.at(f.entry, normal, payload);
+    // The nearer half of the way is lit as where it begins, the farther as where it ends.
+    const double half_chord = std::sqrt(std::max(kKernelRadius * kKernelRadius - glm::dot(p, p), 0.0));
+    const bool to_border = inside.high < f.leave.z;
+    f.leave.z = std::max(std::min(std::min(inside.high, f.leave.z), half_chord), f.entry.z);
+    if (!at_border) f.entry.z = std::min(std::max(f.entry.z, -half_chord), f.leave.z);
+    const double tau =
+        record.extinction(scene) * glm::length(view.geometry.index_to_world_axes * u) * (f.leave.z - f.entry.z);
+    const double share = 1 / (1 + std::exp(0.5 * tau));
+    return glm::mix(seen.at(f.entry, normal, payload),
+                    seen.at(f.leave, to_border ? inside.far_normal : glm::dvec3(0), payload), share);
 }
 
 SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,

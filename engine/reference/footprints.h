@@ -34,6 +34,9 @@ class Footprints {
     bool cuts(const VoxelEdge& edge) const;
     /// What a ray passes of it.
     FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
+    /// Whether light falls in the depth of what a ray passes: where one sees through matter, and both pieces of it
+    /// count.
+    bool lit_in_depth() const { return face_depth_ > kFaceDepth && pieces_ == FacePieces::Both; }
     FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
     /// Whether the table has it: whole kernels, plain or cut at one face. Then its layers, and the axis (unit, across

@@ -24,11 +24,17 @@ struct FaceRay {
     float turn;    // p . Hu
 };
 
+// Where a ray enters a kernel's matter, or leaves it.
+struct FaceEnd {
+    float z;
+    float side;   // -1: by the wall's other face, else 1
+    bool crease;  // by the crease's plane
+};
+
 struct FaceFootprint {
     float integral;
-    float entry;
-    float side;  // -1: the ray enters by the wall's other face, else 1
-    bool from_crease;  // it enters by the crease's plane
+    FaceEnd entry;
+    FaceEnd leave;
 };
 
 struct FaceRoots {
@@ -177,14 +183,22 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease 
         result.integral += first && has_inner ? other : 0.0;
     }
     result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
-    result.side = from_behind && from > -half_chord ? -1.0 : 1.0;
-    result.from_crease = false;
+    result.entry = FaceEnd(from, from_behind && from > -half_chord ? -1.0 : 1.0, false);
+    // Where a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last piece.
+    bool last = FACE_PIECES == 2u && first && has_inner && after > 0.0;
+    to = last ? outer_high : to;
+    to_behind = last ? outer_behind : to_behind;
+    result.leave = FaceEnd(to, to_behind && to < half_chord ? -1.0 : 1.0, false);
     if (creased) {
-        result.from_crease = ends.low > from;
-        result.side = result.from_crease ? 1.0 : result.side;
-        from = max(from, ends.low);
+        result.entry.crease = ends.low > from;
+        result.leave.crease = ends.high < to;
+        result.entry.side = result.entry.crease ? 1.0 : result.entry.side;
+        result.leave.side = result.leave.crease ? 1.0 : result.leave.side;
+        result.entry.z = max(from, ends.low);
+        result.leave.z = max(min(to, ends.high), result.entry.z);
     }
-    result.entry = clamp(from, -half_chord, half_chord);
+    result.entry.z = clamp(result.entry.z, -half_chord, half_chord);
+    result.leave.z = clamp(result.leave.z, -half_chord, half_chord);
     return result;
 }
 #endif

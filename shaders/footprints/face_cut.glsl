@@ -4,6 +4,7 @@
 #define EDGESPLAT_FACE_CUT_GLSL
 
 const float FACE_FARTHEST = KERNEL_R + 1.4;  // R + kDeepFaceDepth: no kernel reaches further
+const float FACE_DEPTH = 0.8;  // kFaceDepth: no deeper where nothing is seen through
 const float FACE_NO_WALL = 1e8;  // a face without another behind it has a larger thickness
 
 struct FaceCut {

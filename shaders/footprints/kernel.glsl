@@ -22,23 +22,4 @@ float kernel_footprint(float rho2) {
     return w * w * sqrt(w) * (0.0296319722 + w * (-0.0591020484 + w * (0.690992887 + w * (-0.804944854 +
            w * (1.50367897 + w * -0.622885261)))));
 }
-
-// ---- edge warp (footprints/edge_warp.h, design (7))
-
-float edge_warp(float s, float a, float k) {
-    float v = min(abs(s) / a, 1.0);
-    float b = v * (1.0 - v);
-    return sign(s) * (a * (v * v + k * b) / (1.0 + (k - 1.0) * b) + max(abs(s) - a, 0.0));
-}
-
-float edge_warp_inverse(float w, float a, float k) {
-    float y = min(abs(w) / a, 1.0);
-    float b = (k - 1.0) * (1.0 - y);
-    float v = 2.0 * y / (1.0 + b + sqrt((1.0 - b) * (1.0 - b) + 4.0 * b * (1.0 - y)));
-    return sign(w) * (a * v + max(abs(w) - a, 0.0));
-}
-
-// Band and strength of a wall's faces (wall_edge): they share its thickness, and no edge is invented within one voxel.
-float wall_half_width(float thickness, float a) { return clamp(0.5 * thickness, 1e-3, a); }
-float wall_strength(float thickness, float k) { return 1.0 + (k - 1.0) * clamp((thickness - 1.0) * 4.0, 0.0, 1.0); }
 #endif

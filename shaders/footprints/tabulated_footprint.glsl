@@ -15,14 +15,15 @@ FaceFootprint tabulated_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, S
     float half_chord = sqrt(max(face_form.cut.reach2 - sight.ray.rho2, 0.0));
     Slice own = Slice(plain ? slice.low : inside.low, plain ? slice.high : inside.high);
     bool whole = (selected_footprint.layer.code & INTEGRATED) == 0u && own.low <= -half_chord && own.high >= half_chord;
-    FaceFootprint f = FaceFootprint(0.0, 0.0, 1.0, false);
+    FaceFootprint f = FaceFootprint(0.0, FaceEnd(0.0, 1.0, false), FaceEnd(0.0, 1.0, false));
     for (uint run = whole ? 0u : 1u; run > 0u; --run) f = cut_footprint(sight, p, u, plain, inside, slice);
     float looked_up = half_chord > 0.0 ? footprint_looked_up(selected_footprint.layer, along_axis, sight.ray.rho2) : 0.0;
     // Where the ray comes through the face, or within the kernel's reach.
-    float entry = sight.ray.phi.b < 0.0 ? -sight.ray.phi.c / min(sight.ray.phi.b, -FACE_STRAIGHT) : -half_chord;
-    entry = plain ? 0.0 : clamp(entry, -half_chord, half_chord);
+    float b = sight.ray.phi.b, at_face = -sight.ray.phi.c / (b < 0.0 ? min(b, -FACE_STRAIGHT) : max(b, FACE_STRAIGHT));
+    at_face = clamp(at_face, -half_chord, half_chord);
     f.integral = whole ? looked_up : f.integral;
-    f.entry = whole ? entry : f.entry;
+    f.entry.z = whole ? (plain ? 0.0 : b < 0.0 ? at_face : -half_chord) : f.entry.z;
+    f.leave.z = whole ? (b < 0.0 ? half_chord : at_face) : f.leave.z;
     return f;
 }
 #endif

@@ -65,12 +65,13 @@ FaceSight face_sight(vec3 p, vec3 u) {
     return FaceSight(ray, slope, hu);
 }
 
-// The pixel's ray in the volume, whose border cuts kernels as a face does: from the eye along u, and the border's normal
-// where it enters (world, unit). Whoever draws sets it where kernels are cut at faces.
+// The pixel's ray in the volume, whose border cuts kernels as a face does: from the eye along u, and the border's normals
+// (world, unit). Whoever draws sets it where kernels are cut at faces.
 struct VolumePiece {
     float low;
     float high;
     vec3 normal;
+    vec3 far_normal;  // where it leaves it; where one sees through matter only
 };
 VolumePiece volume_piece;
 
@@ -80,10 +81,15 @@ VolumePiece piece_in_volume(vec3 u) {
     vec3 a = (vec3(-0.5) - from) / way, b = (vec3(params.frame.dims) - 0.5 - from) / way;
     bvec3 flat_axis = equal(params.frame.dims, ivec3(1));
     vec3 near = mix(min(a, b), vec3(-1e9), flat_axis), far = mix(max(a, b), vec3(1e9), flat_axis);
-    float low = max(near.x, max(near.y, near.z));
+    float low = max(near.x, max(near.y, near.z)), high = min(far.x, min(far.y, far.z));
     bool x = near.x >= low, y = !x && near.y >= low;
     vec3 out_of = -sign(way) * vec3(x, y, !x && !y);
-    return VolumePiece(low, min(far.x, min(far.y, far.z)), normalize(params.frame.normal_to_world * out_of));
+    VolumePiece piece = VolumePiece(low, high, normalize(params.frame.normal_to_world * out_of), vec3(0.0));
+    if (FACE_PIECES == 2u) {
+        bool far_x = far.x <= high, far_y = !far_x && far.y <= high;
+        piece.far_normal = normalize(params.frame.normal_to_world * (sign(way) * vec3(far_x, far_y, !far_x && !far_y)));
+    }
+    return piece;
 }
 
 FaceCrease crease_seen(vec3 p, vec3 u) {
@@ -91,26 +97,28 @@ FaceCrease crease_seen(vec3 p, vec3 u) {
     return FaceCrease(dot(plane.xyz, p), dot(plane.xyz, u), plane.w, dot(plane.xyz, face_form.slope));
 }
 
-// What the surface shows where the ray meets it, z from p; `at_border`: it enters the volume there. `ahead`: of the eye's way to p.
-vec3 face_payload(FaceSight sight, float z, float side, bool from_crease, vec3 u, float ahead, bool at_border) {
+// What the surface shows at one end of the ray's way through the kernel; `border`: the volume's normal where that ends there, else 0.
+// `ahead`: of the eye's way to p.
+vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
-    vec3 slope = sight.slope + z * sight.turn;
-    if (CREASES == 1u) slope = from_crease ? face_form.crease.xyz : slope;
+    vec3 slope = sight.slope + end.z * sight.turn;
+    if (CREASES == 1u) slope = end.crease ? face_form.crease.xyz : slope;
     // Both faces of a layer between two iso-values face the lower values.
     uint axis = number_material.y >> MAIN_AXIS_AT;
     float along = (axis & 3u) == 0u ? slope.x : (axis & 3u) == 1u ? slope.y : slope.z;
-    bool is_other = ((axis & 4u) != 0u ? -side : side) * along < 0.0;
+    bool is_other = ((axis & 4u) != 0u ? -end.side : end.side) * along < 0.0;
     upward = upward != ((number_material.y & IS_MIXED) != 0u && is_other);
-    vec3 outward = (upward ? -side : side) * slope;
+    vec3 outward = (upward ? -end.side : end.side) * slope;
     vec3 world_normal = has_normal ? unit_or_zero(params.frame.normal_to_world * outward) : vec3(0.0);
-    if (at_border) world_normal = volume_piece.normal;
+    bool at_border = dot(border, border) > 0.0;
+    if (at_border) world_normal = border;
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
     vec3 way = params.frame.index_to_world * u;
     // What the eye is in is seen right before it.
-    float away = max(ahead + z, 1e-4), depth = away * dot(params.frame.view_z, u);
+    float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal, side < 0.0,
-                         away * way, -normalize(way), depth));
+    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal,
+                         end.side < 0.0, away * way, -normalize(way), depth));
 }
 
 // What is left of the kernel on the ray: between `slice`, and of one that is cut, within `inside`.
@@ -119,33 +127,48 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
     if (CREASES == 1u) crease = crease_seen(p, u);
     FaceFootprint f = footprint_face(sight.ray, face_form.cut, CREASES == 1u, crease, inside);
     f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
-    f.entry = plain ? 0.0 : f.entry;
-    f.side = plain ? 1.0 : f.side;
-    f.from_crease = !plain && f.from_crease;
+    if (plain) f.entry = FaceEnd(0.0, 1.0, false);
     return f;
 }
 #include "shaders/footprints/tabulated_footprint.glsl"
 
-// (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray.
-vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice slice) {
+// What the splat shows of a ray that goes through it. Where one sees through matter light falls in its depth: the nearer half of
+// the way is lit as where it begins, the farther half as where it ends.
+vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, float far_border, vec3 u, float ahead, float mm) {
+    bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry.z;
+    f.entry.z = at_border ? border : f.entry.z;
+    vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
+    if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
+    bool deep = !plain && params.frame.face_depth > FACE_DEPTH;
+    float half_chord = sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
+    bool to_border = far_border < f.leave.z;
+    float leave = max(min(to_border ? far_border : f.leave.z, half_chord), f.entry.z);
+    f.entry.z = deep && !at_border ? min(max(f.entry.z, -half_chord), leave) : f.entry.z;
+    f.leave.z = leave;
+    vec3 near = face_payload(sight, f.entry, normal, u, ahead);
+    vec3 far = face_payload(sight, f.leave, to_border ? volume_piece.far_normal : vec3(0.0), u, ahead);
+    float share = 1.0 / (1.0 + exp(0.5 * color_sigma.a * mm * (leave - f.entry.z)));
+    return deep ? mix(near, far, share) : near;
+}
+
+// (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray; `mm`: of a voxel along u.
+vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice slice, float mm) {
     bool plain = face_form.cut.depth < 0.0;
-    float border = volume_piece.low - ahead;
-    Slice inside = Slice(max(slice.low, border), min(slice.high, volume_piece.high - ahead));
+    float border = volume_piece.low - ahead, far_border = volume_piece.high - ahead;
+    Slice inside = Slice(max(slice.low, border), min(slice.high, far_border));
     FaceFootprint f;
     if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, p, u, plain, inside, slice);
     else f = cut_footprint(sight, p, u, plain, inside, slice);
-    bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry;
-    f.entry = at_border ? border : f.entry;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;
     }
-    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : face_payload(sight, f.entry, f.side, f.from_crease, u, ahead, at_border);
+    vec3 payload = PAYLOAD == PAYLOAD_TAU ? vec3(0.0) : seen_payload(sight, f, plain, border, far_border, u, ahead, mm);
     return f.integral * vec4(payload, 1.0);
 }
 
 // The splat between `slice`, in the pieces of the ray that clip planes leave: (sum of integrals times payload, their sum).
-vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
+vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice, float mm) {
     FaceSight sight;
     if (FACES) sight = face_sight(p, u);
     float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
@@ -177,7 +200,7 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice) {
         cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
         if (FACES) {
             vec4 value = vec4(0.0);
-            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, p, u, ahead, z, cut);
+            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, p, u, ahead, z, cut, mm);
             sum += vec4(cap ? value.a * payload : value.rgb, value.a);
             continue;
         }
@@ -201,9 +224,9 @@ vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
         // Only the part of the kernel in front of the eye counts.
         in_front = smoothstep(-params.frame.support, params.frame.support, ahead);
     }
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, ahead, slice);
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) return color_sigma.a * mm * clipped_footprint(p, u, ahead, slice, mm);
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
-    if (FACES) return color_sigma.a * mm * in_front * face_value(face_sight(p, u), p, u, ahead, z, slice);
+    if (FACES) return color_sigma.a * mm * in_front * face_value(face_sight(p, u), p, u, ahead, z, slice, mm);
     float value = drawn_footprint(dot(p, p), dot(p, normal_distance.xyz), dot(u, normal_distance.xyz), z, slice);
     float tau = color_sigma.a * mm * value * in_front;
     return vec4(tau * color_sigma.rgb, tau);

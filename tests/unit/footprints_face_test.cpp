@@ -100,10 +100,10 @@ TEST(Face, ACreaseIsWhereTheRayEnters) {
     FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face
     ray.crease = {0, -1};
     const FaceFootprint entered = FacePath(ray, cut).footprint(8);
-    EXPECT_TRUE(entered.from_crease);
-    EXPECT_NEAR(entered.entry, -0.7, 1e-12);
+    EXPECT_TRUE(entered.entry.crease);
+    EXPECT_NEAR(entered.entry.z, -0.7, 1e-12);
     ray.crease = {0, 1};
-    EXPECT_FALSE(FacePath(ray, cut).footprint(8).from_crease);
+    EXPECT_FALSE(FacePath(ray, cut).footprint(8).entry.crease);
     // Out of the other plane's reach nothing is cut.
     FaceCut plain = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     const double reach = plain.reach;
@@ -182,9 +182,9 @@ TEST(Face, AWallIsEnteredFromEitherSide) {
     EXPECT_NEAR(pieces[1].low, -0.9, 1e-5);
     const FaceCut cut = face_cut(0.6, 0, 0, 1.5);
     const FaceFootprint out = FacePath(through, cut).footprint(8), in = FacePath(back, cut).footprint(8);
-    EXPECT_TRUE(out.from_behind != in.from_behind);
-    EXPECT_NEAR(std::min(out.entry, in.entry), -0.9, 1e-4);
-    EXPECT_NEAR(std::max(out.entry, in.entry), -0.6, 1e-4);
+    EXPECT_TRUE(out.entry.behind != in.entry.behind);
+    EXPECT_NEAR(std::min(out.entry.z, in.entry.z), -0.9, 1e-4);
+    EXPECT_NEAR(std::max(out.entry.z, in.entry.z), -0.6, 1e-4);
     EXPECT_NEAR(out.integral, in.integral, 1e-6);
 }
 
@@ -197,7 +197,7 @@ TEST(Face, DegenerateFacesAreFinite) {
                 for (const double thickness : {0.05, 1.0, std::numeric_limits<double>::infinity()}) {
                     const FaceFootprint f = FacePath(ray, face_cut(0.4, a, std::abs(b), thickness)).footprint(4);
                     EXPECT_TRUE(std::isfinite(f.integral) && f.integral >= 0 && f.integral < 2) << a << b << c;
-                    EXPECT_TRUE(std::isfinite(f.entry));
+                    EXPECT_TRUE(std::isfinite(f.entry.z));
                 }
             }
 }

@@ -166,7 +166,11 @@ TEST(FootprintShader, MirrorsFaces) {
         error.add(static_cast<double>(b.integral), a.integral);
         if (!(a.integral > 1e-3)) continue;
         ++cut;
-        entries += std::abs(static_cast<double>(b.entry) - a.entry) > 1e-3 ? 1 : 0;
+        const auto differ = [](const four::FaceEnd& got_end, const FaceEnd& want_end) {
+            return std::abs(static_cast<double>(got_end.z) - want_end.z) > 1e-3 ||
+                   (got_end.side < 0) != want_end.behind || got_end.crease != want_end.crease;
+        };
+        entries += differ(b.entry, a.entry) || differ(b.leave, a.leave) ? 1 : 0;
     }
     EXPECT_GT(cut, 5000);
     // Where a ray but touches a face, rounding decides whether it meets it.
