@@ -10,6 +10,7 @@
 #include "apps/edgesplat/footprints_command.h"
 #include "apps/edgesplat/help_formatter.h"
 #include "apps/edgesplat/info_command.h"
+#include "apps/edgesplat/measure_command.h"
 #include "apps/edgesplat/movie_command.h"
 #include "apps/edgesplat/pack_command.h"
 #include "apps/edgesplat/render_command.h"
@@ -29,6 +30,7 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_stat
     add_scene_command(app, exit_status);
     add_movie_command(app, exit_status);
     add_info_command(app);
+    add_measure_command(app);
     add_pack_command(app, exit_status);
     add_compare_command(app, exit_status);
     add_footprints_command(app);

@@ -7,7 +7,7 @@
 #include "engine/error.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
-#include "engine/viewer/pick_internal.h"
+#include "engine/viewer/contour.h"
 
 namespace edgesplat::viewer {
 namespace {

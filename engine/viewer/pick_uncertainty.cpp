@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "engine/viewer/pick_internal.h"
+#include "engine/viewer/contour.h"
 #include "engine/volume/filters.h"
 
 namespace edgesplat::viewer {
@@ -55,23 +55,6 @@ double common_step(const std::array<double, 64>& values) {
         }
     }
     return step;
-}
-
-/// By how much the value at a contour may be wrong without the samples showing it.
-double value_uncertainty(const Samples& samples, const glm::dvec3& voxel) {
-    const std::array<double, 64> values = samples_around(samples, voxel);
-    const double range = values.back() - values.front();
-    if (!(range > 0)) return 0;
-    // Of an edge so sharp that half of its height and more lies between neighbouring samples they hardly tell the
-    // place: of Gaussian edges of 0.2 to 0.6 voxel's blur trilinear interpolation is off by as much as this.
-    const std::array<double, 8> v = samples.corners(glm::ivec3(glm::floor(voxel)));
-    double steepness = 0;
-    for (std::size_t k = 0; k < 8; ++k)
-        for (const std::size_t axis : {1U, 2U, 4U})
-            steepness = std::max(steepness, std::abs(v[k | axis] - v[k]));
-    const double voxels_off = 0.55 * std::clamp(steepness / range - 0.48, 0.0, 0.52);
-    const double stored = samples.volume().packed ? samples.volume().packed->quantisation_error() : 0;
-    return std::max(common_step(values) / 2, voxels_off * steepness) + stored;
 }
 
 /// The cubic B-spline through the samples near a place, of fourth order where trilinear interpolation is of second.
@@ -124,6 +107,22 @@ class LocalSpline {
 };
 
 }  // namespace
+
+double value_uncertainty(const Samples& samples, const glm::dvec3& voxel) {
+    const std::array<double, 64> values = samples_around(samples, voxel);
+    const double range = values.back() - values.front();
+    if (!(range > 0)) return 0;
+    // Of an edge so sharp that half of its height and more lies between neighbouring samples they hardly tell the
+    // place: of Gaussian edges of 0.2 to 0.6 voxel's blur trilinear interpolation is off by as much as this.
+    const std::array<double, 8> v = samples.corners(glm::ivec3(glm::floor(voxel)));
+    double steepness = 0;
+    for (std::size_t k = 0; k < 8; ++k)
+        for (const std::size_t axis : {1U, 2U, 4U})
+            steepness = std::max(steepness, std::abs(v[k | axis] - v[k]));
+    const double voxels_off = 0.55 * std::clamp(steepness / range - 0.48, 0.0, 0.52);
+    const double stored = samples.volume().packed ? samples.volume().packed->quantisation_error() : 0;
+    return std::max(common_step(values) / 2, voxels_off * steepness) + stored;
+}
 
 double contour_uncertainty(const Samples& samples, const IndexRay& ray, double t, double value) {
     const double voxel = 1 / glm::length(ray.step);

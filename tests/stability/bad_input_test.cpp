@@ -289,7 +289,7 @@ TEST_P(BadFile, UnreadableIsRefused) {
 
 INSTANTIATE_TEST_SUITE_P(BadInput, BadFile,
                          testing::Values("info FILE", "info FILE.nrrd", "info FILE.nii.gz", "info FILE.mha --json -",
-                                         "info FILE.esv", "info FILE --raw 2x2x2:uint8:little",
+                                         "info FILE.esv", "info FILE --raw 2x2x2:uint8:little", "measure FILE.nrrd",
                                          "pack FILE.nrrd -o a.esv", "render FILE.nrrd -o a.png",
                                          "render FILE.toml -o a.png", "scene check FILE.toml", "scene new FILE.nii",
                                          "movie FILE.toml -o f_%03d.png", "accuracy FILE.nrrd --report r",

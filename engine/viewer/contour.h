@@ -1,4 +1,4 @@
-// Parts of picking.
+// Where lines cross iso-contours, and how well samples tell the place.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -26,6 +26,11 @@ double bisected(const Function& f, double a, double b) {
     }
     return (a + b) / 2;
 }
+
+/// By how much the value of a contour at `voxel` may be wrong without the samples showing it: half a step of
+/// quantisation, or of data that say yes or no; what an edge sharper than samples can show leaves open; and what
+/// packing lost. In the volume's unit.
+double value_uncertainty(const Samples& samples, const glm::dvec3& voxel);
 
 /// How far along the ray another reconstruction or other rounding of the samples would put the place at t where the
 /// trilinear values cross `value`, mm.

@@ -1,0 +1,268 @@
+#include "apps/edgesplat/measure_command.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "apps/edgesplat/camera_options.h"
+#include "apps/edgesplat/document_edits.h"
+#include "apps/edgesplat/effects_options.h"
+#include "apps/edgesplat/progress_bar.h"
+#include "apps/edgesplat/render_command.h"
+#include "apps/edgesplat/scene_options.h"
+#include "apps/edgesplat/volume_options.h"
+#include "engine/accuracy/json_text.h"
+#include "engine/error.h"
+#include "engine/image/image_file.h"
+#include "engine/measure/extents.h"
+#include "engine/measure/places.h"
+#include "engine/viewer/pick.h"
+#include "engine/volume/labels.h"
+
+namespace {
+
+using edgesplat::Scene;
+using edgesplat::SceneDocument;
+using edgesplat::Volume;
+using edgesplat::measure::Place;
+using edgesplat::measure::Quantity;
+using Json = nlohmann::ordered_json;
+
+/// What --at was given.
+struct Spot {
+    std::string text;
+    std::vector<double> numbers;  ///< two: a pixel; three: a place
+};
+
+struct MeasureCommand {
+    std::string source, json;
+    VolumeOptions volume;
+    DocumentEdits edits;
+    std::vector<Spot> spots;
+    bool exact = false, quiet = false;
+};
+
+Spot read_spot(const std::string& text) {
+    Spot spot{text, {}};
+    for (std::size_t begin = 0; begin <= text.size();) {
+        const std::size_t comma = std::min(text.find(',', begin), text.size());
+        const auto number = parse_number(std::string_view(text).substr(begin, comma - begin));
+        if (!number) break;
+        spot.numbers.push_back(*number);
+        begin = comma + 1;
+        if (comma == text.size() && (spot.numbers.size() == 2 || spot.numbers.size() == 3)) return spot;
+    }
+    throw CLI::ValidationError(
+        "--at", fmt::format("'{}' is neither a place X,Y,Z nor a pixel X,Y, such as 12.5,-3,40 or 256,200", text));
+}
+
+/// The surface that is seen at a pixel.
+Place seen_at(const Spot& spot, const SceneDocument& document, const Volume& volume, const Scene& scene) {
+    const auto camera = resolve_camera(document, volume, scene);
+    const glm::dvec2 pixel(spot.numbers[0], spot.numbers[1]);
+    const auto hit = edgesplat::viewer::pick(volume, scene, camera, document.output.size, pixel);
+    if (!hit)
+        edgesplat::fail("--at {}: no surface is seen at this pixel of {}x{}", spot.text, document.output.size.x,
+                        document.output.size.y);
+    return edgesplat::measure::place_of(*hit);
+}
+
+Place place_at(const Spot& spot, const MeasureCommand& command, const SceneDocument& document, const Volume& volume,
+               const Scene& scene) {
+    if (spot.numbers.size() == 2) return seen_at(spot, document, volume, scene);
+    const glm::dvec3 given(spot.numbers[0], spot.numbers[1], spot.numbers[2]);
+    const glm::dvec3 world = document.camera.voxel ? volume.geometry.to_world(given) : given;
+    if (command.exact) return {world};
+    const auto surface = edgesplat::measure::nearest_surface(volume, scene.iso_values, world);
+    if (!surface)
+        edgesplat::fail("--at {}: no surface is within {:g} voxels of this place; --exact takes the place itself",
+                        spot.text, edgesplat::measure::kReach);
+    return *surface;
+}
+
+Json to_json(const Quantity& quantity) {
+    return {{"value", quantity.value}, {"uncertainty", quantity.uncertainty}};
+}
+
+/// "12.34 ± 0.05": the uncertainty to two digits, rounded up, and as many of the value.
+std::string text(const Json& quantity) {
+    const double value = quantity["value"].get<double>(), uncertainty = quantity["uncertainty"].get<double>();
+    if (!(uncertainty > 0)) return fmt::format("{:.7g}", value);
+    const int digits = 1 - static_cast<int>(std::floor(std::log10(uncertainty)));
+    const double unit = std::pow(10.0, -digits);
+    const int places = std::clamp(digits, 0, 12);
+    return fmt::format("{:.{}f} ± {:.{}f}", value, places, std::ceil(uncertainty / unit - 1e-9) * unit, places);
+}
+
+Json places_measured(const MeasureCommand& command, const SceneDocument& document, const Volume& volume,
+                     const Scene& scene) {
+    using edgesplat::measure::angle;
+    using edgesplat::measure::distance;
+    std::vector<Place> places;
+    for (const Spot& spot : command.spots)
+        places.push_back(place_at(spot, command, document, volume, scene));
+    Json json;
+    for (const Place& place : places) {
+        Json entry{{"world_mm", {place.world.x, place.world.y, place.world.z}}, {"uncertainty_mm", place.uncertainty}};
+        if (place.iso) entry["iso_value"] = *place.iso;
+        json["places"].push_back(entry);
+    }
+    for (std::size_t i = 1; i < places.size(); ++i)
+        json["distances_mm"].push_back(to_json(distance(places[i - 1], places[i])));
+    for (std::size_t i = 2; i < places.size(); ++i)
+        json["angles_degrees"].push_back(to_json(angle(places[i - 2], places[i - 1], places[i])));
+    return json;
+}
+
+Json extents_measured(const MeasureCommand& command, const Volume& volume, const Scene& scene) {
+    if (scene.iso_values.empty())
+        edgesplat::fail("measure: a transfer function without iso-values divides nothing; give --iso");
+    ProgressBar bar(command.quiet);
+    const auto start = std::chrono::steady_clock::now();
+    const auto extents =
+        edgesplat::measure::measure_extents(volume, scene.iso_values, scene.effects.clip, [&](double done) {
+            const std::chrono::duration<double> spent = std::chrono::steady_clock::now() - start;
+            bar.update(done, spent.count() * (1 - done) / done, "measuring");
+            return true;
+        });
+    Json json;
+    for (std::size_t m = 0; m < extents.volumes.size(); ++m) {
+        Json material;
+        if (!scene.materials[m].name.empty()) material["name"] = scene.materials[m].name;
+        if (m > 0) material["from"] = scene.iso_values[m - 1];
+        if (m < scene.iso_values.size()) material["below"] = scene.iso_values[m];
+        material["volume_mm3"] = to_json(extents.volumes[m]);
+        json["materials"].push_back(material);
+    }
+    for (std::size_t j = 0; j < extents.surfaces.size(); ++j)
+        json["surfaces"].push_back({{"iso_value", scene.iso_values[j]}, {"area_mm2", to_json(extents.surfaces[j])}});
+    return json;
+}
+
+Json labels_measured(const Volume& volume) {
+    Json json;
+    for (const auto& label : edgesplat::measure::measure_labels(volume))
+        json["labels"].push_back(
+            {{"label", label.label}, {"voxels", label.voxels}, {"volume_mm3", to_json(label.volume)}});
+    return json;
+}
+
+std::string interval(const Json& material) {
+    std::string words;
+    if (material.contains("from")) words += fmt::format("from {:.6g}", material["from"].get<double>());
+    if (material.contains("below"))
+        words += fmt::format("{}below {:.6g}", words.empty() ? "" : ", ", material["below"].get<double>());
+    if (material.contains("name")) words += fmt::format(" ({})", material["name"].get<std::string>());
+    return words;
+}
+
+void print(const Json& json) {
+    int number = 0;
+    for (const Json& place : json.value("places", Json::array())) {
+        const Json& at = place["world_mm"];
+        std::cout << fmt::format("place {:<3} {:.7g}, {:.7g}, {:.7g} mm", ++number, at[0].get<double>(),
+                                 at[1].get<double>(), at[2].get<double>());
+        if (place.contains("iso_value"))
+            std::cout << fmt::format(" ± {:.2g}, on the surface at {:.6g}", place["uncertainty_mm"].get<double>(),
+                                     place["iso_value"].get<double>());
+        std::cout << '\n';
+    }
+    number = 0;
+    for (const Json& length : json.value("distances_mm", Json::array())) {
+        std::cout << fmt::format("distance {} to {}: {} mm\n", number + 1, number + 2, text(length));
+        ++number;
+    }
+    number = 0;
+    for (const Json& angle : json.value("angles_degrees", Json::array())) {
+        std::cout << fmt::format("angle at {}: {} degrees\n", number + 2, text(angle));
+        ++number;
+    }
+    for (const Json& material : json.value("materials", Json::array()))
+        std::cout << fmt::format("volume {}: {} mm^3\n", interval(material), text(material["volume_mm3"]));
+    for (const Json& surface : json.value("surfaces", Json::array()))
+        std::cout << fmt::format("surface at {:.6g}: {} mm^2\n", surface["iso_value"].get<double>(),
+                                 text(surface["area_mm2"]));
+    for (const Json& label : json.value("labels", Json::array()))
+        std::cout << fmt::format("label {:g}: {} mm^3, {} voxels\n", label["label"].get<double>(),
+                                 text(label["volume_mm3"]), label["voxels"].get<std::size_t>());
+}
+
+void run(const MeasureCommand& command) {
+    SceneDocument document;
+    std::vector<std::filesystem::path> folders;
+    read_source(command.source, document, folders);
+    apply(command.volume, document.volume);
+    command.edits.apply(document);
+    if (!command.json.empty() && command.json != "-") {
+        constexpr std::array<std::string_view, 1> kJson{".json"};
+        edgesplat::check_output_path(command.json, kJson);
+    }
+    Volume volume = load_with_progress(document.volume, folders, command.quiet);
+    Json json{{"volume", volume.name}};
+    const std::vector<float> labels = edgesplat::labels_of(volume);
+    SceneDocument drawn = document;
+    Volume shown = volume;
+    recognise_labels(drawn, shown);
+    if (command.spots.empty() && drawn.volume.labels.value_or(false) && !labels.empty()) {
+        json.update(labels_measured(volume));
+    } else {
+        const Scene scene = resolve_scene(drawn, shown);
+        json.update(command.spots.empty() ? extents_measured(command, shown, scene)
+                                          : places_measured(command, drawn, shown, scene));
+    }
+    if (command.json.empty()) {
+        print(json);
+    } else if (command.json == "-") {
+        std::cout << edgesplat::json_text(json, 2) << '\n';
+    } else {
+        const edgesplat::FileContent file{command.json, edgesplat::json_text(json, 2) + "\n"};
+        edgesplat::write_files({&file, 1});
+    }
+}
+
+}  // namespace
+
+void add_measure_command(CLI::App& app) {
+    CLI::App& sub = *app.add_subcommand("measure", "Measure volumes and surfaces, or distances and angles");
+    const auto command = std::make_shared<MeasureCommand>();
+    sub.add_option("VOLUME", command->source, "A volume or a scene file (.toml), as for `edgesplat render`")
+        ->required()
+        ->type_name("");
+    sub.add_option_function<std::vector<std::string>>(
+           "--at",
+           [command](const std::vector<std::string>& texts) {
+               for (const std::string& text : texts)
+                   command->spots.push_back(read_spot(text));
+           },
+           "A place on a surface: X,Y,Z in world mm (with --voxel: voxel indices), which is moved to the nearest "
+           "surface, or X,Y, a pixel of the picture that the same options render, at which a surface is seen; "
+           "repeated: "
+           "distances from each to the next, and angles between")
+        ->type_name("X,Y,Z|X,Y")
+        ->allow_extra_args(false);
+    sub.add_flag("--exact", command->exact, "Places X,Y,Z are meant as they are, on no surface");
+    sub.add_option("--json", command->json, "Write JSON to a file, or to stdout with -")->type_name("FILE");
+    sub.add_flag("-q,--quiet", command->quiet, "Say nothing of progress");
+    add_camera_options(sub, command->edits);
+    add_scene_options(sub, command->edits);
+    add_effects_options(sub, command->edits);
+    add_volume_options(sub, command->volume);
+    sub.footer(
+        "Volumes and surfaces are those of the materials between iso-values, of what clip planes keep. What follows ± "
+        "is how far off a number may be: because samples are rounded, far apart, or blurred less than they show. Noise "
+        "and a wrong iso-value come on top.\n"
+        "Examples:\n"
+        "  edgesplat measure head.nrrd --iso 300\n"
+        "  edgesplat measure aneurysm.nrrd --iso 180 --clip-box=-20,-5,30,0,15,50\n"
+        "  edgesplat measure head.nrrd --iso 300 --at 12,-40,8 --at 15,-38,30\n"
+        "  edgesplat measure head.nrrd --iso 300 --view front --size 800x600 --at 400,210 --at 420,330 --at 500,330");
+    sub.callback([command] { run(*command); });
+}

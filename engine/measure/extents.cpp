@@ -1,0 +1,240 @@
+#include "engine/measure/extents.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+
+#include "engine/measure/field_lines.h"
+#include "engine/reference/parallel.h"
+#include "engine/scene/clip_planes.h"
+#include "engine/viewer/contour.h"
+#include "engine/volume/filters.h"
+#include "engine/volume/packed_volume.h"
+
+namespace edgesplat::measure {
+namespace {
+
+constexpr int kLines = 2;       ///< along each side of a voxel
+constexpr int kAskedLines = 4;  ///< of so many lines along either side one tells how exact values are
+constexpr double kShift = 0.1;  ///< of the values' uncertainty, by which iso-values are moved to see what follows
+
+/// What lines along an axis found of an iso-value.
+struct Sums {
+    double above = 0;        ///< length from it up, voxels
+    double surface = 0;      ///< mm^2, as if it were as smooth as the slope over a voxel is
+    double rough = 0;        ///< mm^2, of the contour itself
+    double uncertainty = 0;  ///< of values, weighted by surface
+    double asked = 0;        ///< surface where that was looked at
+    void add(const Sums& other) {
+        above += other.above;
+        surface += other.surface;
+        rough += other.rough;
+        uncertainty += other.uncertainty;
+        asked += other.asked;
+    }
+};
+
+/// Of all lines: [iso-value][axis].
+using AxisSums = std::vector<std::array<Sums, 3>>;
+
+/// Length of [first, last] that is kept.
+double kept_length(const std::array<KeptPiece, 2>& pieces, double first, double last) {
+    double length = 0;
+    for (const KeptPiece& piece : pieces)
+        length += std::max(0.0, std::min(last, piece.last) - std::max(first, piece.first));
+    return length;
+}
+
+class Measurement {
+  public:
+    Measurement(const Volume& volume, const Clip& clip)
+        : volume_(volume),
+          geometry_(volume.geometry),
+          samples_{volume.geometry.dims, volume.values, {}},
+          clip_(index_clip(clip, volume.geometry)) {
+        to_world_normal_ = glm::transpose(glm::inverse(geometry_.index_to_world_axes));
+        cell_ = std::abs(glm::determinant(geometry_.index_to_world_axes)) / (kLines * kLines);
+    }
+
+    /// `ask`: how exact values are, too.
+    AxisSums along_all_lines(const reference::Field& field, std::span<const double> iso_values, bool ask,
+                             const std::function<void(double)>& progress) const {
+        AxisSums sums(iso_values.size());
+        for (int axis = 0; axis < 3; ++axis) {
+            // Lines beside each other along the faster of the other two axes share what the cache holds.
+            const int fast = axis == 0 ? 1 : 0, slow = axis == 2 ? 1 : 2;
+            const int rows = geometry_.dims[slow] * kLines;
+            std::vector<std::vector<Sums>> of_row(static_cast<std::size_t>(rows));
+            reference::parallel_for(rows, [&](int begin, int end) {
+                FieldLine line(field, axis);
+                const viewer::Samples samples(volume_);
+                for (int row = begin; row < end; ++row) {
+                    std::vector<Sums> found(iso_values.size());
+                    for (int i = 0; i < geometry_.dims[fast] * kLines; ++i) {
+                        glm::dvec3 start(0);
+                        start[fast] = (i + 0.5) / kLines - 0.5;
+                        start[slow] = (row + 0.5) / kLines - 0.5;
+                        line.move_to(start);
+                        const bool asked = ask && i % kAskedLines == 0 && row % kAskedLines == 0;
+                        add_line(line, iso_values, asked ? &samples : nullptr, found);
+                    }
+                    of_row[static_cast<std::size_t>(row)] = std::move(found);
+                }
+            });
+            for (const auto& row : of_row)
+                for (std::size_t j = 0; j < iso_values.size(); ++j)
+                    sums[j][static_cast<std::size_t>(axis)].add(row[j]);
+            progress((axis + 1) / 3.0);
+        }
+        return sums;
+    }
+
+    /// mm^3 from the iso-value up, and how far the axes' are apart.
+    Quantity above(const std::array<Sums, 3>& sums) const {
+        const auto [least, most] = std::minmax({sums[0].above, sums[1].above, sums[2].above});
+        return {cell_ * (sums[0].above + sums[1].above + sums[2].above) / 3, cell_ * (most - least) / 2};
+    }
+
+    double kept_volume() const {
+        double length = 0;
+        for (int y = 0; y < geometry_.dims.y * kLines; ++y)
+            for (int z = 0; z < geometry_.dims.z * kLines; ++z) {
+                const glm::dvec3 start(0, (y + 0.5) / kLines - 0.5, (z + 0.5) / kLines - 0.5);
+                length += kept_length(clip_.kept_along(start, {1, 0, 0}), -0.5, geometry_.dims.x - 0.5);
+            }
+        return cell_ * length;
+    }
+
+  private:
+    void add_line(FieldLine& line, std::span<const double> iso_values, const viewer::Samples* samples,
+                  std::vector<Sums>& found) const {
+        const int axis = line.axis();
+        glm::dvec3 u(0);
+        u[axis] = 1;
+        const auto pieces = clip_.kept_along(line.at(0), u);
+        const double last = geometry_.dims[axis] - 0.5;
+        for (std::size_t j = 0; j < iso_values.size(); ++j) {
+            Sums& sums = found[j];
+            double from = -0.5;
+            bool inside = line.starts_from(iso_values[j]);
+            line.for_crossings(iso_values[j], [&](double t) {
+                if (inside) sums.above += kept_length(pieces, from, t);
+                from = t;
+                inside = !inside;
+                if (std::ranges::any_of(pieces, [&](const KeptPiece& p) { return p.first <= t && t < p.last; }))
+                    add_crossing(line, t, samples, sums);
+            });
+            if (inside) sums.above += kept_length(pieces, from, last);
+        }
+    }
+
+    void add_crossing(const FieldLine& line, double t, const viewer::Samples* samples, Sums& sums) const {
+        const double area = area_of_crossing(point_gradient(samples_, line.at(t)), line.axis());
+        sums.surface += area;
+        sums.rough += area_of_crossing(line.gradient(t), line.axis());
+        if (samples == nullptr) return;
+        sums.asked += area;
+        sums.uncertainty += area * viewer::value_uncertainty(*samples, line.at(t));
+    }
+
+    /// A surface with gradient g is met by |g_axis| / (|S^-T g| cell) lines along the axis per mm^2; each axis counts
+    /// for a share g_axis^2 / |g|^2 of it, so that no line counts for much where it grazes. How many lines meet it does
+    /// not tell steps from slopes: with the slope over a voxel the steps of yes-or-no data are no surface of their own.
+    double area_of_crossing(const glm::dvec3& g, int axis) const {
+        const double square = glm::dot(g, g);
+        return square > 0 ? cell_ * std::abs(g[axis]) * glm::length(to_world_normal_ * g) / square : 0;
+    }
+
+    const Volume& volume_;
+    const VolumeGeometry& geometry_;
+    reference::Field samples_;
+    IndexClip clip_;
+    glm::dmat3 to_world_normal_{1};
+    double cell_ = 1;  ///< mm^3 of a voxel's length of a line
+};
+
+double surface_of(const std::array<Sums, 3>& sums) {
+    return sums[0].surface + sums[1].surface + sums[2].surface;
+}
+
+double roughness_of(const std::array<Sums, 3>& sums) {
+    return std::abs(sums[0].rough + sums[1].rough + sums[2].rough - surface_of(sums));
+}
+
+}  // namespace
+
+Extents measure_extents(const Volume& volume, std::span<const double> iso_values, const Clip& clip,
+                        const reference::Progress& progress) {
+    need_samples(volume, "measuring volumes and surfaces");
+    const std::vector<float> coefficients = bspline_coefficients(volume.values, volume.geometry.dims);
+    const reference::Field linear{volume.geometry.dims, volume.values, {}};
+    const reference::Field cubic{volume.geometry.dims, volume.values, coefficients};
+    const auto part = [&](double first) {
+        return [&progress, first](double done) {
+            if (progress && !progress(first + done / 3)) throw reference::Cancelled("measuring was stopped");
+        };
+    };
+    const Measurement measurement(volume, clip);
+    const AxisSums cubic_sums = measurement.along_all_lines(cubic, iso_values, false, part(0));
+    const AxisSums linear_sums = measurement.along_all_lines(linear, iso_values, true, part(1.0 / 3));
+
+    std::vector<double> shifted;
+    for (std::size_t j = 0; j < iso_values.size(); ++j) {
+        Sums all;
+        for (const Sums& sums : linear_sums[j])
+            all.add(sums);
+        const double shift = all.asked > 0 ? kShift * all.uncertainty / all.asked : 0;
+        shifted.insert(shifted.end(), {iso_values[j] - shift, iso_values[j] + shift});
+    }
+    const AxisSums shifted_sums = measurement.along_all_lines(linear, shifted, false, part(2.0 / 3));
+
+    const double whole = measurement.kept_volume();
+    Extents extents;
+    Quantity beyond{whole, 0};  // from the iso-value before up
+    for (std::size_t j = 0; j < iso_values.size(); ++j) {
+        const std::array<Sums, 3>&low = shifted_sums[2 * j], &high = shifted_sums[2 * j + 1];
+        const double shift_volume = measurement.above(low).value - measurement.above(high).value;
+        Quantity above = measurement.above(cubic_sums[j]);
+        above.uncertainty +=
+            2 * std::abs(above.value - measurement.above(linear_sums[j]).value) + std::abs(shift_volume) / (2 * kShift);
+        extents.volumes.push_back({beyond.value - above.value, beyond.uncertainty + above.uncertainty});
+        beyond = above;
+        const double surface = surface_of(cubic_sums[j]);
+        extents.surfaces.push_back({surface, 2 * std::abs(surface - surface_of(linear_sums[j])) +
+                                                 std::abs(surface_of(low) - surface_of(high)) / (2 * kShift) +
+                                                 roughness_of(cubic_sums[j])});
+    }
+    extents.volumes.push_back(beyond);
+    return extents;
+}
+
+std::vector<LabelExtent> measure_labels(const Volume& volume) {
+    need_samples(volume, "measuring labels");
+    const glm::ivec3 dims = volume.geometry.dims;
+    const double voxel = std::abs(glm::determinant(volume.geometry.index_to_world_axes));
+    struct Count {
+        std::size_t voxels = 0, beside_others = 0;
+    };
+    std::map<float, Count> counts;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x) {
+                const float label = volume.at(x, y, z);
+                const auto other = [&](int i, int j, int k) { return volume.at(i, j, k) != label; };
+                Count& count = counts[label];
+                ++count.voxels;
+                count.beside_others += (x > 0 && other(x - 1, y, z)) || (x + 1 < dims.x && other(x + 1, y, z)) ||
+                                       (y > 0 && other(x, y - 1, z)) || (y + 1 < dims.y && other(x, y + 1, z)) ||
+                                       (z > 0 && other(x, y, z - 1)) || (z + 1 < dims.z && other(x, y, z + 1));
+            }
+    std::vector<LabelExtent> extents;
+    for (const auto& [label, count] : counts)
+        extents.push_back(
+            {static_cast<double>(label),
+             count.voxels,
+             {voxel * static_cast<double>(count.voxels), voxel * static_cast<double>(count.beside_others) / 2}});
+    return extents;
+}
+
+}  // namespace edgesplat::measure
