@@ -9,10 +9,13 @@ glm::ivec3 brick_count(const glm::ivec3& dims) {
     return (dims + (side - 1)) / side;
 }
 
-void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, std::uint32_t filter) {
+void classify_bricks(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec3& dims) {
     const glm::uvec3 groups = (glm::uvec3(brick_count(dims)) + glm::uvec3(7, 3, 1)) / glm::uvec3(8, 4, 2);
     const gpu::Groups all{groups.x, groups.y, groups.z};
-    commands.dispatch("raycast_bricks.comp", {{shader::SPEC_ISO_COUNT, iso_count}, {shader::SPEC_RAY_FILTER, filter}},
+    commands.dispatch("raycast_bricks.comp",
+                      {{shader::SPEC_TRANSFER, variant.transfer ? 1 : 0},
+                       {shader::SPEC_ISO_COUNT, variant.iso_count},
+                       {shader::SPEC_RAY_FILTER, variant.filter}},
                       0, all);
     commands.barrier();
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
@@ -22,12 +25,12 @@ void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint3
 }
 
 void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec2& size) {
-    const gpu::Specialization constants{{shader::SPEC_RAY_LIGHT, variant.light},
-                                        {shader::SPEC_ISO_COUNT, variant.iso_count},
+    const gpu::Specialization constants{{shader::SPEC_ISO_COUNT, variant.iso_count},
                                         {shader::SPEC_SKIP, variant.skip_empty ? 1 : 0},
+                                        {shader::SPEC_RAY_LIGHT, variant.light},
                                         {shader::SPEC_RAY_FILTER, variant.filter}};
     const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
-    commands.dispatch("raycast.comp", constants, 0, {groups.x, groups.y});
+    commands.dispatch(variant.transfer ? "raycast_transfer.comp" : "raycast.comp", constants, 0, {groups.x, groups.y});
     commands.barrier();
 }
 

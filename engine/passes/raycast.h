@@ -9,17 +9,18 @@ namespace edgesplat::passes {
 /// Bricks along each axis of a volume.
 glm::ivec3 brick_count(const glm::ivec3& dims);
 
-/// Volume -> distance of every brick to the nearest one that is not transparent in the field of `filter`
-/// (RaycastFilter). `block` is a RaycastBlock; the ray caster's descriptor set is bound.
-void classify_bricks(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, std::uint32_t filter);
-
 /// Pipeline variant of the ray caster: every member is a specialization constant.
 struct RaycastVariant {
     std::uint32_t light = 1;  ///< light_code()
     std::uint32_t iso_count = 1;
     bool skip_empty = true;    ///< transparent bricks are leapt over
     std::uint32_t filter = 0;  ///< RaycastFilter
+    bool transfer = false;     ///< colour and extinction by a transfer function, else by material
 };
+
+/// Volume -> distance of every brick to the nearest one that is not transparent in the variant's field. `block` is a
+/// RaycastBlock; the ray caster's descriptor set is bound.
+void classify_bricks(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec3& dims);
 
 /// Writes FrameParams::output_pixels of the block, (height, width) vec4, linear light.
 void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec2& size);

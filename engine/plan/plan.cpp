@@ -49,12 +49,26 @@ double bounded(double extinction, const VolumeGeometry& geometry) {
     return std::min(extinction, kMostAVoxel / std::max({s.x, s.y, s.z}));
 }
 
+/// Mean of extinction times (colour, 1) between two points, of which both are linear: by Simpson's rule.
+glm::dvec4 mean_matter(const TransferPoint& a, const TransferPoint& b) {
+    const auto at = [&](double t) {
+        const double extinction = std::lerp(a.extinction, b.extinction, t);
+        return extinction * glm::dvec4(glm::mix(a.color, b.color, t), 1);
+    };
+    return (at(0) + 4.0 * at(0.5) + at(1)) / 6.0;
+}
+
 std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume& volume) {
     std::vector<shader::TransferRow> rows;
-    for (const TransferPoint& point : scaled_transfer(scene, volume))
-        rows.push_back(
-            {static_cast<float>(point.value), glm::dvec4(point.color, bounded(point.extinction, volume.geometry))});
-    if (!rows.empty()) rows.resize(shader::TRANSFER_ROWS + 1, {3e38F, rows.back().matter});
+    glm::dvec4 before(0);
+    TransferPoint last;
+    for (TransferPoint& point : scaled_transfer(scene, volume)) {
+        point.extinction = bounded(point.extinction, volume.geometry);
+        if (!rows.empty()) before += (point.value - last.value) * mean_matter(last, point);
+        rows.push_back({static_cast<float>(point.value), glm::dvec4(point.color, point.extinction), before});
+        last = point;
+    }
+    if (!rows.empty()) rows.resize(shader::TRANSFER_ROWS + 1, {3e38F, rows.back().matter, rows.back().before});
     return rows;
 }
 
@@ -65,10 +79,6 @@ int bury_distance(double extinction_per_voxel) {
 
 glm::vec3 to_float(const glm::dvec3& v) {
     return {v};
-}
-
-bool same_row(const shader::TransferRow& a, const shader::TransferRow& b) {
-    return a.value == b.value && a.matter == b.matter;
 }
 
 /// As FrameParams::light_at.
@@ -191,11 +201,11 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
-           faces == other.faces && std::ranges::equal(transfer, other.transfer, same_row) &&
-           a.estimate_mask == b.estimate_mask && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
-           a.visible_mask == b.visible_mask && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
-           a.band == b.band && a.reach == b.reach && clip == other.clip &&
-           std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
+           faces == other.faces && std::ranges::equal(transfer, other.transfer) && a.estimate_mask == b.estimate_mask &&
+           a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
+           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
+           a.reach == b.reach && clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
+           std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {

@@ -14,7 +14,7 @@ gpu::GpuImage brick_image(const gpu::Device& device, const glm::ivec3& dims, con
         name};
 }
 
-bool same_bricks(const shader::SceneParams& a, const shader::SceneParams& b) {
+bool same_scene(const shader::SceneParams& a, const shader::SceneParams& b) {
     return a.iso_count == b.iso_count && a.visible_mask == b.visible_mask && std::ranges::equal(a.iso, b.iso);
 }
 
@@ -31,7 +31,8 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
     RaycastPlan plan;
     plan.size = size;
     plan.variant = {light_code(scene), collection.params.iso_count, raycast.skip_empty,
-                    static_cast<std::uint32_t>(raycast.filter)};
+                    static_cast<std::uint32_t>(raycast.filter), !scene.transfer.empty()};
+    plan.transfer = collection.transfer;
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;
     p.anchor = anchor;
@@ -76,6 +77,13 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
     }
     auto& block = block_.mapped<shader::RaycastBlock>(1)[0];
     block = plan.block;
+    if (!plan.transfer.empty()) {
+        if (!transfer_)
+            transfer_ = gpu::Buffer(device, plan.transfer.size() * sizeof(shader::TransferRow),
+                                    gpu::Buffer::Place::Host, "ray caster's transfer function");
+        std::ranges::copy(plan.transfer, transfer_.mapped<shader::TransferRow>(plan.transfer.size()).begin());
+        block.scene.transfer = transfer_.address();
+    }
     block.rays.pixels = output_.address();
     bindings_.write_volume(volume);
     takes_coefficients_ = plan.variant.filter == shader::FILTER_CUBIC;
@@ -83,23 +91,23 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
 
 bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& commands, const RaycastPlan& plan) {
     if (!plan.variant.skip_empty) return false;
-    auto& [bricks, made_for] = bricks_.at(plan.variant.filter);
+    auto& [bricks, made_for, made_for_transfer] = bricks_.at(plan.variant.filter);
     const shader::SceneParams& scene = plan.block.scene;
     if (!bricks) bricks = brick_image(device, scene.dims, "bricks");
     bindings_.set().put_image(shader::BIND_BRICKS, bricks);
-    if (same_bricks(made_for, scene)) return false;
+    if (same_scene(made_for, scene) && made_for_transfer == plan.transfer) return false;
     const gpu::GpuImage scratch = brick_image(device, scene.dims, "brick scratch");
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, scratch);
     made_for = {};
     commands.run([&, &image = bricks] {
         commands.bind_compute_set(bindings_.set());
         commands.prepare({&scratch, &image});
-        commands.span("raycast_bricks",
-                      [&] { passes::classify_bricks(commands, scene.dims, scene.iso_count, plan.variant.filter); });
+        commands.span("raycast_bricks", [&] { passes::classify_bricks(commands, plan.variant, scene.dims); });
     });
     // The slot must not be left with an image that is gone.
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks);
     made_for = scene;
+    made_for_transfer = plan.transfer;
     return true;
 }
 

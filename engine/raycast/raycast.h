@@ -14,6 +14,7 @@ namespace edgesplat {
 /// One picture by ray casting.
 struct RaycastPlan {
     passes::RaycastVariant variant;
+    std::vector<shader::TransferRow> transfer;  ///< TRANSFER_ROWS + 1; empty without a transfer function
     glm::ivec2 size{0};
     shader::RaycastBlock block{};  ///< without addresses
 };
@@ -49,9 +50,11 @@ class RaycastResources {
     /// Transparent bricks of a filter's field.
     struct Bricks {
         gpu::GpuImage image;             ///< (z, y, x) r8ui: BIND_BRICKS
-        shader::SceneParams made_for{};  ///< iso_count 0: for nothing yet
+        shader::SceneParams made_for{};  ///< iso_count 0, and no transfer function: for nothing yet
+        std::vector<shader::TransferRow> made_for_transfer;
     };
     std::array<Bricks, kRaycastFilterNames.size()> bricks_;  ///< an image where that filter was asked for
+    gpu::Buffer transfer_;                                   ///< TransferRow, mapped; with a transfer function
     gpu::Buffer block_;                                      ///< RaycastBlock, mapped
     gpu::Buffer output_;                                     ///< (height, width) vec4, mapped
     glm::ivec2 size_{0};

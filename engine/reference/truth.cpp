@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "engine/reference/7_resolve.h"
+#include "engine/scene/transfer_function.h"
 
 namespace edgesplat::reference {
 
@@ -16,6 +17,7 @@ constexpr double kStep = 0.25;         ///< voxels between the points at which a
 constexpr double kSlopeStep = 1e-4;    ///< voxels, for the slope of a distance
 constexpr double kFinestProbe = 1e-7;  ///< voxels, how exactly an extremum along a ray is found
 constexpr int kDeepestHalving = 40;
+constexpr double kBorderLight = 1;  ///< voxels from the border in which it lights what a transfer function shows
 
 /// A point of a ray.
 struct Probe {
@@ -35,11 +37,10 @@ class TruthWalker {
         sum_ = {};
         u_ = u;
         mm_per_voxel_ = glm::length(view_.geometry.index_to_world_axes * u);
-        double length = 0;
-        if (!enter(length)) return sum_;
+        if (!enter(length_)) return sum_;
         // One probe before the beginning and one behind the end, for extrema near either.
-        const int steps = static_cast<int>(std::ceil(length / kStep));
-        const double step = length / steps;
+        const int steps = static_cast<int>(std::ceil(length_ / kStep));
+        const double step = length_ / steps;
         std::array<Probe, 3> last{probe(-step), probe(0), probe(step)};
         Extrema before = extrema(last);
         for (int i = 1; i <= steps; ++i) {
@@ -167,15 +168,17 @@ class TruthWalker {
     /// Largest extinction per voxel along this ray.
     double fastest() const {
         double most = 1e-300;
-        for (const Material& m : look_.materials)
-            most = std::max(most, m.extinction * mm_per_voxel_);
+        for (std::size_t m = 0; m < look_.materials.size(); ++m)
+            most = std::max(most, extinctions_of(look_, m).most * mm_per_voxel_);
         return most;
     }
 
     void absorb(double begin, double end, int material) {
+        if (!(end > begin)) return;
+        if (!look_.transfer.empty()) return absorb_by_value(begin, end);
         const Material& m = look_.materials[static_cast<std::size_t>(material)];
         const double per_voxel = m.extinction * mm_per_voxel_;
-        if (!(per_voxel > 0) || !(end > begin)) return;
+        if (!(per_voxel > 0)) return;
         const double tau = per_voxel * (end - begin);
         const double opacity = -std::expm1(-tau);
         // Over opacity instead of length the weight of every point is the same, and only the light is left to
@@ -183,12 +186,23 @@ class TruthWalker {
         const auto color = [&](double a) {
             const double t = std::min(begin - std::log1p(-a) / per_voxel, end);
             ++sum_.samples;
-            return color_at(m, origin_ + t * u_);
+            return color_at(m.color, origin_ + t * u_);
         };
         const glm::dvec3 whole = mean(color, 0, opacity);
         halved(color, 0, opacity, whole, 0);
         sum_.tau += tau;
         sum_.transmittance *= std::exp(-tau);
+    }
+
+    /// With a transfer function extinction changes along the way, too.
+    void absorb_by_value(double begin, double end) {
+        const auto density = [&](double t) -> Density {
+            const glm::dvec3 x = origin_ + t * u_;
+            const TransferPoint at = transfer_at(look_.transfer, scene_.value(x));
+            const double extinction = at.extinction * mm_per_voxel_;
+            return {extinction, extinction > 0 ? extinction * color_at(at.color, x) : glm::dvec3(0)};
+        };
+        PanelIntegrator(density, {tolerance_, length_}, sum_).add(begin, end - begin);
     }
 
     template <typename Color>
@@ -216,8 +230,8 @@ class TruthWalker {
         halved(color, middle, end, far, depth + 1);
     }
 
-    glm::dvec3 color_at(const Material& material, const glm::dvec3& x) const {
-        if (look_.lights.empty()) return material.color;
+    glm::dvec3 color_at(const glm::dvec3& color, const glm::dvec3& x) const {
+        if (look_.lights.empty()) return color;
         // Lower values lie where the gradient does not point. A distance rises in the same direction all the way from
         // its edge, so that it need not be followed there; it has a slope where a step has no gradient.
         glm::dvec3 n = scene_.signed_distance ? distance_slope(x) : -scene_.gradient(x);
@@ -226,8 +240,7 @@ class TruthWalker {
         const Border border = border_beside(x);
         if (border.distance < distance_to_surface(x, length)) n = border.normal;
         if (n != glm::dvec3(0)) n = glm::normalize(glm::transpose(view_.world_to_index) * n);
-        return lit(look_, {.color = material.color, .normal = n, .position = view_.geometry.to_world(x)},
-                   view_.frame.eye);
+        return lit(look_, {.color = color, .normal = n, .position = view_.geometry.to_world(x)}, view_.frame.eye);
     }
 
     struct Border {
@@ -249,8 +262,8 @@ class TruthWalker {
 
     /// To the nearest iso-value; `slope` is the length of the gradient, where no distance is known.
     double distance_to_surface(const glm::dvec3& x, double slope) const {
-        if (scene_.signed_distance) return std::abs(scene_.signed_distance(x));
-        double nearest = std::numeric_limits<double>::infinity();
+        double nearest = look_.transfer.empty() ? std::numeric_limits<double>::infinity() : kBorderLight;
+        if (scene_.signed_distance) return std::min(nearest, std::abs(scene_.signed_distance(x)));
         for (const double iso : look_.iso_values)
             nearest = std::min(nearest, std::abs(scene_.value(x) - iso) / slope);
         return nearest;
@@ -272,6 +285,7 @@ class TruthWalker {
     const View& view_;
     double cut_, tolerance_;
     glm::dvec3 u_{0}, origin_{0};
+    double length_ = 0;  ///< of the ray within the volume
     double mm_per_voxel_ = 1;
     RaySum sum_;
 };

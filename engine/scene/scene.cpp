@@ -99,7 +99,7 @@ Light directional_light(const glm::dvec3& towards) {
 
 std::string beyond_ray_casting(const Scene& scene) {
     const Effects& effects = scene.effects;
-    if (!scene.transfer.empty()) return "a transfer function";
+    if (scene.labels) return "things by number";
     if (scene.lights.size() > 1) return "more than one light";
     for (const Light& light : scene.lights) {
         if (light.kind == Light::Kind::Point) return "a point light";

@@ -69,15 +69,17 @@ struct Scene {
     std::vector<Material> materials;      ///< iso_values.size() + 1, lowest interval first
     std::vector<TransferPoint> transfer;  ///< ascending; when not empty it says colour and extinction in place of the
                                           ///< materials, which then only answer to light
-    double ambient = 0.15;                ///< light from everywhere, >= 0
-    std::vector<Light> lights{Light{}};   ///< 0..4; with none, colours are shown as they are
+    bool labels = false;                 ///< values above the surface are numbers of things, between which nothing lies
+    double ambient = 0.15;               ///< light from everywhere, >= 0
+    std::vector<Light> lights{Light{}};  ///< 0..4; with none, colours are shown as they are
     Lit lit = Lit::Everywhere;
     glm::dvec3 background{0, 0, 0};  ///< linear light
     Effects effects;
 };
 
 /// What in a scene rays cast through values, and the truth of analytic scenes, do not show; empty: nothing. They know
-/// materials without gloss, one headlight or directional white light without shadows, and a plain background.
+/// transfer functions of values that are measured, materials without gloss, one headlight or directional white light
+/// without shadows, and a plain background.
 std::string beyond_ray_casting(const Scene& scene);
 
 /// Whether splats without an edge count as without normal: Lit::Edges, where edges are drawn at all.

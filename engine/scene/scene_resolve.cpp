@@ -186,6 +186,7 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     if (iso.empty()) iso = preset_iso_values(document.materials);
     if (iso.empty() && scene.transfer.empty() && document.volume.labels.value_or(false)) {
         iso = {kLabelSurface};
+        scene.labels = true;
         if (document.materials.empty()) scene.transfer = label_colors(volume);
     }
     if (iso.empty() && scene.transfer.empty()) iso = chosen_iso_values(document, volume);

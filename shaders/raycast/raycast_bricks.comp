@@ -5,12 +5,14 @@
 #include "shaders/shared/bindings.h"
 
 layout(local_size_x = 8, local_size_y = 4, local_size_z = 2) in;
+layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_RAY_FILTER) const uint FILTER = FILTER_TRILINEAR;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_BRICK_SCRATCH, r8ui) uniform writeonly uimage3D scratch;
 layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 #include "shaders/common/material.glsl"
+#include "shaders/common/transfer.glsl"
 
 void main() {
     ivec3 brick = ivec3(gl_GlobalInvocationID), count = imageSize(scratch);
@@ -36,7 +38,9 @@ void main() {
                 low = min(low, value - rounding);
                 high = max(high, value + rounding);
             }
-    // Every material between the two can be met on the way from one to the other.
+    // Every material, and every value, between the two can be met on the way from one to the other.
     uint materials = (2u << material_of(high)) - (1u << material_of(low));
-    imageStore(scratch, brick, uvec4((materials & params.scene.visible_mask) != 0u ? 0u : BRICK_FAR, 0u, 0u, 0u));
+    bool visible = (materials & params.scene.visible_mask) != 0u;
+    if (TRANSFER == 1u) visible = transfer_between(TransferRef(params.scene.transfer), low, high).a > 0.0;
+    imageStore(scratch, brick, uvec4(visible ? 0u : BRICK_FAR, 0u, 0u, 0u));
 }

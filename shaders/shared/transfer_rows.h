@@ -10,12 +10,18 @@ EDGESPLAT_CONSTANT uint TRANSFER_ROWS = 256u;  // as many as a scene may have; o
 struct TransferRow {
     float value;  // scaled
     vec4 matter;  // rgb, extinction per mm
+    vec4 before;  // integral of extinction times (rgb, 1) over the values from the first row's on, for rays
 };
 
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::TransferRow) == 20);
+static_assert(sizeof(edgesplat::shader::TransferRow) == 36);
+namespace edgesplat::shader {
+inline bool operator==(const TransferRow& a, const TransferRow& b) {
+    return a.value == b.value && a.matter == b.matter;
+}
+}  // namespace edgesplat::shader
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer TransferRef {
     TransferRow at[];

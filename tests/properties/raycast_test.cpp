@@ -140,8 +140,8 @@ TEST(Raycast, LeapsHeedThatTheSplineLeavesTheRangeOfItsSamples) {
 class RaycastInDouble : public testing::TestWithParam<RaycastFilter> {
   protected:
     /// But for one pixel in a hundred, whose rays graze the surface: matter of less than a step may be missed.
-    static void expect_near(const Shot& shot, double largest) {
-        const RaycastSettings how{.filter = GetParam()};
+    static void expect_near(const Shot& shot, double largest, double step = 0.5) {
+        const RaycastSettings how{.step = step, .filter = GetParam()};
         reference::DirectOptions options;
         options.tolerance = 1e-5;
         const Image expected =
@@ -176,6 +176,29 @@ TEST_P(RaycastInDouble, SurfacesAndTheirLight) {
     expect_near(shot, 1e-3);
 }
 
+/// Veils of two colours around a torus, and what is solid in its middle.
+std::vector<TransferPoint> veils() {
+    return {{0.1, {0.2, 0.5, 1}, 0},     {0.2, {0.2, 0.5, 1}, 0.25}, {0.3, {0.9, 0.4, 0.1}, 0.05},
+            {0.6, {0.9, 0.4, 0.1}, 0.1}, {0.75, {1, 0.9, 0.8}, 0.3}, {0.9, {1, 0.9, 0.8}, 4}};
+}
+
+TEST_P(RaycastInDouble, TransferFunctions) {
+    Shot shot = torus_shot();
+    shot.scene.iso_values.clear();
+    shot.scene.materials = {{}};
+    shot.scene.transfer = veils();
+    // Between its samples a ray takes values for linear, and light for constant; shorter steps show that no more is
+    // wrong.
+    expect_near(shot, 0.02);
+    expect_near(shot, 0.01, 0.1);
+    shot.scene.lights.clear();
+    expect_near(shot, 0.02);
+    expect_near(shot, 2e-3, 0.1);
+    // A step that no sample shows: within a thousandth of the range from nothing to solid.
+    shot.scene.transfer = {{0.4999, {1, 0.5, 0.25}, 0}, {0.5001, {1, 0.5, 0.25}, 20}};
+    expect_near(shot, 5e-3, 0.05);
+}
+
 INSTANTIATE_TEST_SUITE_P(Filters, RaycastInDouble, testing::ValuesIn(kFilters),
                          [](const auto& test) { return test.param == kCubic ? "cubic" : "trilinear"; });
 
@@ -205,6 +228,40 @@ TEST(Raycast, MaterialsMayChangeBetweenPictures) {
     EXPECT_EQ(changed.pixels, cast(shot, {.skip_empty = false}).color.pixels);
     std::swap(shot.scene.materials[0], shot.scene.materials[1]);
     EXPECT_EQ(cast(shot).color.pixels, before.pixels);
+}
+
+TEST(Raycast, TransferFunctionsMayChangeBetweenPictures) {
+    Shot shot = torus_shot();
+    const Image materials = cast(shot).color;
+    shot.scene.transfer = veils();
+    for (const RaycastFilter filter : kFilters) {
+        shot.scene.transfer = veils();
+        const Image before = cast(shot, {.filter = filter}).color;
+        EXPECT_EQ(before.pixels, cast(shot, {.filter = filter, .skip_empty = false}).color.pixels);
+        shot.scene.transfer.erase(shot.scene.transfer.begin(), shot.scene.transfer.begin() + 4);
+        const Image changed = cast(shot, {.filter = filter}).color;
+        EXPECT_NE(changed.pixels, before.pixels);
+        EXPECT_EQ(changed.pixels, cast(shot, {.filter = filter, .skip_empty = false}).color.pixels);
+    }
+    shot.scene.transfer.clear();
+    EXPECT_EQ(cast(shot).color.pixels, materials.pixels);
+}
+
+TEST(Raycast, ValuesBeyondATransferFunctionHaveWhatItsEndsHave) {
+    Shot shot = wedge_shot(0);
+    const PixelRay ray = ray_of(shot, 32, 32);
+    // All of the volume, from border to border.
+    const double way = 21 / std::abs(ray.u.z) * ray.mm;
+    for (const double value : {-100.0, 0.0, 2.0, 100.0}) {
+        shot.scene.iso_values.clear();
+        shot.scene.materials = {{}};
+        shot.scene.transfer = {{value, {1, 1, 1}, 0.02}};
+        EXPECT_NEAR(static_cast<double>(cast(shot).color.at(32, 32, 3)), -std::expm1(-0.02 * way), 2e-4) << value;
+    }
+    // Extinction is linear in values that rise to 5.7 and fall again; the samples beside the top are 5.4 and 5.
+    shot.scene.transfer = {{0, {1, 1, 1}, 0}, {5.7, {1, 1, 1}, 0.1}};
+    const double tau = 0.1 / 5.7 * (5.7 * 5.7 - (0.3 * 5.55 + 0.7 * 5.35 - 5.2)) / std::abs(ray.u.z) * ray.mm;
+    EXPECT_NEAR(static_cast<double>(cast(shot, {.step = 0.1}).color.at(32, 32, 3)), -std::expm1(-tau), 1e-3);
 }
 
 TEST(Raycast, FiltersMayChangeBetweenPictures) {

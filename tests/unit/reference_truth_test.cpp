@@ -170,6 +170,48 @@ TEST(Truth, EverySceneIsTheLimitOfSmallSteps) {
     }
 }
 
+TEST(Truth, ATransferFunctionIsIntegratedOverValues) {
+    // Values rise linearly along z; extinction is a tent over them: what a ray absorbs is the tent's area, and colours
+    // of its two sides appear in the order in which the ray meets them.
+    AnalyticScene scene = analytic_scene("plane");
+    scene.value = [](const glm::dvec3& x) { return x.z / 10; };
+    scene.gradient = [](const glm::dvec3&) { return glm::dvec3(0, 0, 0.1); };
+    scene.signed_distance = {};
+    Scene look;
+    look.lights.clear();
+    look.materials = {{}};
+    look.transfer = {{1, {1, 0, 0}, 0}, {2, {1, 0, 0}, 0.3}, {2.5, {0, 1, 0}, 0}};
+    Camera camera;
+    camera.direction = {0.1, 0.2, 1};
+    camera.up = {0, 1, 0};
+    camera.eye = (glm::dvec3(scene.dims) - 1.0) / 2.0 - 100.0 * camera.direction;
+    camera.fov_y = 10;
+    const View view(camera, geometry_of(scene), 32, 32);
+    const Image image = seen(scene, look, camera, 32, 32, 1e-6).image;
+    for (const glm::ivec2 p : {glm::ivec2(16, 16), glm::ivec2(3, 20), glm::ivec2(25, 9)}) {
+        const double per_value = 10 / std::abs(view.ray(p.x, p.y).z);
+        const double first = 0.15 * per_value, second = 0.075 * per_value;
+        EXPECT_NEAR(static_cast<double>(image.at(p.x, p.y, 3)), -std::expm1(-first - second), 1e-5);
+        // By small steps through the second side, which begins red and ends green.
+        double red = -std::expm1(-first), transmittance = std::exp(-first);
+        constexpr int kSteps = 100000;
+        for (int i = 0; i < kSteps; ++i) {
+            const double t = (i + 0.5) / kSteps, tau = 0.3 * (1 - t) * 0.5 * per_value / kSteps;
+            red += transmittance * tau * (1 - t);
+            transmittance *= std::exp(-tau);
+        }
+        EXPECT_NEAR(static_cast<double>(image.at(p.x, p.y, 0)), red, 1e-5);
+    }
+    // Without iso-values no edge is known, and only what is at the volume's border is lit by it.
+    look.lights = {directional_light({0, 0, -1})};
+    look.lights[0].intensity = 1;
+    look.ambient = 0;
+    look.transfer = {{1, {1, 1, 1}, 0}, {1.5, {1, 1, 1}, 50}};
+    camera.direction = {0, 0, 1};
+    camera.eye = (glm::dvec3(scene.dims) - 1.0) / 2.0 - glm::dvec3(0, 0, 100);
+    EXPECT_NEAR(static_cast<double>(seen(scene, look, camera, 1, 1).image.at(0, 0, 1)), 1, 1e-4);
+}
+
 TEST(Truth, TightenedTolerancesAgreeUnderLight) {
     for (const char* name : {"cube-hole", "orbital", "torus"}) {
         const AnalyticScene scene = analytic_scene(name);

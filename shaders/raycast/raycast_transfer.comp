@@ -1,0 +1,76 @@
+// Rays through the field between the voxels where a transfer function says what each value absorbs and emits. Between
+// two samples of a ray values are linear: what they absorb and emit is exact. docs/method.md, Ray caster.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/raycast_params.h"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
+#include "shaders/raycast/raycast.glsl"
+#include "shaders/common/transfer.glsl"
+
+const float BORDER_LIGHT = 1.0;  // voxels: what lies nearer than that to the volume's border is lit as the border
+const float PIECE_DEPTH = 0.5;   // optical depth of a piece in which colours are mixed, whichever is in front
+const float MOST_PIECES = 16.0;
+
+// Towards which values rise where the border is the surface; 0 elsewhere.
+vec3 border_beside(vec3 p) {
+    vec3 below = p + 0.5, above = vec3(dims) - 0.5 - p, near = min(below, above);
+    float nearest = min(near.x, min(near.y, near.z));
+    bool x = near.x == nearest, y = !x && near.y == nearest;
+    vec3 axis = vec3(x, y, !x && !y) * mix(vec3(-1.0), vec3(1.0), lessThan(below, above));
+    return nearest < BORDER_LIGHT ? axis : vec3(0.0);
+}
+
+void main() {
+    ivec2 pixel = pixel_of_invocation();
+    if (any(greaterThanEqual(pixel, params.rays.size))) return;
+    read_scene();
+    Ray ray = ray_of(pixel);
+    TransferRef rows = TransferRef(params.scene.transfer);
+    float step = params.rays.step, per_step = 1.0 / step, saturation = params.rays.saturation;
+    int count = ray.first < ray.last ? int(ceil((ray.last - ray.first) * per_step)) : 0;
+
+    vec4 sum = vec4(0.0);
+    float previous = 0.0;
+    float light = 1.0, lit_at = -1e9, stale = 0.0;  // where light was found last, and what was drawn with it since
+    bool empty = true;                               // nothing is known of `previous`, or it absorbs nothing
+    for (int i = 1; i <= count;) {
+        // Along what is transparent to the segment (i - 1, i) that may not be.
+        float way = SKIP == 1u && empty ? 1e9 : 0.0;
+        while (i <= count && way > 0.0) {
+            float t = min(ray.first + float(i) * step, ray.last);
+            way = leap(ray, at(ray, t));
+            i = way > 0.0 ? max(i + 1, int(ceil((t + way - 1e-3 - ray.first) * per_step))) : i;
+        }
+        for (int run = i <= count && empty ? 1 : 0; run > 0; --run) previous = field(at(ray, min(ray.first + float(i - 1) * step, ray.last)));
+        empty = false;
+        bool dark = false;  // light is to be found before anything else is drawn
+        float middle = 0.0;
+        while (i <= count && !dark && !empty) {
+            float a = min(ray.first + float(i - 1) * step, ray.last), b = min(ray.first + float(i) * step, ray.last);
+            float current = field(at(ray, b));
+            float depth = ray.mm * (b - a) * transfer_between(rows, previous, current).a;
+            middle = 0.5 * (a + b);
+            float weight = (1.0 - sum.a) * opacity(depth);
+            dark = LIGHT != LIGHT_NONE && depth > 0.0 && (lit_at < -1e8 || (stale + weight > STALE_LIGHT && middle > lit_at));
+            int pieces = dark ? 0 : int(clamp(ceil(depth / PIECE_DEPTH), 1.0, MOST_PIECES));
+            for (int k = 0; k < pieces; ++k) {
+                vec4 matter = transfer_between(rows, mix(previous, current, float(k) / float(pieces)), mix(previous, current, float(k + 1) / float(pieces)));
+                float part = (1.0 - sum.a) * opacity(ray.mm * (b - a) / float(pieces) * matter.a);
+                sum += part * vec4(light * matter.rgb / max(matter.a, 1e-30), 1.0);
+            }
+            stale += dark ? 0.0 : weight;
+            empty = SKIP == 1u && depth == 0.0;
+            previous = dark ? previous : current;
+            i = sum.a >= saturation ? count + 1 : dark ? i : i + 1;
+        }
+        for (int run = dark ? 1 : 0; run > 0; --run) {
+            vec3 p = at(ray, middle), border = border_beside(p);
+            light = light_on(dot(border, border) > 0.0 ? border : gradient(p), ray.u);
+            lit_at = middle;
+            stale = 0.0;
+        }
+    }
+    write_pixel(pixel, sum);
+}
