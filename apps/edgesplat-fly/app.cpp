@@ -173,6 +173,7 @@ void App::finish_loading() {
         if (window_) window_->set_title("Edgesplat: " + loading->path());
     } catch (const std::exception& error) {
         state_.error = error.what();
+        viewer::forget_lost(state_.preferences);
     }
 }
 

@@ -54,7 +54,10 @@ struct AppState {
 
     std::optional<edgesplat::viewer::DrawnPicture> shown;  ///< without its pixels once they are on the canvas
     edgesplat::Image last_edges, last_plain;               ///< its pixels
-    bool sharpening_due = false;                           ///< not made of them yet
+    /// How it is looked at: as the session says, or until that is drawn as before.
+    edgesplat::viewer::Show visible = edgesplat::viewer::Show::Edges;
+    bool has_plain = false;       ///< it was drawn with conventional splatting beside it
+    bool sharpening_due = false;  ///< not made of them yet
     CanvasPicture edges, plain, sharpening;
     std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
 

@@ -11,7 +11,7 @@ namespace {
 namespace viewer = edgesplat::viewer;
 using viewer::Handle;
 
-constexpr double kReach = 0.7, kRadius = 0.35, kArrow = 2.4;  // em
+constexpr double kReach = 0.7, kRadius = 0.35, kArrow = 2.4, kInset = 0.8;  // em
 
 ImU32 color_of(Handle::Kind kind) {
     if (kind == Handle::Kind::KeepBox) return IM_COL32(120, 230, 140, 255);
@@ -63,13 +63,15 @@ void draw_box(const AppState& state, const Pen& pen, const edgesplat::ClipBox& b
 void draw_handle(AppState& state, const Pen& pen, const Handle& handle, bool bright) {
     const auto& camera = state.session.motion().camera();
     const glm::ivec2 size = state.picture_size();
-    const auto at = viewer::project(camera, size, handle.place);
+    const auto at = viewer::seen_at(handle, camera, size, kInset * state.em);
     if (!at) return;
     const ImU32 color = bright ? kInk : color_of(handle.kind);
     const double depth = glm::dot(handle.place - camera.eye, glm::normalize(camera.direction));
     const double length = kArrow * state.em * viewer::pixel_size(camera, size, depth);
-    const auto tip = viewer::project(camera, size, handle.place + length * handle.normal);
+    const auto place = viewer::project(camera, size, handle.place);
+    auto tip = viewer::project(camera, size, handle.place + length * handle.normal);
     if (tip) {
+        *tip += *at - *place;  // as it points where the handle itself is
         const glm::dvec2 way = *tip - *at;
         const double pixels = glm::length(way);
         pen.line(*at, *tip, color, 2);
@@ -109,8 +111,8 @@ bool clip_handles(AppState& state, const Input& input, bool over_picture) {
     }
     hand.hovered.reset();
     if (!over_picture || !free || input.ctrl() || state.tool != Tool::Move) return false;
-    hand.hovered =
-        viewer::handle_at(handles, state.session.motion().camera(), state.picture_size(), pixel, kReach * state.em);
+    hand.hovered = viewer::handle_at(handles, state.session.motion().camera(), state.picture_size(), pixel,
+                                     kReach * state.em, kInset * state.em);
     if (!pressed || !hand.hovered) return false;
     hand.held = handles[*hand.hovered];
     hand.start.reset();

@@ -29,15 +29,30 @@ void toggle_mode(AppState& s) {
     s.session.say(fly ? "fly: W A S D to move, mouse to look" : "orbit: drag to turn, wheel to come nearer");
 }
 
-constexpr std::array<Shortcut, 39> kShortcuts{{
+void go_home(AppState& s) {
+    s.session.tour().playing = false;
+    s.session.motion().home();
+}
+
+void next_show(AppState& s) {
+    constexpr std::array<Show, 4> kAll{Show::Edges, Show::Plain, Show::Wipe, Show::Sharpening};
+    const auto now = static_cast<std::size_t>(std::ranges::find(kAll, s.session.show()) - kAll.begin());
+    s.session.set_show(kAll[(now + 1) % kAll.size()]);
+}
+
+/// Under the first name that neither stands for a file nor for one that is being written.
+void save_picture(AppState& s) {
+    s.wishes.save_picture =
+        edgesplat::viewer::free_path(".", "picture", ".png", [&](const std::filesystem::path& path) {
+            return std::ranges::count(s.writing, path.string(), &Writing::path) > 0;
+        }).string();
+}
+
+constexpr std::array<Shortcut, 43> kShortcuts{{
     {"F1", "this help", [](AppState& s) { s.help = !s.help; }},
     {"Tab", "panels on and off", [](AppState& s) { s.panels = !s.panels; }},
     {"F", "fly, or orbit like a model on a table", toggle_mode},
-    {"Home", "back to the first view",
-     [](AppState& s) {
-         s.session.tour().playing = false;
-         s.session.motion().home();
-     }},
+    {"Home", "back to the first view", go_home},
     {"Space", "plain or edge-preserved", [](AppState& s) { toggle(s.session, Show::Plain); }},
     {"X", "wipe between the two", [](AppState& s) { toggle(s.session, Show::Wipe); }},
     {"H", "where and how much was sharpened", [](AppState& s) { toggle(s.session, Show::Sharpening); }},
@@ -61,8 +76,7 @@ constexpr std::array<Shortcut, 39> kShortcuts{{
     {"Ctrl+Y", "redo", [](AppState& s) { s.session.redo(); }},
     {"Ctrl+S", "save the scene into the working folder",
      [](AppState& s) { s.wishes.save_scene = edgesplat::viewer::free_path(".", "scene", ".toml").string(); }},
-    {"F12", "save the picture there, too",
-     [](AppState& s) { s.wishes.save_picture = edgesplat::viewer::free_path(".", "picture", ".png").string(); }},
+    {"F12", "save the picture there, too", save_picture},
     {"Ctrl+R", "record the flight, stop", toggle_recording},
     {"F11", "full screen", [](AppState& s) { s.wishes.full_screen = true; }},
     {"Ctrl+Q", "leave", [](AppState& s) { s.wishes.quit = true; }},
@@ -87,7 +101,11 @@ constexpr std::array<Shortcut, 39> kShortcuts{{
     {"slices", "click or drag: the point; wheel: the next slice", nullptr},
     {"drop a file or folder", "open it", nullptr},
     {"left stick, right stick", "gamepad: fly, look; triggers: down and up", nullptr},
-    {"pad X, pad Y", "gamepad: plain or edge-preserved; home", nullptr},
+    {"PadX", "gamepad: plain or edge-preserved", [](AppState& s) { toggle(s.session, Show::Plain); }},
+    {"PadB", "the next way of looking: plain, wipe, sharpening", next_show},
+    {"PadA", "fly, or orbit", toggle_mode},
+    {"PadY", "back to the first view", go_home},
+    {"PadStart", "save the picture into the working folder", save_picture},
 }};
 
 bool pressed(const Input& input, std::string_view keys) {
@@ -217,9 +235,6 @@ Controls PictureControls::apply(AppState& state, const Input& input, bool over_p
     const Gamepad& pad = input.gamepad;
     controls.move += glm::dvec3(pad.left.x, pad.rise, pad.left.y);
     controls.look += 2.0 * input.seconds * state.preferences.turn * pad.right;
-    if (pad.home) state.session.motion().home();
-    if (pad.toggle && !pad_toggle_) toggle(state.session, Show::Plain);
-    pad_toggle_ = pad.toggle;
     controls.boost = state.boost * state.preferences.speed * (input.shift() ? 3 : 1);
     return controls;
 }

@@ -36,5 +36,4 @@ class PictureControls {
     double travelled_ = 0;      ///< pixels since the button went down
     double since_click_ = 1e9;  ///< seconds
     glm::dvec2 clicked_at_{-1e6};
-    bool pad_toggle_ = false;
 };

@@ -51,6 +51,13 @@ constexpr std::array<KeyName, 36> kNamed{{{"Space", GLFW_KEY_SPACE},
                                           {"F11", GLFW_KEY_F11},
                                           {"F12", GLFW_KEY_F12}}};
 
+/// Buttons of a gamepad, by GLFW's numbers of those.
+constexpr std::array<KeyName, 5> kPad{{{"PadA", GLFW_GAMEPAD_BUTTON_A},
+                                       {"PadB", GLFW_GAMEPAD_BUTTON_B},
+                                       {"PadX", GLFW_GAMEPAD_BUTTON_X},
+                                       {"PadY", GLFW_GAMEPAD_BUTTON_Y},
+                                       {"PadStart", GLFW_GAMEPAD_BUTTON_START}}};
+
 /// Letters and digits: GLFW's codes are their ASCII codes.
 constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
@@ -58,7 +65,12 @@ constexpr std::string_view kPlain = "ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789";
 
 bool is_key(std::string_view name) {
     return (name.size() == 1 && kPlain.find(name[0]) != std::string_view::npos) ||
-           std::ranges::any_of(kNamed, [&](const KeyName& key) { return key.name == name; });
+           std::ranges::count(kNamed, name, &KeyName::name) + std::ranges::count(kPad, name, &KeyName::name) > 0;
+}
+
+std::string_view pad_button_name(int button) {
+    const auto found = std::ranges::find(kPad, button, &KeyName::code);
+    return found == kPad.end() ? std::string_view() : found->name;
 }
 
 std::string_view key_name(int code) {

@@ -16,8 +16,7 @@ enum class Button { Left, Right, Middle };
 
 struct Gamepad {
     glm::dvec2 left{0}, right{0};  ///< sticks: right, up, -1..1
-    double rise = 0;               ///< triggers: right less left
-    bool home = false, toggle = false;
+    double rise = 0;               ///< triggers: right less left; buttons are keys: PadA, PadB, PadX, PadY, PadStart
 };
 
 struct Input {
@@ -41,5 +40,7 @@ struct Input {
 
 /// Whether a key of that name is known.
 bool is_key(std::string_view name);
+/// The name of a gamepad's button by GLFW's number; empty: none.
+std::string_view pad_button_name(int button);
 /// The name of a GLFW key code; empty: none.
 std::string_view key_name(int code);

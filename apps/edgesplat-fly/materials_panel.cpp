@@ -70,7 +70,7 @@ void details(AppState& state, std::size_t m) {
         const auto scale = viewer::ExtinctionScale::of(session.volume().geometry);
         response(state, m, "per mm", material.extinction, {0, scale.most, "%.4f", true}, &MaterialChoice::extinction);
         name_field(state, m);
-        presets_choice(state, "preset", false, [&](const edgesplat::ScenePreset& preset) {
+        presets_choice(state, "preset", edgesplat::PresetKind::Material, [&](const edgesplat::ScenePreset& preset) {
             session.edit([&](SceneDocument& d) { viewer::take_material(d, session.volume(), m, preset); });
         });
     }

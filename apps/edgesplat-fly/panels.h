@@ -27,5 +27,5 @@ void lights_panel(AppState& state);
 void effects_panel(AppState& state);
 void clip_panel(AppState& state);
 /// A list of those presets that are transfer functions, or materials.
-void presets_choice(AppState& state, const char* label, bool transfer,
+void presets_choice(AppState& state, const char* label, edgesplat::PresetKind kind,
                     const std::function<void(const edgesplat::ScenePreset&)>& take);

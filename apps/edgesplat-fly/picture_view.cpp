@@ -116,6 +116,7 @@ bool take_newest(AppState& state) {
     auto picture = state.drawer->take();
     if (!picture) return false;
     state.edges.set(edgesplat::viewer::screen_picture(picture->color));
+    state.has_plain = picture->plain.has_value();
     if (picture->plain) {
         state.plain.set(edgesplat::viewer::screen_picture(*picture->plain));
         state.last_plain = std::move(*picture->plain);
@@ -145,18 +146,18 @@ bool take_pictures(AppState& state) {
 }
 
 void place_pictures(AppState& state) {
+    state.visible = state.has_plain ? state.session.show() : Show::Edges;
     if (!state.shown || state.edges.empty() || state.picture_size().x < 1 || state.picture_size().y < 1) return;
     const glm::ivec4& at = state.area;
-    switch (state.session.show()) {
+    switch (state.visible) {
         case Show::Plain:
-            state.pictures.push_back(whole(state.plain.empty() ? state.edges : state.plain, at));
+            state.pictures.push_back(whole(state.plain, at));
             break;
         case Show::Sharpening:
             state.pictures.push_back(whole(state.sharpening.empty() ? state.edges : state.sharpening, at));
             break;
         case Show::Wipe: {
             state.pictures.push_back(whole(state.edges, at));
-            if (state.plain.empty()) break;
             // In whole pixels of the picture, so that its two sides meet where their pixels do.
             const double columns = state.plain.size().x;
             const double share = std::round(state.session.wipe() * columns) / columns;
@@ -177,7 +178,7 @@ void draw_over_picture(AppState& state) {
     const Pen pen{list, glm::dvec2(state.area.x, state.area.y), state.em};
     list->PushClipRect({static_cast<float>(state.area.x), static_cast<float>(state.area.y)},
                        {static_cast<float>(state.area.z), static_cast<float>(state.area.w)}, false);
-    if (state.session.show() == Show::Wipe) draw_divider(state, pen);
+    if (state.visible == Show::Wipe) draw_divider(state, pen);
     if (state.overlays) {
         draw_path(state, pen);
         draw_picks(state, pen);

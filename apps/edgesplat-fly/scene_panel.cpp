@@ -29,6 +29,13 @@ void steps_back(AppState& state) {
 }
 
 void values_panel(AppState& state) {
+    presets_choice(state, "look", edgesplat::PresetKind::Look, [&](const edgesplat::ScenePreset& preset) {
+        state.session.edit([&](edgesplat::SceneDocument& d) {
+            const edgesplat::VolumeSource read = d.volume;
+            edgesplat::use_look(d, preset.name);
+            d.volume = read;
+        });
+    });
     color_source(state);
     histogram_panel(state);
     if (!state.session.document().transfer.empty()) transfer_panel(state);

@@ -135,6 +135,7 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
             in.held.erase(ctrl ? keys.substr(5) : keys);
         });
     }
+    if (c.verb == "sticks") frame([pad = Gamepad{place(0), place(2), c.number(4)}](Input& in) { in.gamepad = pad; });
     if (c.verb == "type") frame([text = decoded(c.words[0])](Input& in) { in.text = text; });
     if (c.verb == "drop") frame([path = c.words[0]](Input& in) { in.dropped = {path}; });
     if (c.verb == "wander") wander(c.number(0), static_cast<unsigned>(static_cast<int>(c.number(1))));

@@ -68,13 +68,6 @@ void update(AppState& state, int axis, const glm::dvec3& voxel) {
     shown.high = view.high;
 }
 
-/// Letters of the patient's directions: where +x, +y and +z point, then where they come from.
-std::string letter(const glm::dvec3& way) {
-    const glm::dvec3 size = glm::abs(way);
-    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-    return std::string(1, (way[static_cast<int>(axis)] > 0 ? "LPS" : "RAI")[axis]);
-}
-
 /// A slice in its rectangle of the window.
 struct Cell {
     ImDrawList* list;
@@ -89,21 +82,19 @@ struct Cell {
 void letters(const AppState& state, const Cell& cell) {
     const auto& volume = state.session.volume();
     if (!volume.in_patient) return;
-    const auto way = [&](const glm::dvec2& step) {
-        return volume.geometry.index_to_world_axes *
-               (viewer::voxel_at(cell.slice, cell.slice.cross + step) - viewer::voxel_at(cell.slice, cell.slice.cross));
-    };
+    const auto side = viewer::slice_letters(cell.slice, volume.geometry);
+    const auto letter = [&](std::size_t i) { return std::string(1, side[i]); };
     const Pen pen{cell.list, glm::dvec2(0), state.em};
     const glm::dvec2 middle = (cell.low + cell.high) / 2.0, half = 0.5 * state.em * glm::dvec2(0.6, 1.1);
     const double edge = 0.3 * state.em;
     // A slice of few voxels has no room for all of them.
     if (cell.high.x - cell.low.x > 4 * state.em) {
-        pen.text({cell.low.x + edge, middle.y - half.y}, letter(way({-1, 0})));
-        pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(way({1, 0})));
+        pen.text({cell.low.x + edge, middle.y - half.y}, letter(0));
+        pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(1));
     }
     if (cell.high.y - cell.low.y > 4 * state.em) {
-        pen.text({middle.x - half.x, cell.low.y + edge}, letter(way({0, -1})));
-        pen.text({middle.x - half.x, cell.high.y - edge - 2 * half.y}, letter(way({0, 1})));
+        pen.text({middle.x - half.x, cell.low.y + edge}, letter(2));
+        pen.text({middle.x - half.x, cell.high.y - edge - 2 * half.y}, letter(3));
     }
 }
 

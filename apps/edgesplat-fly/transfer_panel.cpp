@@ -36,7 +36,7 @@ void to_transfer(AppState& state) {
 
 }  // namespace
 
-void presets_choice(AppState& state, const char* label, bool transfer,
+void presets_choice(AppState& state, const char* label, edgesplat::PresetKind kind,
                     const std::function<void(const edgesplat::ScenePreset&)>& take) {
     const bool open = ImGui::BeginCombo(label, "choose");
     note(state, label);
@@ -50,7 +50,7 @@ void presets_choice(AppState& state, const char* label, bool transfer,
                 state.session.say(error.what());
             }
     for (const auto& preset : presets) {
-        if (preset.kind != (transfer ? edgesplat::PresetKind::Transfer : edgesplat::PresetKind::Material)) continue;
+        if (preset.kind != kind) continue;
         const bool chosen = ImGui::Selectable(preset.name.c_str());
         note(state, preset.name.c_str());
         if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", preset.content.about.c_str());
@@ -73,7 +73,7 @@ void color_source(AppState& state) {
 void transfer_panel(AppState& state) {
     auto& session = state.session;
     const Scope scope(state, "transfer");
-    presets_choice(state, "preset", true, [&](const edgesplat::ScenePreset& preset) {
+    presets_choice(state, "preset", edgesplat::PresetKind::Transfer, [&](const edgesplat::ScenePreset& preset) {
         state.editing.plot.chosen.reset();
         session.edit([&](SceneDocument& d) { viewer::use_transfer_preset(d, session.volume(), preset); });
     });

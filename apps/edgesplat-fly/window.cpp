@@ -115,8 +115,14 @@ void Window::read_gamepad() {
         pad.left = {stick(state.axes[GLFW_GAMEPAD_AXIS_LEFT_X]), -stick(state.axes[GLFW_GAMEPAD_AXIS_LEFT_Y])};
         pad.right = {stick(state.axes[GLFW_GAMEPAD_AXIS_RIGHT_X]), -stick(state.axes[GLFW_GAMEPAD_AXIS_RIGHT_Y])};
         pad.rise = trigger(GLFW_GAMEPAD_AXIS_RIGHT_TRIGGER) - trigger(GLFW_GAMEPAD_AXIS_LEFT_TRIGGER);
-        pad.home = state.buttons[GLFW_GAMEPAD_BUTTON_Y] == GLFW_PRESS;
-        pad.toggle = state.buttons[GLFW_GAMEPAD_BUTTON_X] == GLFW_PRESS;
+        for (int button = 0; button <= GLFW_GAMEPAD_BUTTON_LAST; ++button) {
+            const Key name(pad_button_name(button));
+            if (name.empty()) continue;
+            if (state.buttons[button] == GLFW_RELEASE)
+                input_.held.erase(name);
+            else if (input_.held.insert(name).second)
+                input_.pressed.push_back(name);
+        }
         return;
     }
 }

@@ -136,8 +136,8 @@ std::array<MarkerAxis, 3> marker_axes(const Volume& volume, const Camera& camera
         MarkerAxis& axis = marker[static_cast<std::size_t>(i)];
         axis.along = {glm::dot(axes[i], frame.right), -glm::dot(axes[i], frame.up)};
         axis.towards_eye = -glm::dot(axes[i], frame.forward);
-        axis.positive = std::string(1, (volume.in_patient ? "LPS" : "XYZ")[i]);
-        if (volume.in_patient) axis.negative = std::string(1, "RAI"[i]);
+        axis.positive = std::string(1, volume.in_patient ? patient_letter(axes[i]) : "XYZ"[i]);
+        if (volume.in_patient) axis.negative = std::string(1, patient_letter(-axes[i]));
     }
     return marker;
 }

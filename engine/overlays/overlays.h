@@ -22,7 +22,7 @@ struct MarkerAxis {
     std::string positive, negative;  ///< letters of its two ends; `negative` may be empty
 };
 
-/// Volumes in patient coordinates: the patient's axes L/R, P/A, S/I; others: the volume's own, X, Y and Z.
+/// Volumes in patient coordinates: the patient's axes L/R, P/A, H/F; others: the volume's own, X, Y and Z.
 std::array<MarkerAxis, 3> marker_axes(const Volume& volume, const Camera& camera);
 
 /// A round length and what it measures in the picture.

@@ -217,6 +217,12 @@ std::span<const std::string_view> view_names() {
     return kNames;
 }
 
+char patient_letter(const glm::dvec3& way) {
+    const glm::dvec3 size = glm::abs(way);
+    const std::size_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    return (way[static_cast<int>(axis)] > 0 ? "LPH" : "RAF")[axis];
+}
+
 glm::dmat3 volume_axes(const VolumeGeometry& geometry) {
     const glm::dmat3& axes = geometry.index_to_world_axes;
     return {glm::normalize(axes[0]), glm::normalize(axes[1]), glm::normalize(axes[2])};

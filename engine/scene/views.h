@@ -38,6 +38,9 @@ std::string_view telling_view(const ViewRequest& request);
 /// A camera that looks along `direction` (world, any length > 0) at all that `request` frames.
 Camera framing_camera(const glm::dvec3& direction, const glm::dvec3& up, const ViewRequest& request);
 
+/// What is nearest to a direction of a patient (world, LPS): L(eft), R(ight), P(osterior), A(nterior), H(ead), F(oot).
+char patient_letter(const glm::dvec3& way);
+
 /// Direction cosines: the world axes of the volume's i, j, k, each of unit length.
 glm::dmat3 volume_axes(const VolumeGeometry& geometry);
 

@@ -60,9 +60,9 @@ struct Drawer::Job {
         bool best = false;
     };
     DrawRequest request;
-    std::uint64_t number = 0;
-    bool planned = false;
-    std::vector<Stage> stages;  ///< next one last
+    std::uint64_t number = 0, view = 0;
+    bool planned = false, finished_before = false;  ///< planned; what is seen stands finished already
+    std::vector<Stage> stages;                      ///< next one last
 };
 
 int Drawer::coarsest_level(const Volume& volume, bool software) {
@@ -93,6 +93,7 @@ std::uint64_t Drawer::ask(DrawRequest request) {
     wanted_ = std::make_unique<Job>();
     wanted_->request = std::move(request);
     wanted_->number = ++asked_;
+    wanted_->view = wanted_->request.same_view ? view_ : ++view_;
     changed_.notify_all();
     return wanted_->number;
 }
@@ -151,6 +152,7 @@ std::optional<DrawnPicture> Drawer::draw_next() {
             if (*pace) (*pace)->set_target(target_);
         options_.target = target_;
         options_.rays = rays_;
+        job->finished_before = job->view == finished_view_;
     }
     std::optional<DrawnPicture> picture;
     try {
@@ -166,6 +168,7 @@ std::optional<DrawnPicture> Drawer::draw_next() {
     }
     const std::lock_guard lock(mutex_);
     drawing_ = false;
+    if (picture && picture->finished && !picture->moving) finished_view_ = job->view;
     if (!job->stages.empty() && !wanted_) wanted_ = std::move(job);
     if (!options_.threaded) return picture;
     if (picture) ready_ = std::move(picture);
@@ -176,6 +179,7 @@ void Drawer::failed(const std::string& what) {
     drop([](const Key&) { return true; });
     coarse_.reset();
     const std::lock_guard lock(mutex_);
+    finished_view_ = 0;
     error_ = what;
 }
 
@@ -237,7 +241,7 @@ void Drawer::plan(Job& job) {
         const auto known = still_times_.find(scale);
         return known != still_times_.end() ? known->second : 1e9;
     };
-    if (time(1) <= kSoon) return;
+    if (time(1) <= kSoon || job.finished_before) return;
     if (!rays) job.stages.push_back({{0, kHalfScale}});
     if (rays || time(kHalfScale) > kSoon) job.stages.push_back(quick);
 }

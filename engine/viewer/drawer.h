@@ -23,9 +23,12 @@ struct DrawRequest {
     Settings settings;
     std::uint64_t scene_number = 0;  ///< another one whenever volume, scene or settings differ
     Camera camera;
-    glm::ivec2 size{0};            ///< pixels of the window's picture, each 1..16384
-    bool plain = false;            ///< conventional splatting, too
-    bool moving = false;           ///< one picture in time; else better ones until the best is there
+    glm::ivec2 size{0};   ///< pixels of the window's picture, each 1..16384
+    bool plain = false;   ///< conventional splatting, too
+    bool moving = false;  ///< one picture in time; else better ones until the best is there
+    /// What is seen is what was seen at the request before, only drawn in another way: where that was finished it is
+    /// kept until this is, and nothing coarser comes between.
+    bool same_view = false;
     std::optional<Settings> best;  ///< what follows the finished picture of `settings`
 };
 
@@ -128,6 +131,7 @@ class Drawer {
     bool drawing_ = false;
     double target_;
     Options::Rays rays_;
+    std::uint64_t view_ = 0, finished_view_ = 0;  ///< of the last request; of the last finished picture that stands
 
     std::atomic<bool> frozen_{false}, lose_{false};
     std::atomic<std::uint64_t> asked_{0}, device_bytes_{0}, validation_messages_{0};

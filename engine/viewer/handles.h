@@ -21,9 +21,13 @@ struct Handle {
 /// Those of effects.clip.keep, keep_box and remove_box.
 std::vector<Handle> clip_handles(const SceneDocument& document, const VolumeGeometry& geometry);
 
-/// The handle whose place appears nearest to a pixel, at most `radius` pixels away. Throws like `project`.
+/// Where a handle is seen: at its place, or where that lies beyond the picture at its rim, `inset` pixels within. None
+/// behind the eye. Throws like `project`.
+std::optional<glm::dvec2> seen_at(const Handle& handle, const Camera& camera, const glm::ivec2& size, double inset);
+
+/// The handle that is seen nearest to a pixel, at most `radius` pixels away. Throws like `project`.
 std::optional<std::size_t> handle_at(std::span<const Handle> handles, const Camera& camera, const glm::ivec2& size,
-                                     const glm::dvec2& pixel, double radius);
+                                     const glm::dvec2& pixel, double radius, double inset);
 
 /// How far along a line (from `origin`, `direction` unit) the point lies that is nearest to a ray, mm; may be below 0.
 /// None where the ray is nearly parallel to it (sine below 1e-3), or nearest to it at or behind its own origin.

@@ -50,11 +50,12 @@ void save_picture(const PictureOrder& order) {
     write_files({&content, 1});
 }
 
-fs::path free_path(const fs::path& folder, const std::string& stem, const std::string& extension) {
+fs::path free_path(const fs::path& folder, const std::string& stem, const std::string& extension,
+                   const std::function<bool(const fs::path&)>& taken) {
     for (int number = 1;; ++number) {
         fs::path path = folder / fmt::format("{}-{}{}", stem, number, extension);
         std::error_code error;
-        if (!fs::exists(path, error)) return path;
+        if (!fs::exists(path, error) && !(taken && taken(path))) return path;
     }
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
@@ -27,8 +28,9 @@ struct PictureOrder {
 /// Renders it offscreen and writes it with its metadata. Throws Error.
 void save_picture(const PictureOrder& order);
 
-/// A path that stands for nothing yet: folder/stem-1.extension, -2, ...
+/// A path that stands for nothing yet, and is not `taken` either: folder/stem-1.extension, -2, ...
 std::filesystem::path free_path(const std::filesystem::path& folder, const std::string& stem,
-                                const std::string& extension);
+                                const std::string& extension,
+                                const std::function<bool(const std::filesystem::path&)>& taken = {});
 
 }  // namespace edgesplat::viewer

@@ -90,4 +90,11 @@ void remember(Preferences& preferences, const std::string& path) {
     if (preferences.recent.size() > kMostRecent) preferences.recent.resize(kMostRecent);
 }
 
+void forget_lost(Preferences& preferences) {
+    std::erase_if(preferences.recent, [](const std::string& path) {
+        std::error_code error;
+        return !is_builtin(path) && fs::status(path, error).type() == fs::file_type::not_found;
+    });
+}
+
 }  // namespace edgesplat::viewer

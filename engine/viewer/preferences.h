@@ -33,4 +33,7 @@ void write_preferences(const Preferences& preferences, const std::filesystem::pa
 /// Puts a path in front of the recent ones.
 void remember(Preferences& preferences, const std::string& path);
 
+/// Takes those of the recent ones out that stand for nothing any more.
+void forget_lost(Preferences& preferences);
+
 }  // namespace edgesplat::viewer

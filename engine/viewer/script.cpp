@@ -14,7 +14,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr std::array<ScriptVerb, 27> kVerbs{{
+constexpr std::array<ScriptVerb, 28> kVerbs{{
     {"size", "nn", "width and height of the window's content, pixels"},
     {"step", "n", "seconds from frame to frame from here on (1/60)"},
     {"quality", "w", "of pictures in motion: measured (by the clock), or fixed (level and size that do not change)"},
@@ -33,6 +33,7 @@ constexpr std::array<ScriptVerb, 27> kVerbs{{
     {"hold", "k", "a key goes down"},
     {"let", "k", "it comes up"},
     {"key", "k", "a key is struck; Ctrl+Z and the like too"},
+    {"sticks", "nnnnn", "a gamepad from here on: left stick right and up, right stick right and up, triggers' up"},
     {"type", "t", "text into the field that has the cursor"},
     {"drop", "t", "a file dropped on the window"},
     {"wander", "nn", "flies about for so many seconds, headings from a seed, pushed against whatever is in the way"},

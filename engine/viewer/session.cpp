@@ -24,6 +24,11 @@ bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.direction == b.direction && a.up == b.up && a.fov_y == b.fov_y;
 }
 
+SceneDocument with_quality_of(const SceneDocument& other, SceneDocument document) {
+    document.quality = other.quality;
+    return document;
+}
+
 /// What is solid before anything is cut away.
 bool same_matter(const Scene& a, const Scene& b) {
     return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer;
@@ -65,11 +70,13 @@ Scene Session::resolved_now() const {
     return resolve_scene(document(), *opened_.volume);
 }
 
-void Session::apply(Scene scene) {
+void Session::apply(Scene scene, bool seen) {
     scene_ = std::move(scene);
     ++scene_number_;
-    quiet_ = 0;
     changed_ = true;
+    if (!seen) return;
+    ++view_number_;
+    quiet_ = 0;
     walls_outdated_ = true;
 }
 
@@ -84,9 +91,10 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
         message_ = error.what();
         return;
     }
-    const bool same_scene = document == history_->now();
+    const SceneDocument& now = history_->now();
+    const bool same = document == now, seen = !same && !(with_quality_of(now, document) == now);
     history_->change(std::move(document), finished);
-    if (!same_scene) apply(std::move(scene));
+    if (!same) apply(std::move(scene), seen);
 }
 
 void Session::finish_edit() {
@@ -222,6 +230,7 @@ std::optional<DrawRequest> Session::next_request(const glm::ivec2& size) {
     const bool now_moving = moving();
     if (size != asked_size_) {
         quiet_ = 0;
+        ++view_number_;
         changed_ = true;
     }
     if (!changed_ && asked_moving_ == now_moving) return std::nullopt;
@@ -237,6 +246,10 @@ std::optional<DrawRequest> Session::next_request(const glm::ivec2& size) {
     request.size = size;
     request.plain = show_ != Show::Edges;
     request.moving = now_moving;
+    request.same_view =
+        !now_moving && asked_view_ && asked_view_->number == view_number_ && same(asked_view_->camera, request.camera);
+    asked_view_.reset();
+    if (!now_moving) asked_view_ = {view_number_, request.camera};
     if (best_) request.best = preset_named("accurate").settings;
     return request;
 }

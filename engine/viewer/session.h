@@ -88,7 +88,10 @@ class Session {
     /// What is to be drawn for a window's picture of that size; nothing if that is what was asked for last.
     std::optional<DrawRequest> next_request(const glm::ivec2& size);
     /// The next request is asked for whatever it is: what was drawn is lost.
-    void ask_again() { changed_ = true; }
+    void ask_again() {
+        changed_ = true;
+        asked_view_.reset();
+    }
     /// Whether the picture is going to change by itself or under a hand.
     bool moving() const;
 
@@ -100,8 +103,8 @@ class Session {
     void say(std::string text) { message_ = std::move(text); }
 
   private:
-    /// `scene`: what the document says, resolved.
-    void apply(Scene scene);
+    /// `scene`: what the document says, resolved. `seen`: not only how well it is drawn has changed.
+    void apply(Scene scene, bool seen = true);
     Scene resolved_now() const;
     void find_walls();
     void poll();
@@ -110,7 +113,7 @@ class Session {
     Opened opened_;
     std::optional<History<SceneDocument>> history_;
     Scene scene_;
-    std::uint64_t scene_number_ = 0;
+    std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< another one with every scene or quality; with every scene
     Motion motion_;
     Tour tour_;
     FlightRecorder recorder_;
@@ -128,6 +131,12 @@ class Session {
     bool changed_ = true;
     bool asked_moving_ = false;
     glm::ivec2 asked_size_{0};
+    /// What the last request was to show, if nothing moved.
+    struct View {
+        std::uint64_t number = 0;
+        Camera camera;
+    };
+    std::optional<View> asked_view_;
     std::string message_;
 };
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/scene/views.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::viewer {
@@ -100,6 +101,14 @@ glm::dvec3 voxel_at(const Slice& slice, const glm::dvec2& pixel) {
         voxel[slice.across[k]] = from_border * slice.voxels - 0.5;
     }
     return voxel;
+}
+
+std::array<char, 4> slice_letters(const Slice& slice, const VolumeGeometry& geometry) {
+    const auto letter = [&](const glm::dvec2& step) {
+        const glm::dvec3 way = voxel_at(slice, slice.cross + step) - voxel_at(slice, slice.cross);
+        return patient_letter(geometry.index_to_world_axes * way);
+    };
+    return {letter({-1, 0}), letter({1, 0}), letter({0, -1}), letter({0, 1})};
 }
 
 glm::dvec2 pixel_at(const Slice& slice, const glm::dvec3& voxel) {

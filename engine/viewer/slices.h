@@ -1,6 +1,7 @@
 // Orthogonal slices through a volume, as grey pictures.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <vector>
@@ -31,6 +32,10 @@ Slice slice(const Volume& volume, int axis, const glm::dvec3& voxel, double low,
 
 /// The place in index space of a point of the slice (pixels, as `cross`), also beyond its borders.
 glm::dvec3 voxel_at(const Slice& slice, const glm::dvec2& pixel);
+
+/// Patient's letters (engine/scene/views.h) of the slice's left, right, upper and lower side; the volume is that
+/// of a patient.
+std::array<char, 4> slice_letters(const Slice& slice, const VolumeGeometry& geometry);
 
 /// Where a place in index space lies on the slice, seen along its axis: inverse of voxel_at.
 glm::dvec2 pixel_at(const Slice& slice, const glm::dvec3& voxel);

@@ -48,6 +48,18 @@ TEST_F(FlyTest, TheWipeIsPlainOnItsLeftAndEdgePreservedOnItsRight) {
     EXPECT_LT(compare_images(image("sharpened.png"), edges).psnr, 40);
 }
 
+TEST_F(FlyTest, ACompletePictureStaysUntilTheNextIsComplete) {
+    // Every frame draws one picture; none of those between two modes may be coarse, or shown under the other's name.
+    std::string script = "size 1100 800\nsettle\n";
+    for (const char* key : {"Space", "Space", "X", "H", "H", "B", "B"}) {
+        script += std::string("key ") + key + "\n";
+        for (int i = 0; i < 4; ++i)
+            script += "frames 1\nexpect level == 0\nexpect scale == 1\nexpect rays == no\nexpect moving == no\n";
+        script += "settle\n";
+    }
+    fly(script + "key Space\nsettle\nexpect visible == plain\n", "builtin:torus");
+}
+
 TEST_F(FlyTest, WhatIsNotShownIsNotDrawn) {
     fly("settle\nexpect renderers == 1\nkey X\nsettle\nexpect renderers >= 2\nkey X\nsettle\nexpect renderers == 1\n");
 }
@@ -89,6 +101,30 @@ TEST_F(FlyTest, ARecordedFlightIsTheSavedScenesMovie) {
     EXPECT_THAT(scene, HasSubstr("[[movie.path]]"));
     const ProgramRun movie = run("movie flown.toml -o frames/%04d.png --size 32x24 --fps 5");
     EXPECT_EQ(movie.status, 0) << movie.err;
+}
+
+TEST_F(FlyTest, AGamepadFliesAndChangesThePicture) {
+    fly("settle\nkey F\nexpect mode == fly\nexpect eye.y < -1\nsave before.toml\nsticks 0 1 0 0 0\nframes 20\n"
+        "sticks 0 0 0 0 0\nframes 1\nsave after.toml\nkey PadX\nexpect show == plain\nkey PadX\nexpect show == edges\n"
+        "key PadB\nexpect show == plain\nkey PadB\nexpect show == wipe\nkey PadB\nexpect show == sharpening\n"
+        "key PadB\nexpect show == edges\nkey PadA\nexpect mode == orbit\nkey PadStart\nframes 2\n"
+        "expect message has picture-1.png\nkey PadStart\nframes 2\nexpect message has picture-2.png\n"
+        "key PadY\nframes 80\nsave home.toml\n");
+    const auto eye = [&](const char* name) {
+        const std::string text = text_of(folder_ / name);
+        const std::size_t at = text.find("eye = ");
+        return text.substr(at, text.find('\n', at) - at);
+    };
+    EXPECT_NE(eye("before.toml"), eye("after.toml"));
+    EXPECT_EQ(eye("before.toml"), eye("home.toml"));
+    EXPECT_EQ(image("picture-2.png").width, image("picture-1.png").width);
+}
+
+TEST_F(FlyTest, ALookIsTakenByName) {
+    fly("size 900 700\nsettle\nexpect iso_values > 1\ntap scene.look\nframes 2\ntap scene.ct-skull\nframes 2\nsettle\n"
+        "expect error == none\nexpect iso_values == 1\nexpect iso == 280\nkey Ctrl+Z\nframes 1\nexpect iso_values > "
+        "1\n",
+        "builtin:phantom:32");
 }
 
 TEST_F(FlyTest, ResizesAndMinimises) {

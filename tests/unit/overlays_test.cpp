@@ -79,8 +79,8 @@ TEST(Overlays, TheMarkersAxesAreThoseTheCameraSees) {
     Volume volume = patient_volume();
     const Camera front{{0, -300, 0}, {0, 1, 0}, {0, 0, 1}, 45};
     auto axes = marker_axes(volume, front);
-    EXPECT_EQ(axes[0].positive + axes[1].positive + axes[2].positive, "LPS");
-    EXPECT_EQ(axes[0].negative + axes[1].negative + axes[2].negative, "RAI");
+    EXPECT_EQ(axes[0].positive + axes[1].positive + axes[2].positive, "LPH");
+    EXPECT_EQ(axes[0].negative + axes[1].negative + axes[2].negative, "RAF");
     EXPECT_LT(glm::length(axes[0].along - glm::dvec2(1, 0)), 1e-12) << "seen from the front, left is on the right";
     EXPECT_NEAR(axes[1].towards_eye, -1, 1e-12) << "the back is away from the eye";
     EXPECT_LT(glm::length(axes[2].along - glm::dvec2(0, -1)), 1e-12);

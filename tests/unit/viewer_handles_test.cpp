@@ -179,10 +179,19 @@ TEST(Handles, TheNearestInThePictureIsTaken) {
     handles[1].place = {1, 0, 0};
     handles[2].place = {0, -200, 0};  // behind the eye
     const glm::dvec2 middle = glm::dvec2(kSize) / 2.0;
-    EXPECT_EQ(handle_at(handles, camera, kSize, middle, 8), 0U);
-    EXPECT_EQ(handle_at(handles, camera, kSize, *project(camera, kSize, {0.9, 0, 0}), 8), 1U);
-    EXPECT_FALSE(handle_at(handles, camera, kSize, middle + glm::dvec2(0, 9), 8));
-    EXPECT_FALSE(handle_at({}, camera, kSize, middle, 8));
+    EXPECT_EQ(handle_at(handles, camera, kSize, middle, 8, 0), 0U);
+    EXPECT_EQ(handle_at(handles, camera, kSize, *project(camera, kSize, {0.9, 0, 0}), 8, 0), 1U);
+    EXPECT_FALSE(handle_at(handles, camera, kSize, middle + glm::dvec2(0, 9), 8, 0));
+    // What lies beside the picture is taken at its rim; what lies behind the eye nowhere.
+    Camera aside = camera;
+    aside.direction = glm::normalize(glm::normalize(camera.direction) + 3.0 * camera_frame(camera).right);
+    const auto seen = seen_at(handles[0], aside, kSize, 12);
+    ASSERT_TRUE(seen);
+    EXPECT_EQ(seen->x, 12);
+    EXPECT_EQ(handle_at({handles.data(), 1}, aside, kSize, *seen + glm::dvec2(3, 0), 8, 12), 0U);
+    aside.direction = -camera.direction;
+    EXPECT_FALSE(seen_at(handles[0], aside, kSize, 12));
+    EXPECT_FALSE(handle_at({}, camera, kSize, middle, 8, 0));
 }
 
 TEST(Handles, DirectionsOnADiscHaveAnInverse) {

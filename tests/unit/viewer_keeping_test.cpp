@@ -69,6 +69,18 @@ TEST_F(Kept, FreePathsAreFree) {
     EXPECT_EQ(free_path(folder_, "picture", ".png"), folder_ / "picture-1.png");
     std::ofstream(folder_ / "picture-1.png") << "x";
     EXPECT_EQ(free_path(folder_, "picture", ".png"), folder_ / "picture-2.png");
+    const auto being_written = [&](const fs::path& path) { return path == folder_ / "picture-2.png"; };
+    EXPECT_EQ(free_path(folder_, "picture", ".png", being_written), folder_ / "picture-3.png");
+}
+
+TEST_F(Kept, FilesThatAreGoneAreForgotten) {
+    Preferences p;
+    const auto there = (folder_ / "there.nrrd").string(), gone = (folder_ / "gone.nrrd").string();
+    std::ofstream(there) << "x";
+    for (const std::string& path : {there, gone, std::string("builtin:sphere")})
+        remember(p, path);
+    forget_lost(p);
+    EXPECT_EQ(p.recent, (std::vector<std::string>{"builtin:sphere", there}));
 }
 
 TEST_F(Kept, ASceneFindsItsVolumeFromItsOwnFolder) {

@@ -127,6 +127,23 @@ TEST(ViewerSlices, PackedVolumesCoarsely) {
     EXPECT_LT(glm::length(voxel_at(coarse, coarse.cross) - glm::dvec3(700, 3, 5)), 1e-9);
 }
 
+TEST(ViewerSlices, SidesHaveThePatientsLetters) {
+    const auto letters = [](const Volume& volume, int axis) {
+        const auto four = slice_letters(slice(volume, axis, {3, 2, 2}, 0, 300), volume.geometry);
+        return std::string(four.begin(), four.end());
+    };
+    // A patient is looked at from the feet and from the front: his right is on the left. Left, right, top, bottom.
+    const Volume upright = ramp();
+    EXPECT_EQ(letters(upright, 2), "RLAP");
+    EXPECT_EQ(letters(upright, 1), "RLHF");
+    EXPECT_EQ(letters(upright, 0), "APHF");
+    // However the axes lie in the file, and a little turned.
+    const Volume lying = ramp(glm::dmat3(glm::dvec3(0, 0.1, -1), glm::dvec3(-1, 0.1, 0), glm::dvec3(0.1, 1, 0.1)));
+    EXPECT_EQ(letters(lying, 0), "RLAP");
+    EXPECT_EQ(letters(lying, 2), "RLHF");
+    EXPECT_EQ(letters(lying, 1), "APHF");
+}
+
 TEST(ViewerSlices, Refuse) {
     const Volume volume = ramp();
     EXPECT_NE(refusal([&] { slice(volume, 3, glm::dvec3(0), 0, 1); }).find("axis"), std::string::npos);
