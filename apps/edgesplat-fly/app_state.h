@@ -54,10 +54,8 @@ struct AppState {
 
     std::optional<edgesplat::viewer::DrawnPicture> shown;  ///< without its pixels once they are on the canvas
     edgesplat::Image last_edges, last_plain;               ///< its pixels
-    /// How it is looked at: as the session says, or until that is drawn as before.
-    edgesplat::viewer::Show visible = edgesplat::viewer::Show::Edges;
-    bool has_plain = false;       ///< it was drawn with conventional splatting beside it
-    bool sharpening_due = false;  ///< not made of them yet
+    bool has_plain = false;                                ///< it was drawn with conventional splatting beside it
+    bool sharpening_due = false;                           ///< not made of them yet
     CanvasPicture edges, plain, sharpening;
     std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
 
@@ -80,6 +78,8 @@ struct AppState {
     bool wait;                                 ///< what else happens on threads is done before a frame ends
 
     explicit AppState(bool waits) : session(waits), wait(waits) {}
+    /// How the picture is looked at: as the session says, or until what that needs is drawn, edge-preserved.
+    edgesplat::viewer::Show visible() const { return has_plain ? session.show() : edgesplat::viewer::Show::Edges; }
     glm::ivec2 picture_size() const { return {area.z - area.x, area.w - area.y}; }
     /// A length of text and widgets, pixels.
     double em = 16;

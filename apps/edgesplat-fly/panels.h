@@ -26,6 +26,6 @@ void materials_panel(AppState& state);
 void lights_panel(AppState& state);
 void effects_panel(AppState& state);
 void clip_panel(AppState& state);
-/// A list of those presets that are transfer functions, or materials.
+/// A list of the presets of a kind.
 void presets_choice(AppState& state, const char* label, edgesplat::PresetKind kind,
                     const std::function<void(const edgesplat::ScenePreset&)>& take);

@@ -146,10 +146,9 @@ bool take_pictures(AppState& state) {
 }
 
 void place_pictures(AppState& state) {
-    state.visible = state.has_plain ? state.session.show() : Show::Edges;
     if (!state.shown || state.edges.empty() || state.picture_size().x < 1 || state.picture_size().y < 1) return;
     const glm::ivec4& at = state.area;
-    switch (state.visible) {
+    switch (state.visible()) {
         case Show::Plain:
             state.pictures.push_back(whole(state.plain, at));
             break;
@@ -178,7 +177,7 @@ void draw_over_picture(AppState& state) {
     const Pen pen{list, glm::dvec2(state.area.x, state.area.y), state.em};
     list->PushClipRect({static_cast<float>(state.area.x), static_cast<float>(state.area.y)},
                        {static_cast<float>(state.area.z), static_cast<float>(state.area.w)}, false);
-    if (state.visible == Show::Wipe) draw_divider(state, pen);
+    if (state.visible() == Show::Wipe) draw_divider(state, pen);
     if (state.overlays) {
         draw_path(state, pen);
         draw_picks(state, pen);

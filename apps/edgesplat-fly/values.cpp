@@ -36,7 +36,7 @@ using Values = std::map<std::string, std::function<std::string(AppState&)>>;
 const Values& values() {
     static const Values all{
         {"show", [](AppState& s) { return name_of(s.session.show()); }},
-        {"visible", [](AppState& s) { return name_of(s.visible); }},
+        {"visible", [](AppState& s) { return name_of(s.visible()); }},
         {"wipe", [](AppState& s) { return text(s.session.wipe()); }},
         {"mode", [](AppState& s) { return s.session.motion().mode() == MotionMode::Fly ? "fly" : "orbit"; }},
         {"collisions", [](AppState& s) { return s.session.motion().collisions() ? "on" : "off"; }},

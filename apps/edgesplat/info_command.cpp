@@ -8,9 +8,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "apps/edgesplat/json_output.h"
 #include "apps/edgesplat/volume_options.h"
-#include "engine/accuracy/json_text.h"
-#include "engine/image/image_file.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 
@@ -144,14 +143,10 @@ void run(const InfoOptions& options) {
     apply(options.volume, source);
     const Volume volume = load_with_progress(source, edgesplat::volume_folders({}), false);
     const auto json = description(volume, options.bins);
-    if (options.json.empty()) {
+    if (options.json.empty())
         print(json);
-    } else if (options.json == "-") {
-        std::cout << edgesplat::json_text(json, 2) << '\n';
-    } else {
-        const edgesplat::FileContent file{options.json, edgesplat::json_text(json, 2) + "\n"};
-        edgesplat::write_files({&file, 1});
-    }
+    else
+        write_json(options.json, json);
 }
 
 }  // namespace

@@ -15,15 +15,16 @@
 #include "apps/edgesplat/camera_options.h"
 #include "apps/edgesplat/document_edits.h"
 #include "apps/edgesplat/effects_options.h"
+#include "apps/edgesplat/json_output.h"
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/scene_options.h"
 #include "apps/edgesplat/volume_options.h"
-#include "engine/accuracy/json_text.h"
 #include "engine/error.h"
 #include "engine/image/image_file.h"
 #include "engine/measure/extents.h"
 #include "engine/measure/places.h"
+#include "engine/viewer/contour.h"
 #include "engine/viewer/pick.h"
 #include "engine/volume/labels.h"
 
@@ -83,8 +84,8 @@ Place place_at(const Spot& spot, const MeasureCommand& command, const SceneDocum
     if (command.exact) return {world};
     const auto surface = edgesplat::measure::nearest_surface(volume, scene.iso_values, world);
     if (!surface)
-        edgesplat::fail("--at {}: no surface is within {:g} voxels of this place; --exact takes the place itself",
-                        spot.text, edgesplat::measure::kReach);
+        edgesplat::fail("--at {}: no surface is within {} voxels of this place; --exact takes the place itself",
+                        spot.text, edgesplat::viewer::kCrossingReach);
     return *surface;
 }
 
@@ -207,25 +208,21 @@ void run(const MeasureCommand& command) {
     }
     Volume volume = load_with_progress(document.volume, folders, command.quiet);
     Json json{{"volume", volume.name}};
-    const std::vector<float> labels = edgesplat::labels_of(volume);
-    SceneDocument drawn = document;
-    Volume shown = volume;
-    recognise_labels(drawn, shown);
-    if (command.spots.empty() && drawn.volume.labels.value_or(false) && !labels.empty()) {
-        json.update(labels_measured(volume));
+    // Labels are drawn as other values than they have: what is measured of them is counted before.
+    Json labels;
+    if (command.spots.empty() && !edgesplat::labels_of(volume).empty()) labels = labels_measured(volume);
+    recognise_labels(document, volume);
+    if (!labels.empty() && document.volume.labels.value_or(false)) {
+        json.update(labels);
     } else {
-        const Scene scene = resolve_scene(drawn, shown);
-        json.update(command.spots.empty() ? extents_measured(command, shown, scene)
-                                          : places_measured(command, drawn, shown, scene));
+        const Scene scene = resolve_scene(document, volume);
+        json.update(command.spots.empty() ? extents_measured(command, volume, scene)
+                                          : places_measured(command, document, volume, scene));
     }
-    if (command.json.empty()) {
+    if (command.json.empty())
         print(json);
-    } else if (command.json == "-") {
-        std::cout << edgesplat::json_text(json, 2) << '\n';
-    } else {
-        const edgesplat::FileContent file{command.json, edgesplat::json_text(json, 2) + "\n"};
-        edgesplat::write_files({&file, 1});
-    }
+    else
+        write_json(command.json, json);
 }
 
 }  // namespace

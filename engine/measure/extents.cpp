@@ -23,7 +23,7 @@ constexpr double kShift = 0.1;  ///< of the values' uncertainty, by which iso-va
 struct Sums {
     double above = 0;        ///< length from it up, voxels
     double surface = 0;      ///< mm^2, as if it were as smooth as the slope over a voxel is
-    double rough = 0;        ///< mm^2, of the contour itself
+    double rough = 0;        ///< mm^2, of the spline's contour itself
     double uncertainty = 0;  ///< of values, weighted by surface
     double asked = 0;        ///< surface where that was looked at
     void add(const Sums& other) {
@@ -132,7 +132,7 @@ class Measurement {
     void add_crossing(const FieldLine& line, double t, const viewer::Samples* samples, Sums& sums) const {
         const double area = area_of_crossing(point_gradient(samples_, line.at(t)), line.axis());
         sums.surface += area;
-        sums.rough += area_of_crossing(line.gradient(t), line.axis());
+        if (line.follows_spline()) sums.rough += area_of_crossing(line.slope(t), line.axis());
         if (samples == nullptr) return;
         sums.asked += area;
         sums.uncertainty += area * viewer::value_uncertainty(*samples, line.at(t));

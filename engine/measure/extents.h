@@ -31,8 +31,7 @@ struct Extents {
 /// what lines along the three axes disagree. A surface has the slope over a voxel, and what the contour itself has more
 /// than that is uncertain, too. Noise makes surfaces larger than they are, of which samples do not tell.
 ///
-/// `iso_values` ascend. Throws Error for a volume that is not in memory, and
-/// Cancelled.
+/// `iso_values` ascend. Throws Error for a volume that is not in memory, and Cancelled.
 Extents measure_extents(const Volume& volume, std::span<const double> iso_values, const Clip& clip = {},
                         const reference::Progress& progress = {});
 

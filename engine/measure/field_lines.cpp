@@ -3,31 +3,25 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/volume/filters.h"
+
 namespace edgesplat::measure {
 namespace {
 
 constexpr int kHalvings = 40;
 
-/// Weights of the samples, or of the spline's coefficients, beside a place on an axis.
+/// Samples, or the spline's coefficients, beside a place on an axis: how many of the four count.
 struct Taps {
-    std::array<double, 4> weights{};
-    std::array<int, 4> places{};
-    int count = 0;
+    SplineTaps beside;
+    std::size_t count = 4;
 };
 
 Taps taps(double place, int size, bool cubic) {
     const double p = std::clamp(place, 0.0, static_cast<double>(size - 1));
-    const int cell = std::min(static_cast<int>(p), std::max(size - 2, 0)), last = size - 1;
-    const double t = p - cell, s = 1 - t;
-    if (!cubic) return {{s, t}, {cell, std::min(cell + 1, last)}, 2};
-    Taps out{{s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6},
-             {},
-             4};
-    for (int k = 0; k < 4; ++k) {
-        const int i = std::abs(cell + k - 1);
-        out.places[static_cast<std::size_t>(k)] = std::clamp(i > last ? 2 * last - i : i, 0, last);
-    }
-    return out;
+    if (cubic) return {spline_taps(p, size)};
+    const int cell = static_cast<int>(p);
+    const double t = p - cell;
+    return {{{1 - t, t}, {cell, std::min(cell + 1, size - 1)}}, 2};
 }
 
 /// The spline at the second of three coefficients.
@@ -80,13 +74,12 @@ void FieldLine::move_to(const glm::dvec3& across) {
     const auto length = static_cast<std::size_t>(field_.dims[axis_]);
     double* const out = nodes_.data() + (cubic_ ? 1 : 0);
     std::fill_n(out, length, 0.0);
-    for (int j = 0; j < tc.count; ++j)
-        for (int i = 0; i < tb.count; ++i) {
-            const auto k = static_cast<std::size_t>(i), l = static_cast<std::size_t>(j);
-            const double weight = tb.weights[k] * tc.weights[l];
+    for (std::size_t l = 0; l < tc.count; ++l)
+        for (std::size_t k = 0; k < tb.count; ++k) {
+            const double weight = tb.beside.weights[k] * tc.beside.weights[l];
             const float* from = values.data() +
-                                static_cast<std::size_t>(tb.places[k]) * strides[static_cast<std::size_t>(b)] +
-                                static_cast<std::size_t>(tc.places[l]) * strides[static_cast<std::size_t>(c)];
+                                static_cast<std::size_t>(tb.beside.places[k]) * strides[static_cast<std::size_t>(b)] +
+                                static_cast<std::size_t>(tc.beside.places[l]) * strides[static_cast<std::size_t>(c)];
             for (std::size_t x = 0; x < length; ++x, from += stride)
                 out[x] += weight * static_cast<double>(*from);
         }
@@ -102,22 +95,12 @@ glm::dvec3 FieldLine::at(double t) const {
     return x;
 }
 
-glm::dvec3 FieldLine::gradient(double t) const {
+glm::dvec3 FieldLine::slope(double t) const {
     const glm::dvec3 x = at(t);
-    if (cubic_) {
-        // Beyond the outermost samples the field does not change along that axis.
-        glm::dvec3 g = reference::spline_gradient(field_, x);
-        for (int a = 0; a < 3; ++a)
-            if (x[a] < 0 || x[a] > field_.dims[a] - 1) g[a] = 0;
-        return g;
-    }
-    constexpr double h = 1e-5;
-    glm::dvec3 g(0);
-    for (int a = 0; a < 3; ++a) {
-        glm::dvec3 step(0);
-        step[a] = h;
-        g[a] = (reference::sample(field_, x + step) - reference::sample(field_, x - step)) / (2 * h);
-    }
+    glm::dvec3 g = reference::spline_gradient(field_, x);
+    // Beyond the outermost samples the field does not change along that axis.
+    for (int a = 0; a < 3; ++a)
+        if (x[a] < 0 || x[a] > field_.dims[a] - 1) g[a] = 0;
     return g;
 }
 

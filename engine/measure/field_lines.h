@@ -21,7 +21,8 @@ class FieldLine {
 
     int axis() const { return axis_; }
     glm::dvec3 at(double t) const;
-    glm::dvec3 gradient(double t) const;  ///< per voxel along each axis
+    bool follows_spline() const { return cubic_; }
+    glm::dvec3 slope(double t) const;  ///< of the spline, per voxel along each axis
 
     /// Whether it begins at values from `iso` up.
     bool starts_from(double iso) const { return value_at_first() >= iso; }

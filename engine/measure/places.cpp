@@ -10,20 +10,6 @@
 namespace edgesplat::measure {
 namespace {
 
-/// Where along the ray, at most `reach` mm before or behind its origin, values first cross `iso`; none if nowhere.
-std::optional<double> nearest_crossing(const viewer::Samples& samples, const viewer::IndexRay& ray, double reach,
-                                       double iso) {
-    constexpr int kSteps = 16;
-    const double step = reach / kSteps;
-    const auto f = [&](double t) { return samples.linear(ray.at(t)) - iso; };
-    for (int k = 1; k <= kSteps; ++k)
-        for (const double way : {step, -step}) {
-            const double from = (k - 1) * way, to = k * way;
-            if ((f(from) > 0) != (f(to) > 0)) return viewer::bisected(f, from, to);
-        }
-    return std::nullopt;
-}
-
 /// The line through a place along the gradient there; none where there is no gradient.
 std::optional<viewer::IndexRay> steepest_line(const VolumeGeometry& geometry, const viewer::Samples& samples,
                                               const glm::dvec3& voxel) {
@@ -44,7 +30,7 @@ std::optional<Place> nearest_surface(const Volume& volume, std::span<const doubl
                                      const glm::dvec3& world) {
     const VolumeGeometry& geometry = volume.geometry;
     const viewer::Samples samples(volume);
-    const double reach = kReach * geometry.mean_spacing();
+    const auto field = [&](const glm::dvec3& p) { return samples.linear(p); };
     std::optional<Place> nearest;
     for (const double iso : iso_values) {
         glm::dvec3 voxel = geometry.to_index(world);
@@ -55,7 +41,7 @@ std::optional<Place> nearest_surface(const Volume& volume, std::span<const doubl
             line = steepest_line(geometry, samples, voxel);
             if (!line) break;
             line->origin = geometry.to_index(world);
-            t = nearest_crossing(samples, *line, reach, iso);
+            t = crossing_near(field, *line, 0, iso);
             if (!t) break;
             voxel = line->at(*t);
         }

@@ -20,11 +20,8 @@ struct Place {
 
 Place place_of(const viewer::Pick& pick);
 
-/// No surface further away than this is taken for the one that is meant, voxels.
-inline constexpr double kReach = 2;
-
-/// The nearest place on a surface within `kReach` voxels of `world`, along the gradient; none where there is none.
-/// `iso_values` ascend.
+/// The nearest place on a surface within `viewer::kCrossingReach` voxels of `world`, along the gradient; none where
+/// there is none. `iso_values` ascend.
 std::optional<Place> nearest_surface(const Volume& volume, std::span<const double> iso_values, const glm::dvec3& world);
 
 /// mm; uncertain as both ends independently are.

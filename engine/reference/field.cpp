@@ -13,29 +13,18 @@ namespace {
 
 /// The spline, or with `along` its derivative along that axis.
 double spline(const Field& field, const glm::dvec3& clamped_point, int along = -1) {
-    const glm::dvec3 base = glm::floor(clamped_point);
-    std::array<std::array<double, 4>, 3> weight{};
-    std::array<std::array<int, 4>, 3> index{};
+    std::array<SplineTaps, 3> taps;
     for (int axis = 0; axis < 3; ++axis) {
-        const double t = clamped_point[axis] - base[axis];
-        const double s = 1 - t;
-        weight[axis] = {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6,
-                        t * t * t / 6};
-        if (axis == along) weight[axis] = {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2};
-        const int last = field.dims[axis] - 1;
-        for (int k = 0; k < 4; ++k) {
-            int i = static_cast<int>(base[axis]) + k - 1;
-            if (i < 0) i = -i;
-            if (i > last) i = 2 * last - i;
-            index[axis][k] = std::clamp(i, 0, last);
-        }
+        SplineTaps& on = taps[static_cast<std::size_t>(axis)] = spline_taps(clamped_point[axis], field.dims[axis]);
+        const double t = clamped_point[axis] - std::floor(clamped_point[axis]), s = 1 - t;
+        if (axis == along) on.weights = {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2};
     }
     double sum = 0;
-    for (int z = 0; z < 4; ++z) {
-        for (int y = 0; y < 4; ++y) {
-            for (int x = 0; x < 4; ++x) {
-                const glm::ivec3 i{index[0][x], index[1][y], index[2][z]};
-                sum += weight[0][x] * weight[1][y] * weight[2][z] *
+    for (std::size_t z = 0; z < 4; ++z) {
+        for (std::size_t y = 0; y < 4; ++y) {
+            for (std::size_t x = 0; x < 4; ++x) {
+                const glm::ivec3 i{taps[0].places[x], taps[1].places[y], taps[2].places[z]};
+                sum += taps[0].weights[x] * taps[1].weights[y] * taps[2].weights[z] *
                        static_cast<double>(field.coefficients[field.offset(i)]);
             }
         }

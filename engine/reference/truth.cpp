@@ -8,6 +8,7 @@
 
 #include "engine/reference/7_resolve.h"
 #include "engine/scene/transfer_function.h"
+#include "shaders/shared/raycast_params.h"
 
 namespace edgesplat::reference {
 
@@ -17,7 +18,6 @@ constexpr double kStep = 0.25;         ///< voxels between the points at which a
 constexpr double kSlopeStep = 1e-4;    ///< voxels, for the slope of a distance
 constexpr double kFinestProbe = 1e-7;  ///< voxels, how exactly an extremum along a ray is found
 constexpr int kDeepestHalving = 40;
-constexpr double kBorderLight = 1;  ///< voxels from the border in which it lights what a transfer function shows
 
 /// A point of a ray.
 struct Probe {
@@ -262,7 +262,8 @@ class TruthWalker {
 
     /// To the nearest iso-value; `slope` is the length of the gradient, where no distance is known.
     double distance_to_surface(const glm::dvec3& x, double slope) const {
-        double nearest = look_.transfer.empty() ? std::numeric_limits<double>::infinity() : kBorderLight;
+        double nearest =
+            look_.transfer.empty() ? std::numeric_limits<double>::infinity() : double{shader::BORDER_LIGHT};
         if (scene_.signed_distance) return std::min(nearest, std::abs(scene_.signed_distance(x)));
         for (const double iso : look_.iso_values)
             nearest = std::min(nearest, std::abs(scene_.value(x) - iso) / slope);

@@ -1,8 +1,10 @@
 // Where lines cross iso-contours, and how well samples tell the place.
 #pragma once
 
+#include <cmath>
 #include <glm/glm.hpp>
 #include <limits>
+#include <optional>
 
 #include "engine/viewer/samples.h"
 
@@ -25,6 +27,27 @@ double bisected(const Function& f, double a, double b) {
         (f(middle) > 0) == positive ? b = middle : a = middle;
     }
     return (a + b) / 2;
+}
+
+inline constexpr int kCrossingReach = 2;
+
+/// Along a ray the place nearest to t, at most `kCrossingReach` voxels away, where `field` reaches `value`.
+template <typename Field>
+std::optional<double> crossing_near(const Field& field, const IndexRay& ray, double t, double value) {
+    const double voxel = 1 / glm::length(ray.step), step = voxel / 4;
+    const auto f = [&](double at) { return field(ray.at(at)) - value; };
+    const double here = f(t);
+    double before = here, after = here;
+    for (int k = 1; k <= 4 * kCrossingReach; ++k) {
+        const double back = f(t - k * step), on = f(t + k * step);
+        const bool crossed_back = (back > 0) != (before > 0), crossed_on = (on > 0) != (after > 0);
+        const double there = crossed_on ? bisected(f, t + (k - 1) * step, t + k * step) : kInfinity;
+        const double behind = crossed_back ? bisected(f, t - k * step, t - (k - 1) * step) : kInfinity;
+        if (crossed_on || crossed_back) return std::abs(there - t) < std::abs(behind - t) ? there : behind;
+        before = back;
+        after = on;
+    }
+    return std::nullopt;
 }
 
 /// By how much the value of a contour at `voxel` may be wrong without the samples showing it: half a step of

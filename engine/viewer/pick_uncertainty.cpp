@@ -11,25 +11,6 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// Along a ray the place nearest to t, at most two voxels away, where `field` reaches `value`.
-template <typename Field>
-std::optional<double> crossing_near(const Field& field, const IndexRay& ray, double t, double value) {
-    const double voxel = 1 / glm::length(ray.step), step = voxel / 4;
-    const auto f = [&](double at) { return field(ray.at(at)) - value; };
-    const double here = f(t);
-    double before = here, after = here;
-    for (int k = 1; k <= 8; ++k) {
-        const double back = f(t - k * step), on = f(t + k * step);
-        const bool crossed_back = (back > 0) != (before > 0), crossed_on = (on > 0) != (after > 0);
-        const double there = crossed_on ? bisected(f, t + (k - 1) * step, t + k * step) : kInfinity;
-        const double behind = crossed_back ? bisected(f, t - k * step, t - (k - 1) * step) : kInfinity;
-        if (crossed_on || crossed_back) return std::abs(there - t) < std::abs(behind - t) ? there : behind;
-        before = back;
-        after = on;
-    }
-    return std::nullopt;
-}
-
 /// Samples around a place, sorted.
 std::array<double, 64> samples_around(const Samples& samples, const glm::dvec3& voxel) {
     const glm::ivec3 low = glm::ivec3(glm::floor(voxel)) - 1;
@@ -77,27 +58,14 @@ class LocalSpline {
 
     double operator()(const glm::dvec3& voxel) const {
         const glm::dvec3 p = glm::clamp(voxel - glm::dvec3(low_), glm::dvec3(0), glm::dvec3(dims_ - 1));
-        const glm::ivec3 cell(p);
-        std::array<std::array<double, 4>, 3> w{};
-        std::array<std::array<int, 4>, 3> at{};
-        for (int axis = 0; axis < 3; ++axis) {
-            const auto k = static_cast<std::size_t>(axis);
-            const double t = p[axis] - cell[axis], u = 1 - t;
-            w[k] = {u * u * u / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * u * u * u - 6 * u * u + 4) / 6,
-                    t * t * t / 6};
-            const int last = dims_[axis] - 1;
-            for (int j = 0; j < 4; ++j) {  // mirrored
-                const int place = std::abs(cell[axis] + j - 1);
-                at[k][static_cast<std::size_t>(j)] = std::clamp(place > last ? 2 * last - place : place, 0, last);
-            }
-        }
+        const SplineTaps x = spline_taps(p.x, dims_.x), y = spline_taps(p.y, dims_.y), z = spline_taps(p.z, dims_.z);
         double sum = 0;
-        for (std::size_t z = 0; z < 4; ++z)
-            for (std::size_t y = 0; y < 4; ++y)
-                for (std::size_t x = 0; x < 4; ++x)
-                    sum += w[0][x] * w[1][y] * w[2][z] *
+        for (std::size_t k = 0; k < 4; ++k)
+            for (std::size_t j = 0; j < 4; ++j)
+                for (std::size_t i = 0; i < 4; ++i)
+                    sum += x.weights[i] * y.weights[j] * z.weights[k] *
                            static_cast<double>(coefficients_[static_cast<std::size_t>(
-                               (at[2][z] * dims_.y + at[1][y]) * dims_.x + at[0][x])]);
+                               (z.places[k] * dims_.y + y.places[j]) * dims_.x + x.places[i])]);
         return sum;
     }
 

@@ -1,7 +1,10 @@
 // Preprocessing of volumes, and statistics that help to choose iso-values.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
+#include <cstdlib>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -36,6 +39,25 @@ double scaled_iso_value(const Volume& volume, double iso_value);
 /// Coefficients of the cubic B-spline that goes through `field` (x fastest, mirrored at the borders): what the `cubic`
 /// edge estimator interpolates. Same size and order as `field`. Throws Error when dims and field disagree.
 std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims);
+
+/// The four coefficients beside a place of that spline on one axis, and their weights.
+struct SplineTaps {
+    std::array<double, 4> weights{};
+    std::array<int, 4> places{};  ///< mirrored at the borders
+};
+
+/// `place` in [0, size - 1], size >= 1.
+inline SplineTaps spline_taps(double place, int size) {
+    const int cell = static_cast<int>(place), last = size - 1;
+    const double t = place - cell, s = 1 - t;
+    SplineTaps taps{
+        {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6}, {}};
+    for (int k = 0; k < 4; ++k) {
+        const int i = std::abs(cell + k - 1);
+        taps.places[static_cast<std::size_t>(k)] = std::clamp(i > last ? 2 * last - i : i, 0, last);
+    }
+    return taps;
+}
 
 struct Histogram {
     double low = 0, high = 0;  ///< value range; bin i covers low + [i, i+1) * (high - low) / bins, the last one closed

@@ -9,7 +9,6 @@ layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams 
 #include "shaders/raycast/raycast.glsl"
 #include "shaders/common/transfer.glsl"
 
-const float BORDER_LIGHT = 1.0;  // voxels: what lies nearer than that to the volume's border is lit as the border
 const float PIECE_DEPTH = 0.5;   // optical depth of a piece in which colours are mixed, whichever is in front
 const float MOST_PIECES = 16.0;
 

@@ -15,6 +15,8 @@ EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks ar
 
 EDGESPLAT_CONSTANT uint FILTER_TRILINEAR = 0u, FILTER_CUBIC = 1u;
 
+EDGESPLAT_CONSTANT float BORDER_LIGHT = 1.0f;  // voxels from the volume's border in which it lights what a transfer function shows
+
 struct RayParams {
     // Rays begin on the plane across the view through `anchor`, the centre of the volume: a far eye costs no digits.
     vec3 anchor;          // index space

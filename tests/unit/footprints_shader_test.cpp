@@ -121,6 +121,7 @@ glsl::FootprintParams params_of(const PaperShape& shape) {
 
 TEST(FootprintShader, MirrorsFaces) {
     namespace four = glsl::nodes4;
+    EXPECT_EQ(four::FACE_DEPTH, static_cast<float>(kFaceDepth));
     std::mt19937 random(31);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
     const auto f = [](double v) { return static_cast<float>(v); };
