@@ -207,6 +207,10 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     state_->need_layers(scene, wanted);
     if (state_->exchange && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
         fail("sheets that are drawn in parts need --sheet-format tiles");
+    if (scene.effects.smooth_outlines && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
+        fail("effects.smooth_outlines: pixels of sheets in layers do not know outlines, expected --sheet-format tiles");
+    if (scene.effects.smooth_outlines && state_->exchange)
+        fail("effects.smooth_outlines: a part of the sheets does not know the outlines of the others, expected false");
     return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });
 }
 

@@ -89,6 +89,8 @@ void effects_panel(AppState& state) {
     const edgesplat::Effects effects = state.session.document().effects;
     flag(state, "antialiased footprints", effects.antialias,
          [](SceneDocument& d, bool on) { d.effects.antialias = on; });
+    flag(state, "smooth outlines", effects.smooth_outlines,
+         [](SceneDocument& d, bool on) { d.effects.smooth_outlines = on; });
     slide(state, "samples a pixel", effects.samples, 1, edgesplat::kMaxSamples,
           [](SceneDocument& d, int v) { d.effects.samples = v; });
     if (ImGui::IsItemHovered())

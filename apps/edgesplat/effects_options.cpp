@@ -121,6 +121,9 @@ void add_effects_options(CLI::App& command, DocumentEdits& edits) {
     add_flag_edit(command, edits, "--antialias", "No footprint smaller than a pixel", [](SceneDocument& d) {
         d.effects.antialias = true;
     })->group(kGroup);
+    add_flag_edit(command, edits, "--smooth-outlines", "A pixel that an outline passes shows what is on both its sides",
+                  [](SceneDocument& d) { d.effects.smooth_outlines = true; })
+        ->group(kGroup);
     command
         .add_option_function<std::string>(
             "--samples",

@@ -10,6 +10,9 @@ std::vector<Effect> light_effects();     ///< light, response, fog, silhouettes,
 std::vector<Effect> view_effects();      ///< clip, sampling, background, overlays
 std::vector<Effect> output_effects();    ///< extra outputs
 
+/// Faces by the march, kernels integrated.
+void cut_at_faces(FrameRequest& request);
+
 /// The highest material so opaque that it hides what lies a few voxels behind its surface.
 void make_opaque(FrameRequest& request);
 

@@ -8,15 +8,12 @@
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
-namespace {
 
 void cut_at_faces(FrameRequest& request) {
     request.settings.edges = EdgeEstimator::March;
     request.settings.footprints = FootprintMode::Procedural;
     request.settings.warp = WarpFamily::Face;
 }
-
-}  // namespace
 
 void make_opaque(FrameRequest& request) {
     const glm::dvec3 spacing = request.volume->geometry.spacing();

@@ -47,6 +47,16 @@ std::vector<Effect> view_effects() {
                     .resized = {"prepared splats"},
                     .constants = {{shader::SPEC_ANTIALIAS, "SPEC_ANTIALIAS"}},
                     .frame_fields = {"pixel"}});
+    rows.push_back({.name = "smooth outlines",
+                    .help = "a pixel that an outline passes shows what is on both its sides, by the faces' distance",
+                    .call = "effects.smooth_outlines; --smooth-outlines",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        return r.scene.effects.smooth_outlines ? "effects.smooth_outlines is true" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.scene.effects.smooth_outlines = true; },
+                    .base = cut_at_faces,
+                    .resources = {"outlines"},
+                    .constants = {{shader::SPEC_OUTLINES, "SPEC_OUTLINES"}}});
     rows.push_back({.name = "samples",
                     .help = "a pixel is the mean of n x n rays, each a picture of its own",
                     .call = "effects.samples; --samples",

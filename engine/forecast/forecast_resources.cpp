@@ -225,6 +225,9 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
     out.push_back(
         growing(texels(vk::Format::eR32G32B32A32Sfloat,
                        buffer("unfinished sheets", size.x * size.y * sizeof(glm::vec4), "(y, x) vec4", "5", "5"))));
+    if (plan.variant.outlines)
+        out.push_back(growing(texels(vk::Format::eR32Uint, buffer("outlines", size.x * size.y * word,
+                                                                  "(y, x) where one passes the pixel", "5", "7"))));
 }
 
 /// What pictures are drawn with: the one that is asked for, or a light's.

@@ -53,6 +53,7 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
         if (!division.goes_on)
             for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
                 commands.fill(*zeroed, 0);
+        if (!division.goes_on && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
         if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
         commands.barrier();
         commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
@@ -126,7 +127,14 @@ void TilePasses::finish(std::uint32_t step) {
         see_tiles();
     } else if (!how_.part) {
         const auto& p = plan_.params;
-        commands_.span("7_resolve", [&] { passes::resolve(commands_, plan_.variant, p.size, plan_.gradient); });
+        commands_.span("7_resolve", [&] {
+            // A pixel that an outline passes shows its neighbour, too, as it was.
+            if (plan_.variant.outlines) {
+                commands_.copy(targets_.output, targets_.tile_sheets, {{0, 0, picture_bytes(plan_)}});
+                commands_.barrier();
+            }
+            passes::resolve(commands_, plan_.variant, p.size, plan_.gradient);
+        });
     }
 }
 

@@ -28,6 +28,7 @@ struct DrawVariant {
     bool opaque = false;     ///< of a ray's two pieces in a cut kernel the longer counts
     bool creases = false;    ///< planes beside faces cut kernels, too
     bool antialias = false;  ///< no footprint is narrower than a pixel
+    bool outlines = false;   ///< pixels keep where outlines pass them
     bool tiles = false;      ///< sheets are summed tile by tile, not in layers
     bool culled = false;     ///< splats are gone through in batches, those of bricks in view
 };

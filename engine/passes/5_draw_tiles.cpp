@@ -14,6 +14,7 @@ gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
     constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
     constants.emplace_back(shader::SPEC_GROUP, tile_group(how));
+    constants.emplace_back(shader::SPEC_OUTLINES, variant.outlines ? 1U : 0U);
     return constants;
 }
 

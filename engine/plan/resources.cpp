@@ -70,7 +70,8 @@ void Bindings::write(const VolumeResources& volume, const TargetResources& targe
         std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},
         std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_},
         std::pair{&targets.tile_ranges, &no_entries_},  std::pair{&targets.tile_order, &no_counts_},
-        std::pair{&targets.tile_pixels, &no_counts_},   std::pair{&targets.tile_sheets, &no_texels_}};
+        std::pair{&targets.tile_pixels, &no_counts_},   std::pair{&targets.tile_sheets, &no_texels_},
+        std::pair{&targets.outlines, &no_counts_}};
     for (std::uint32_t i = 0; i < texels.size(); ++i) {
         const auto& [buffer, otherwise] = texels.at(i);
         set_.put_texels(shader::BIND_PICTURE + i, *buffer ? *buffer : *otherwise);

@@ -66,6 +66,7 @@ struct TargetResources {
     gpu::Buffer tile_finest;   ///< (tiles) uint: FrameParams::tile_finest; 5 -> 5; with refined pixels only
     gpu::Buffer tile_pixels;   ///< (tiles, TILE * TILE) uint: which; 5 -> 5; with refined pixels only
     gpu::Buffer tile_sheets;   ///< (height, width) vec4: sums of a sheet that a round leaves unfinished; 5
+    gpu::Buffer outlines;      ///< (height, width) uint: BIND_OUTLINES; 5 -> 7; with smooth outlines only
     gpu::Buffer output;        ///< (height, width) vec4, mapped; 5, 7 -> host
 };
 

@@ -6,6 +6,7 @@
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
@@ -297,6 +298,30 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
                     if (!closed.empty() && closed[at] != 0) continue;
                     const glm::dvec4 added = contribution(splats[k], x, y, quantities[k], payload, cut);
                     if (added.w > 0) sheet[at] += added;
+                }
+            }
+        }
+    });
+}
+
+void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const glm::dvec4> frame,
+                          std::span<std::optional<Outline>> outlines, const std::optional<DepthRange>& cut) const {
+    parallel_for(view_.height, [&](int begin, int end) {
+        for (const std::uint32_t splat : splats) {
+            const VoxelEdge& edge = records_[splat].edge;
+            if (!footprints_.cuts(edge)) continue;
+            const PixelBox& box = selected_[splat].box;
+            const glm::dvec3 center(field_.voxel(records_[splat].voxel));
+            for (int y = std::max(box.y0, begin); y < std::min(box.y1, end); ++y) {
+                for (int x = box.x0; x < box.x1; ++x) {
+                    const std::size_t at = static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) +
+                                           static_cast<std::size_t>(x);
+                    if (frame[at].w >= static_cast<double>(shader::OUTLINE_OPEN)) continue;
+                    const glm::dvec3 u(rays_[at]);
+                    const double ahead = glm::dot(center - view_.eye_index, u);
+                    const glm::dvec3 p = view_.eye_index + ahead * u - center;
+                    const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
+                    keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
                 }
             }
         }

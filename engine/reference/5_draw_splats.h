@@ -7,6 +7,7 @@
 
 #include "engine/reference/3_select_footprints.h"
 #include "engine/reference/footprints.h"
+#include "engine/reference/outlines.h"
 #include "engine/reference/shading.h"
 #include "engine/scene/clip_planes.h"
 
@@ -50,6 +51,11 @@ class SplatDrawer {
     /// Pixels of `closed` that are non-zero are skipped; empty: none is. With `cut`, only what lies between.
     void draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,
               std::span<glm::dvec4> sheet, const std::optional<DepthRange>& cut = {}) const;
+
+    /// Where the splats' outlines pass pixels that are open enough in `frame`: of each the outermost. `cut` as in
+    /// draw().
+    void outline(std::span<const std::uint32_t> splats, std::span<const glm::dvec4> frame,
+                 std::span<std::optional<Outline>> outlines, const std::optional<DepthRange>& cut = {}) const;
 
     /// tau of one splat at the centre of pixel (x, y).
     double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/image/sample_mean.h"
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/faces.h"
 #include "engine/reference/splat_cloud.h"
@@ -154,28 +155,55 @@ void check_options(const DirectOptions& options) {
     }
 }
 
+DirectResult mean_of_samples(View view, int n, const DirectOptions& options,
+                             const std::function<DirectResult(const View&, const DirectOptions&)>& draw) {
+    if (n == 1) return draw(view, options);
+    const std::vector<glm::dvec2> offsets = sample_offsets(n);
+    SampleMean mean({view.width, view.height});
+    DirectResult all;
+    double before = 0;
+    DirectOptions of_one = options;
+    if (options.progress)
+        of_one.progress = [&](double done) {
+            return options.progress((before + done) / static_cast<double>(offsets.size()));
+        };
+    for (const glm::dvec2& offset : offsets) {
+        view.offset = offset;
+        const DirectResult one = draw(view, of_one);
+        mean.add(one.image.pixels);
+        all.error_estimate = std::max(all.error_estimate, one.error_estimate);
+        all.samples += one.samples;
+        before += 1;
+    }
+    all.image = mean.image();
+    return all;
+}
+
 DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
                                Output output, const DirectOptions& options) {
     check_picture_size(width, height);
     check_options(options);
     if (output != Output::Color && output != Output::Tau) fail("direct evaluation gives colour or tau only");
     const VolumeGeometry& geometry = prepared.volume().geometry;
-    const View view(camera, geometry, width, height);
     const Footprints& footprints = prepared.footprints();
-    const SplatCloud cloud(prepared, view, footprints);
-
-    const RayValue value = output == Output::Tau ? RayValue::Tau : RayValue::Opacity;
-    const RayFrame frame = trace_rays(width, height, value, options.progress, [&]() -> RayTracer {
-        return [&, walker = RayWalker(cloud, footprints, prepared, view, options.tolerance, output == Output::Tau)](
-                   int x, int y) mutable {
-            const glm::dvec3 u = view.ray(x, y);
-            return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
-        };
-    });
-    return {output == Output::Tau ? resolve_sum(frame.pixels, width, height)
-                                  : resolve_color(frame.pixels, width, height, prepared.scene().background,
-                                                  prepared.scene().effects.background_top),
-            frame.error, frame.samples};
+    const bool tau = output == Output::Tau;
+    const auto draw = [&](const View& view, const DirectOptions& how) -> DirectResult {
+        const SplatCloud cloud(prepared, view, footprints);
+        const RayValue value = tau ? RayValue::Tau : RayValue::Opacity;
+        const RayFrame frame = trace_rays(width, height, value, how.progress, [&]() -> RayTracer {
+            return
+                [&, walker = RayWalker(cloud, footprints, prepared, view, how.tolerance, tau)](int x, int y) mutable {
+                    const glm::dvec3 u = view.ray(x, y);
+                    return walker.walk(view.eye_index, u, glm::length(geometry.index_to_world_axes * u));
+                };
+        });
+        return {tau ? resolve_sum(frame.pixels, width, height)
+                    : resolve_color(frame.pixels, width, height, prepared.scene().background,
+                                    prepared.scene().effects.background_top),
+                frame.error, frame.samples};
+    };
+    return mean_of_samples(View(camera, geometry, width, height), tau ? 1 : prepared.scene().effects.samples, options,
+                           draw);
 }
 
 }  // namespace edgesplat::reference

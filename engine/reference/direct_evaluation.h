@@ -21,12 +21,17 @@ struct DirectResult {
     std::uint64_t samples = 0;  ///< points at which the model was evaluated
 };
 
+/// The mean of the pictures of n x n rays a pixel, each of `draw` for a view whose rays are moved; progress is of all.
+DirectResult mean_of_samples(View view, int n, const DirectOptions& options,
+                             const std::function<DirectResult(const View&, const DirectOptions&)>& draw);
+
 /// Throws Error unless the tolerance is in range.
 void check_options(const DirectOptions& options);
 
 /// sum_i tau_i h_i(x) along the ray of every pixel, from the eye on (what a kernel has behind the eye does not count).
 /// Color (4 channels) or Tau (1); other outputs throw Error, as do a picture without pixels and invalid options.
-/// Depends on no other camera's pictures: nothing is buried, nothing culled.
+/// Colour is the mean of as many rays a pixel as the scene asks for. Depends on no other camera's pictures: nothing is
+/// buried, nothing culled.
 DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
                                Output output = Output::Color, const DirectOptions& options = {});
 

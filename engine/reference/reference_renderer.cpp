@@ -105,6 +105,9 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const double base = records.empty() ? 0 : first_sheet(records, f, view, settings_, footprints_);
     std::vector<char> closed(pixels, 0);
     std::vector<glm::dvec4> sheet(pixels);
+    const bool smooth = scene_.effects.smooth_outlines && scene_.effects.samples == 1 && output == Output::Color &&
+                        draws_faces(settings_);
+    std::vector<std::optional<Outline>> outlines(smooth ? pixels : 0);
     for (std::size_t s = 0; s < sorted.sheets(); ++s) {
         if (s % kSheetsPerGroup == 0) {
             std::transform(frame.begin(), frame.end(), closed.begin(),
@@ -117,8 +120,10 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
             cut = {thickness * (base + static_cast<double>(s)), thickness * (base + static_cast<double>(s) + 1)};
         }
         drawer.draw(sorted.sheet(s), payload_for(output), closed, sheet, cut);
+        if (smooth) drawer.outline(sorted.sheet(s), frame, outlines, cut);
         composite_sheet(frame, sheet, closed);
     }
+    if (smooth) frame = smoothed(frame, outlines, width, height);
     return resolve(frame, width, height, scene_, output);
 }
 

@@ -298,19 +298,23 @@ DirectResult truth(const AnalyticScene& scene, const VolumeGeometry& geometry, c
     check_picture_size(width, height);
     check_options(options);
     validate(look);
-    if (const std::string beyond = beyond_ray_casting(look); !beyond.empty())
+    Scene of_a_ray = look;
+    of_a_ray.effects.samples = 1;
+    if (const std::string beyond = beyond_ray_casting(of_a_ray); !beyond.empty())
         fail("truth: {} cannot be shown, expected a scene without", beyond);
     if (geometry.dims != scene.dims) {
         fail("truth: {} is made for {} x {} x {} voxels, not {} x {} x {}", scene.name, scene.dims.x, scene.dims.y,
              scene.dims.z, geometry.dims.x, geometry.dims.y, geometry.dims.z);
     }
-    const View view(camera, geometry, width, height);
-    const RayFrame frame = trace_rays(width, height, RayValue::Opacity, options.progress, [&]() -> RayTracer {
-        return [&view, walker = TruthWalker(scene, look, view, options.tolerance)](int x, int y) mutable {
-            return walker.walk(view.ray(x, y));
-        };
-    });
-    return {resolve_color(frame.pixels, width, height, look.background), frame.error, frame.samples};
+    const auto draw = [&](const View& view, const DirectOptions& how) -> DirectResult {
+        const RayFrame frame = trace_rays(width, height, RayValue::Opacity, how.progress, [&]() -> RayTracer {
+            return [&view, walker = TruthWalker(scene, look, view, how.tolerance)](int x, int y) mutable {
+                return walker.walk(view.ray(x, y));
+            };
+        });
+        return {resolve_color(frame.pixels, width, height, look.background), frame.error, frame.samples};
+    };
+    return mean_of_samples(View(camera, geometry, width, height), look.effects.samples, options, draw);
 }
 
 }  // namespace edgesplat::reference

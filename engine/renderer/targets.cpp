@@ -99,7 +99,8 @@ void RendererState::provide_layers(FramePlan& plan_in_use) {
     for (gpu::Buffer* unused :
          {&targets.tile_rects, &targets.sheet_pairs, &targets.sheet_starts, &targets.chunks, &targets.tile_counters,
           &targets.tile_ranges, &targets.tile_order, &targets.tile_entries, &targets.tile_marks, &targets.tile_closed,
-          &targets.tile_todo, &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets})
+          &targets.tile_todo, &targets.tile_pixels, &targets.tiles_seen, &targets.tile_finest, &targets.tile_sheets,
+          &targets.outlines})
         *unused = {};
     targets.prepared = {};
     constexpr vk::Format kSums = vk::Format::eR32G32B32A32Sfloat;
@@ -176,6 +177,10 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
     grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets",
          vk::Format::eR32G32B32A32Sfloat);
+    if (plan_in_use.variant.outlines)
+        grow(device, targets.outlines, pixels * kWord, Place::Device, "outlines", vk::Format::eR32Uint);
+    else
+        targets.outlines = {};
     const std::uint32_t slots = passes::prepared_slots(std::uint64_t{p.splat_count} * plan_in_use.sheets_per_splat);
     const gpu::ImageShape records = passes::prepared_shape(plan_in_use.variant, slots);
     if (!targets.prepared || targets.prepared.shape().size.y < records.size.y) {

@@ -76,7 +76,9 @@ struct Effects {
     Clip clip;
     std::optional<glm::dvec3> background_top;  ///< linear light: the background goes from `background` (bottom) to this
     bool antialias =
-        false;        ///< no footprint smaller than a pixel, its energy kept (Zwicker et al. 2002, EWA splatting)
+        false;  ///< no footprint smaller than a pixel, its energy kept (Zwicker et al. 2002, EWA splatting)
+    /// A pixel that an outline of a face passes shows what is on both its sides; plain kernels and rays have none.
+    bool smooth_outlines = false;
     int samples = 1;  ///< n: the mean of n x n pictures whose rays lie between the pixels' centres, [1, 8]
     Overlays overlays;
     bool operator==(const Effects&) const = default;

@@ -211,6 +211,8 @@ void add_effects(Table& t) {
            .range = kShare,
            .absent = "one colour"});
     t.add("effects.antialias", MEMBER(effects.antialias), {.help = "No footprint smaller than a pixel"});
+    t.add("effects.smooth_outlines", MEMBER(effects.smooth_outlines),
+          {.help = "A pixel that an outline passes shows what is on both its sides"});
     t.add("effects.samples", MEMBER(effects.samples),
           {.help = "n: the mean of n x n pictures whose rays lie between the pixels' centres",
            .range = {1, kMaxSamples}});

@@ -9,9 +9,13 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
+layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
 layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
+layout(binding = BIND_TILE_SHEETS, rgba32f) uniform readonly imageBuffer before;  // the picture, as it was
+layout(binding = BIND_OUTLINES, r32ui) uniform readonly uimageBuffer outlines;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/resolve/other_side.glsl"
 
 void main() {
     ivec2 pixel = ivec2(gl_GlobalInvocationID.xy), size = params.frame.size;
@@ -20,6 +24,7 @@ void main() {
     vec4 sum = vec4(0.0);
     if (TILES == 1u) sum = imageLoad(picture, at);
     else sum = texelFetch(accumulated, pixel, 0);
+    if (OUTLINES == 1u) sum = with_other_side(sum, pixel, size);
     if (PAYLOAD == PAYLOAD_COLOR) {
         vec3 behind = params.frame.background;
         if (GRADIENT == 1u) {

@@ -27,7 +27,8 @@ EDGESPLAT_CONSTANT uint BIND_TILE_RANGES = 17u;    // rg32ui (tiles): parts of t
 EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 18u;     // r32ui (tiles, then groups of their pixels): longest list first; with rounds only
 EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 19u;    // r32ui (tiles, TILE * TILE): which, x | y << 8 in the tile; with refined pixels only
 EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 20u;    // rgba32f (size.y, size.x): sums of a sheet whose entries go on in the next round
-EDGESPLAT_CONSTANT uint BIND_COUNT = 21u;
+EDGESPLAT_CONSTANT uint BIND_OUTLINES = 21u;       // r32ui (size.y, size.x): where an outline passes each pixel (outline.glsl)
+EDGESPLAT_CONSTANT uint BIND_COUNT = 22u;
 
 EDGESPLAT_SHARED_END
 #endif

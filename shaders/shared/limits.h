@@ -61,6 +61,12 @@ EDGESPLAT_CONSTANT uint REFINE_PIXELS = 33554432u;  // larger pictures may have 
 EDGESPLAT_CONSTANT uint MARK_PIXELS = 16777216u;   // of larger pictures the marks of each would take too much
 EDGESPLAT_CONSTANT uint REFINE_STEP = 4u;
 EDGESPLAT_CONSTANT float REFINE_TOLERANCE = 1.0f / 255.0f;
+// Outlines (outline.glsl).
+EDGESPLAT_CONSTANT uint NO_OUTLINE = 0xffffffffu;
+EDGESPLAT_CONSTANT float OUTLINE_FAR2 = 16.0f;  // voxels^2: further from its voxel a face does not know where it turns away
+EDGESPLAT_CONSTANT float OUTLINE_NEAR2 = 1.44f;  // voxels^2: further away there is too little of a kernel to show an edge
+EDGESPLAT_CONSTANT float OUTLINE_TAU = 0.25f;  // a splat that shows less of a ray does not know that it is in matter
+EDGESPLAT_CONSTANT float OUTLINE_OPEN = 0.5f;  // opacity of what is in front of an outline that counts
 EDGESPLAT_CONSTANT uint SHEET_NONE = 0xffffffffu;  // sheet of a splat that is not drawn
 EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; the bits above count the sheets after it
 
@@ -104,7 +110,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; t
     X(SPEC_SKIP, 35u)         /* 1: transparent bricks are leapt over */ \
     X(SPEC_RAY_LIGHT, 36u)    /* 0 without light, else 1 + Light::Kind */ \
     X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */ \
-    X(SPEC_CREASES, 38u)      /* 1: planes beside faces cut kernels, too */
+    X(SPEC_CREASES, 38u)      /* 1: planes beside faces cut kernels, too */ \
+    X(SPEC_OUTLINES, 39u)     /* 1: pixels that outlines pass show both sides */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -26,6 +26,7 @@ layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
+layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
@@ -37,6 +38,7 @@ layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
 layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
 layout(binding = BIND_TILE_PIXELS, r32ui) uniform readonly uimageBuffer listed_pixels;
 layout(binding = BIND_TILE_SHEETS, rgba32f) uniform imageBuffer unfinished;
+layout(binding = BIND_OUTLINES, r32ui) uniform uimageBuffer outlines;
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
@@ -58,6 +60,7 @@ SelectedFootprint selected_footprint;
 #include "shaders/splats/prepared_splat.glsl"
 #include "shaders/splats/splat_value.glsl"
 #include "shaders/common/fold_sheet.glsl"
+#include "shaders/tiles/outline.glsl"
 #include "shaders/tiles/pixel_in_tile.glsl"
 #include "shaders/tiles/tile_marks.glsl"
 
@@ -115,6 +118,8 @@ void main() {
         if (FACES) volume_piece = piece_in_volume(u);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
+        uint outline = NO_OUTLINE;
+        if (OUTLINES == 1u) outline = imageLoad(outlines, held.y * size.x + held.x).x;
         uint current = imageLoad(entries, at).y;
         if (ROUNDS == 1u) {
             bool same = went_on && imageLoad(entries, at - (went_on ? 1 : 0)).y == current;
@@ -173,7 +178,11 @@ void main() {
                     shaded += open ? 1u : 0u;
                 }
                 float beyond = dot(offset, u);
-                sheet_sum += splat_value(offset - beyond * u, u, h.plane * way_length - beyond, mm);
+                vec3 p = offset - beyond * u;
+                float ahead = h.plane * way_length - beyond;
+                vec4 value = splat_value(p, u, ahead, mm);
+                sheet_sum += value;
+                if (OUTLINES == 1u) outline = sum.a < OUTLINE_OPEN ? min(outline, outline_of(p, u, ahead, value.a)) : outline;
             }
         }
         // What the next round may go on with is the sheet of the last entry, whether or not it was here.
@@ -183,7 +192,10 @@ void main() {
             sheet_sum = vec4(0.0);
         }
         for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
-        for (uint write = was_open ? 1u : 0u; write > 0u; --write) imageStore(picture, held.y * size.x + held.x, sum);
+        for (uint write = was_open ? 1u : 0u; write > 0u; --write) {
+            imageStore(picture, held.y * size.x + held.x, sum);
+            if (OUTLINES == 1u) imageStore(outlines, held.y * size.x + held.x, uvec4(outline));
+        }
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
     if (COUNT == 1u) {

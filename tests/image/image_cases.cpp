@@ -208,6 +208,12 @@ std::vector<ImageCase> sampling_cases() {
     cases.push_back({"orbital, far, antialiased, 2 x 2 samples", orbital});
     for (ImageCase& c : cases)
         c.smallest_psnr = 90;
+    Shot outlined = torus_shot(), hole = builtin("cube-hole", glm::ivec3(28));
+    from(hole, "oblique");
+    for (Shot* shot : {&outlined, &hole})
+        shot->scene.effects.smooth_outlines = true;
+    cases.push_back({"torus, smooth outlines", outlined, Output::Color, 70});
+    cases.push_back({"cube with a hole, smooth outlines", hole, Output::Color, 70});
     return cases;
 }
 

@@ -148,6 +148,7 @@ class Shots {
         if (chance(0.2)) e.background_top = glm::dvec3(0.1, 0.2, 0.4);
         e.antialias = chance(0.2);
         e.samples = chance(0.1) ? 2 : 1;
+        e.smooth_outlines = shot.settings.sheet_format == SheetFormat::Tiles && chance(0.2);
         if (chance(0.1)) e.overlays = {.orientation = true, .scale_bar = true, .legend = true};
     }
 

@@ -194,7 +194,8 @@ TEST_F(CliScene, OptionsOverrideTheScene) {
 TEST_F(CliScene, EffectOptionsArriveInThePicture) {
     good(
         "render builtin:sphere:24 -o a.png --size 8x8 --fog 0.01 --silhouette --occlusion 4 --light 1,0,1 --shadows "
-        "--clip-plane 1,2,3,0,0,1 --clip-plane 4,5,6,1,0,0 --cut-box 0,0,0,5,6,7 --antialias --samples 2 "
+        "--clip-plane 1,2,3,0,0,1 --clip-plane 4,5,6,1,0,0 --cut-box 0,0,0,5,6,7 --antialias --smooth-outlines "
+        "--samples 2 "
         "--background-top 0,0,1 --overlay orientation,scale-bar,legend --ambient 0.4");
     SceneDocument d;
     for (const auto& [key, text] : read_image(folder_ / "a.png").metadata)
@@ -209,6 +210,7 @@ TEST_F(CliScene, EffectOptionsArriveInThePicture) {
     EXPECT_EQ(d.effects.clip.remove.size(), 6U);
     EXPECT_FALSE(d.remove_box) << "a picture holds the planes";
     EXPECT_TRUE(d.effects.antialias);
+    EXPECT_TRUE(d.effects.smooth_outlines);
     EXPECT_EQ(d.effects.samples, 2);
     EXPECT_EQ(d.effects.background_top, glm::dvec3(0, 0, 1));
     EXPECT_TRUE(d.effects.overlays.orientation && d.effects.overlays.scale_bar && d.effects.overlays.legend);

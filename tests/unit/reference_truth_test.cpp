@@ -52,6 +52,25 @@ double chord(const glm::dvec3& eye, const glm::dvec3& u, const glm::dvec3& cente
     return 2 * std::sqrt(std::max(radius * radius - rho2, 0.0));
 }
 
+TEST(Truth, SeveralRaysAPixelAreTheMeanOfALargerPicture) {
+    const AnalyticScene scene = analytic_scene("sphere");
+    const Camera camera = looking_at(scene, {1, 2, -1}, 60, 40);
+    Scene look = look_of(scene, 0.5, true);
+    const Image large = seen(scene, look, camera, 36, 36).image;
+    look.effects.samples = 3;
+    const Image mean = seen(scene, look, camera, 12, 12).image;
+    for (int y = 0; y < 12; ++y) {
+        for (int x = 0; x < 12; ++x) {
+            for (int c = 0; c < 4; ++c) {
+                double sum = 0;
+                for (int k = 0; k < 9; ++k)
+                    sum += static_cast<double>(large.at(3 * x + k % 3, 3 * y + k / 3, c)) / 9;
+                EXPECT_NEAR(static_cast<double>(mean.at(x, y, c)), sum, 1e-4) << x << ' ' << y;
+            }
+        }
+    }
+}
+
 TEST(Truth, ASphereHasItsChords) {
     const AnalyticScene scene = analytic_scene("sphere");
     const Camera camera = looking_at(scene, {1, 2, -1}, 100, 30);

@@ -57,6 +57,11 @@ std::uint64_t tile_count(const FramePlan& plan) {
     return static_cast<std::uint64_t>(plan.params.tiles.x) * static_cast<std::uint64_t>(plan.params.tiles.y);
 }
 
+std::uint64_t picture_bytes(const FramePlan& plan) {
+    return static_cast<std::uint64_t>(plan.params.size.x) * static_cast<std::uint64_t>(plan.params.size.y) *
+           sizeof(glm::vec4);
+}
+
 std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step) {
     if (!how.refined) return 1;
     const std::uint32_t across = shader::TILE / step, coarser = across / 2;

@@ -19,6 +19,9 @@ std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles);
 
 std::uint64_t tile_count(const FramePlan& plan);
 
+/// Of colour and opacity of all pixels.
+std::uint64_t picture_bytes(const FramePlan& plan);
+
 /// What FrameParams::tile_order holds at most.
 std::uint64_t tile_order_items(const FramePlan& plan);
 /// Pairs that FrameParams::tile_entries has room for. Of a refined picture, the lists of several chunks are kept.

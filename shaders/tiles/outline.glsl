@@ -1,0 +1,74 @@
+// Where an outline passes a pixel: the distance across the ray from the pixel's centre to where the face turns away from it, or
+// where two planes of a crease do. After shaders/splats/splat_value.glsl. docs/method.md, 5_draw_tiles, "Outlines".
+#ifndef EDGESPLAT_OUTLINE_GLSL
+#define EDGESPLAT_OUTLINE_GLSL
+
+// A splat as the pixel's ray sees it.
+struct OutlinedSplat {
+    FaceSight sight;
+    FaceCrease crease;
+    float ahead;        // of the eye's way to the ray's point nearest to the voxel, voxels
+    float depth_along;  // mm of depth per voxel along the ray
+    float tau;          // what the splat shows of the ray
+};
+
+// Matter ends where `level` is 0, and is where it is less; `rate`: by how much it is more a pixel further to the right and down.
+// Of two words the smaller counts: matter of either splat is matter of both.
+// level, pixels, from -1 (12 bits) | down (1) | offset to the right or down, pixels, from -1 (16)
+uint outline_word(OutlinedSplat splat, float level, vec2 rate, float z) {
+    bool down = abs(rate.y) > abs(rate.x);
+    float along = down ? rate.y : rate.x, pixels = level / abs(along), offset = -level / along;
+    float distance2 = splat.sight.ray.rho2 + z * z;
+    bool knows = level < 0.0 ? splat.tau > OUTLINE_TAU && distance2 < OUTLINE_FAR2 : distance2 < OUTLINE_NEAR2;
+    uint word = uint(clamp(0.5 * pixels + 0.5, 0.0, 1.0) * 4095.0) << 17 | (down ? 1u << 16 : 0u) |
+                uint(clamp(0.5 * offset + 0.5, 0.0, 1.0) * 65535.0);
+    return knows && abs(pixels) < 1.0 ? word : NO_OUTLINE;
+}
+
+// How a function with that gradient changes at a depth (mm) from a pixel to the next, to the right and down.
+vec2 rate_across(vec3 gradient, float depth) {
+    vec2 pixel = 2.0 * depth * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
+    return pixel * vec2(dot(gradient, params.frame.ray_x), dot(gradient, params.frame.ray_y));
+}
+
+// Of the splat's face: phi has its least value on the ray there, or of a wall's other face its largest.
+uint outline_of_face(OutlinedSplat splat) {
+    Quadratic phi = splat.sight.ray.phi;
+    bool opens = phi.a >= 0.0;
+    float bend = max(abs(phi.a), FACE_STRAIGHT), side = opens ? 1.0 : -1.0;
+    float z = -0.5 * phi.b / (side * bend), depth = (splat.ahead + z) * splat.depth_along;
+    float level = side * (quadratic_at(phi, z) + (opens ? 0.0 : face_form.cut.thickness));
+    bool there = (opens || face_form.cut.thickness < FACE_NO_WALL) && depth > 0.0;
+    if (CREASES == 1u) there = there && splat.crease.p + z * splat.crease.u < splat.crease.distance;
+    vec2 rate = side * rate_across(splat.sight.slope + z * splat.sight.turn, depth);
+    return there ? outline_word(splat, level, rate, z) : NO_OUTLINE;
+}
+
+// Of the edge between face and crease, where the way between them shrinks to nothing.
+uint outline_of_crease(OutlinedSplat splat) {
+    FaceCrease crease = splat.crease;
+    bool leaves = crease.u > 0.0;  // the matter by the crease's plane
+    float side = leaves ? 1.0 : -1.0;
+    FaceRoots roots = face_roots(splat.sight.ray.phi, 0.0);
+    float at_face = (splat.sight.ray.phi.a >= 0.0) == leaves ? roots.low : roots.high;
+    float u = side * max(abs(crease.u), FACE_STRAIGHT), at_crease = (crease.distance - crease.p) / u;
+    float z = 0.5 * (at_face + at_crease), depth = (splat.ahead + z) * splat.depth_along;
+    float along = splat.sight.ray.phi.b + 2.0 * at_face * splat.sight.ray.phi.a;
+    vec2 rate = side * (rate_across(face_form.crease.xyz, depth) / u - rate_across(splat.sight.slope + at_face * splat.sight.turn, depth) / along);
+    bool there = roots.real && crease.distance < FACE_NO_WALL && depth > 0.0 && along * u < 0.0;
+    return there ? outline_word(splat, side * (at_face - at_crease), rate, z) : NO_OUTLINE;
+}
+
+// Of a splat that shows `tau` of the ray; the rest as in splat_value().
+uint outline_of(vec3 p, vec3 u, float ahead, float tau) {
+    OutlinedSplat splat;
+    splat.sight = face_sight(p, u);
+    if (CREASES == 1u) splat.crease = crease_seen(p, u);
+    splat.ahead = ahead;
+    splat.depth_along = dot(params.frame.view_z, u);
+    splat.tau = tau;
+    uint word = outline_of_face(splat);
+    if (CREASES == 1u) word = min(word, outline_of_crease(splat));
+    return face_form.cut.depth >= 0.0 && splat.sight.ray.rho2 < KERNEL_R2 ? word : NO_OUTLINE;
+}
+#endif
