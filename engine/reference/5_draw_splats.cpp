@@ -143,10 +143,17 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
         record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, {}, footprints.cuts(edge)};
     if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
     seen.sight = face_sight(drawn_edge(edge, settings), p, u);
-    if (plain) return seen.at({}, glm::dvec3(0), payload);
-    FaceFootprint f = footprints.at_face(edge, p, u, slice);
     const double eye = glm::dot(view.eye_index - seen.center - p, u);
     const VolumePiece inside = piece_in_volume(view, u).seen_from(eye);
+    if (plain) {
+        // A widened kernel is entered as its voxel's centre would be.
+        const FaceSight centre = face_sight(drawn_edge(edge, settings), glm::dvec3(0), u);
+        const double value = centre.ray.phi.c, along = centre.ray.phi.b;
+        const double begin = std::max(along < 0 ? -value / along : -kKernelRadius, -kKernelRadius);
+        const bool at_border = value < 0 && inside.low > std::max(begin, eye);
+        return seen.at({at_border ? inside.low : 0}, at_border ? inside.normal : glm::dvec3(0), payload);
+    }
+    FaceFootprint f = footprints.at_face(edge, p, u, slice);
     const bool at_border = inside.low > std::max(f.entry.z, eye);
     const glm::dvec3 normal = at_border ? inside.normal : glm::dvec3(0);
     if (at_border) f.entry.z = inside.low;

@@ -286,11 +286,13 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         }
     };
     Surfel nearest;
-    double distance = kFaceSearch;
+    double distance = std::numeric_limits<double>::infinity();
     around(i, [&](const Surfel& s) {
+        // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
+        const double rank = glm::length(s.at) + (s.border ? static_cast<double>(shader::BORDER_BEHIND) : 0);
         // Of what is equally far the first is taken, whichever way numbers are rounded.
-        if (!(glm::length(s.at) < distance - 1e-4)) return;
-        distance = glm::length(s.at);
+        if (!(glm::length(s.at) < kFaceSearch) || !(rank < distance - 1e-4)) return;
+        distance = rank;
         nearest = s;
     });
     if (nearest.border) {
@@ -302,7 +304,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         edge.has_edge = edge.has_normal = true;
         return edge;
     }
-    const bool found = distance < kFaceSearch;
+    const bool found = std::isfinite(distance);
     if (!found) {
         Crossed crossed;
         for (int k = 0; k < 27; ++k) {

@@ -15,6 +15,7 @@ EDGESPLAT_CONSTANT float FACE_REACH = 2.4f;     // R and the depth at which kern
 EDGESPLAT_CONSTANT float SURFEL_REACH = 1.25f;  // voxels: how far from a voxel the point of the surface may be that it finds
 EDGESPLAT_CONSTANT int SURFEL_STEPS = 12;       // of Newton's method
 EDGESPLAT_CONSTANT float FACE_SEARCH = 3.0f;    // voxels: how far from a voxel the nearest of these may be
+EDGESPLAT_CONSTANT float BORDER_BEHIND = 0.7f;  // voxels: by so much a surface may be further off than the volume's border
 EDGESPLAT_CONSTANT float FIT_RADIUS = 1.5f;     // voxels around it from which a face is fitted
 EDGESPLAT_CONSTANT float FIT_RIDGE = 1e-3f;     // voxels^2: weight of H = 0 against the scatter of what is fitted
 EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave less of the squared error than one quadric

@@ -220,7 +220,7 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
 Face fit_face(ivec3 p, uint material) {
     Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE);
     vec3 middle = vec3(0.0), n = vec3(0.0);
-    float nearest = FACE_SEARCH;
+    float nearest = 1e9;
     uint state = EDGE_LOWER;
     bvec2 crossed = bvec2(false);
     bool border = false;
@@ -228,9 +228,11 @@ Face fit_face(ivec3 p, uint material) {
         ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
         Surfel s = surfel_at(p, q, material);
         float away = s.there ? length(s.at) : 1e9;
+        // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
+        float rank = away + (s.border ? BORDER_BEHIND : 0.0);
         // Of what is equally far the first is taken, whichever way numbers are rounded.
-        bool nearer = away < nearest - 1e-4;
-        nearest = nearer ? away : nearest;
+        bool nearer = away < FACE_SEARCH && rank < nearest - 1e-4;
+        nearest = nearer ? rank : nearest;
         middle = nearer ? s.at : middle;
         n = nearer ? s.n : n;
         state = nearer ? s.state : state;
@@ -240,7 +242,7 @@ Face fit_face(ivec3 p, uint material) {
         crossed.x = crossed.x || (beside && other < material);
         crossed.y = crossed.y || (beside && other > material);
     }
-    bool found = nearest < FACE_SEARCH;
+    bool found = nearest < 1e9;
     if (border) {
         // A plane, and behind it where the volume ends on the other side.
         float d = dot(middle, n);

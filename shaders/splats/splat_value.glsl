@@ -136,6 +136,11 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
 // the way is lit as where it begins, the farther half as where it ends.
 vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, float far_border, vec3 u, float ahead, float mm) {
     bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry.z;
+    if (ANTIALIAS == 1u) {
+        // A widened kernel is entered as its voxel's centre would be.
+        float along = dot(face_form.slope, u), begin = along < 0.0 ? -face_form.value / along : -KERNEL_R;
+        at_border = at_border || (plain && face_form.value < 0.0 && volume_piece.low > 0.0 && border > max(begin, -KERNEL_R));
+    }
     f.entry.z = at_border ? border : f.entry.z;
     vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
     if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
