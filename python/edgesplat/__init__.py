@@ -8,25 +8,28 @@ Lengths are mm, angles degrees, colours linear light from 0 to 1. Arrays of volu
 """
 
 from ._core import DeviceLost, Error, Interrupted, SceneError, __version__, builtin_names
-from ._renderer import Device, Movie, Picture, Renderer, Statistics, list_devices, movie, render
+from ._renderer import Device, Movie, Picture, Renderer, Statistics, accuracy, list_devices, movie, render
 from ._scene import Camera, Key, Scene, scene_keys
-from ._volume import Volume
+from ._volume import Extents, Quantity, Volume
 
 __all__ = [
     "Camera",
     "Device",
     "DeviceLost",
     "Error",
+    "Extents",
     "Interrupted",
     "Key",
     "Movie",
     "Picture",
+    "Quantity",
     "Renderer",
     "Scene",
     "SceneError",
     "Statistics",
     "Volume",
     "__version__",
+    "accuracy",
     "builtin_names",
     "list_devices",
     "movie",

@@ -272,6 +272,49 @@ class Renderer:
         return Movie(self, self._core.movie(document, document.prepared(volume), seconds))
 
 
+    def accuracy(
+        self,
+        source: Any = None,
+        scene: Scene | Mapping[str, Any] | str | os.PathLike | None = None,
+        *,
+        report: str | os.PathLike,
+        size: Sequence[int] = (192, 192),
+        knobs: Sequence[str] = (),
+        cameras: Sequence[str] = (),
+        tolerance: float = 3e-5,
+        repeats: int = 5,
+        orbit: int = 36,
+        **keys: Any,
+    ) -> dict[str, Any]:
+        """Measures what each step of accuracy costs, as ``edgesplat accuracy`` does, writes its report, and gives what is in
+        report.json. Stopped by Ctrl-C, the same call goes on from the measurements that are in the folder.
+
+        report: the folder of index.html, report.json and steps.csv.
+        size: pixels of the pictures that are measured.
+        knobs: only the steps of these, and no combinations; empty: all.
+        cameras: of far, near, grazing, inside; empty: all there are.
+        tolerance: largest error of a pixel of the references, [1e-7, .01].
+        repeats: rounds in which times are taken.
+        orbit: frame pairs, one degree apart, for popping; 0: none.
+        keys: as for `render`; of ``quality`` the steps are taken from there.
+        """
+        volume, document = _asked(source, scene, None, None, None, None, keys)
+        if len(size) != 2 or not all(1 <= n <= 16384 for n in size):
+            raise Error(f"size: {tuple(size)}: expected width and height, 1 to 16384 pixels each")
+        for name, number, low, high in (
+            ("tolerance", tolerance, 1e-7, 0.01),
+            ("repeats", repeats, 1, 1000),
+            ("orbit", orbit, 0, 3600),
+        ):
+            if not low <= number <= high:
+                raise Error(f"{name}: {number}: expected {low} to {high}")
+        prepared = document.prepared(volume)
+        text = self._core.accuracy(
+            document, prepared, os.fspath(report), list(size), tolerance, repeats, orbit, list(knobs), list(cameras)
+        )
+        return json.loads(text)
+
+
 def _asked(
     source: Any,
     scene: Any,
@@ -328,3 +371,8 @@ def render(source: Any = None, scene: Any = None, **options: Any) -> Picture:
 def movie(source: Any = None, scene: Any = None, **options: Any) -> Movie:
     """`Renderer.movie` on the best device of this machine, which is kept for the calls to come."""
     return _default_renderer().movie(source, scene, **options)
+
+
+def accuracy(source: Any = None, scene: Any = None, **options: Any) -> dict[str, Any]:
+    """`Renderer.accuracy` on the best device of this machine, which is kept for the calls to come."""
+    return _default_renderer().accuracy(source, scene, **options)

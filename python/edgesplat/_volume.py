@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from dataclasses import dataclass
 from typing import Any, Sequence, Tuple
 
 import numpy as np
@@ -42,6 +43,27 @@ def _axes(axes: np.ndarray, direction: Any, lengths: np.ndarray | None) -> list[
         with np.errstate(all="ignore"):  # an axis of no length is refused with the volume
             axes = axes / np.linalg.norm(axes, axis=1)[:, None] * lengths[:, None]
     return [_triple(axis) for axis in axes]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A measured number, and how far from it the true one may lie, either way."""
+
+    value: float
+    uncertainty: float
+
+    def __str__(self) -> str:
+        return f"{self.value:.6g} ± {self.uncertainty:.2g}"
+
+
+@dataclass(frozen=True)
+class Extents:
+    """What `Volume.measure` found."""
+
+    volumes: tuple[Quantity, ...]
+    """mm^3 of each material: below the first iso-value, between it and the next, ..., from the last one up."""
+    surfaces: tuple[Quantity, ...]
+    """mm^2 of each iso-value's surface."""
 
 
 class Volume:
@@ -178,6 +200,21 @@ class Volume:
     def suggest_iso_values(self, count: int = 4) -> list[tuple[float, float]]:
         """Values at which surfaces are likely, with their strength relative to the strongest, which comes first."""
         return self._core.suggest_iso_values(count)
+
+    def measure(self, iso_values: float | Sequence[float]) -> Extents:
+        """How much there is of each material, and how large the surfaces between them are, with what each figure is
+        uncertain by: materials are divided where the cubic B-spline through the samples crosses an iso-value, as
+        ``edgesplat measure`` has them. Ctrl-C stops it."""
+        values = np.atleast_1d(np.asarray(iso_values, dtype=float))
+        if values.ndim != 1 or not np.all(np.isfinite(values)) or not np.all(np.diff(values) > 0) or not len(values):
+            raise Error(f"iso_values: {iso_values}: expected finite numbers that ascend")
+        volumes, surfaces = self._core.measure([float(value) for value in values])
+        return Extents(tuple(Quantity(*v) for v in volumes), tuple(Quantity(*s) for s in surfaces))
+
+    def measure_labels(self) -> dict[float, Quantity]:
+        """Of a segmentation: the volume of each label's voxels, mm^3; half of those with another label beside them are
+        uncertain."""
+        return {label: Quantity(*volume) for label, _, volume in self._core.measure_labels()}
 
     def __repr__(self) -> str:
         z, y, x = self.shape

@@ -1,53 +1,23 @@
 // Renderers: the interpreter's lock is let go while they draw, and Ctrl-C stops them.
 #include <atomic>
-#include <chrono>
 #include <mutex>
 
 #include "apps/edgesplat/explain_option.h"
 #include "apps/edgesplat/film.h"
 #include "apps/edgesplat/max_error_option.h"
 #include "apps/edgesplat/renderer_option.h"
+#include "engine/accuracy/analytic_truth.h"
+#include "engine/accuracy/measure.h"
+#include "engine/accuracy/report_files.h"
+#include "engine/accuracy/report_json.h"
 #include "engine/error.h"
 #include "engine/overlays/overlays.h"
-#include "engine/reference/pixel_rows.h"
 #include "engine/volume/packed_volume.h"
 #include "python/src/pictures.h"
+#include "python/src/signals.h"
 
 namespace edgesplat::python {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// Does `work` without the interpreter's lock. Where it was stopped by a signal, the signal's exception goes on.
-template <typename Work>
-auto without_lock(Work work) {
-    try {
-        const py::gil_scoped_release release;
-        return work();
-    } catch (const Interrupted&) {
-        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-        throw;
-    } catch (const reference::Cancelled&) {
-        if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-        throw;
-    }
-}
-
-/// Whether signals that came in ask to stop; asked by a thread without the interpreter's lock, which is taken 50 times
-/// a second at most. Then the signal's exception is set.
-class Signals {
-  public:
-    bool ask_to_stop() {
-        const Clock::time_point now = Clock::now();
-        if (now - last_ < std::chrono::milliseconds(20)) return false;
-        last_ = now;
-        const py::gil_scoped_acquire acquire;
-        return PyErr_CheckSignals() != 0;
-    }
-
-  private:
-    Clock::time_point last_ = Clock::now();
-};
 
 /// The scene with the volume that is given, checked as far as can be before anything is drawn.
 SceneDocument checked(const Document& document, const SharedVolume& volume) {
@@ -229,6 +199,33 @@ Picture frame_of(SharedRenderer& self, const Movie& movie, int frame) {
     return picture;
 }
 
+/// What `edgesplat accuracy` writes into `options.folder`, and the text of its report.json.
+std::string measure_steps(SharedRenderer& self, const Document& document, const SharedVolume& volume,
+                          accuracy::ReportOptions options) {
+    const SceneDocument scene = checked(document, volume);
+    options.base = scene.quality.settings;
+    return self.use([&](Renderer& renderer) {
+        need_samples(*volume.volume, "accuracy");
+        accuracy::check_report_folder(options.folder);
+        accuracy::ReportInput input;
+        input.volume = volume.volume;
+        input.scene = resolve_scene(scene, *volume.volume);
+        if (!scene.volume.threshold && !scene.volume.box_filter && !scene.volume.crop_low)
+            input.analytic = accuracy::analytic_scene_of(scene.volume.path);
+        input.program = "edgesplat " EDGESPLAT_VERSION;
+        input.command = "edgesplat.accuracy";
+        renderer.set_volume(volume.volume);
+        try {
+            const auto go_on = [stop = self.interruption()](const accuracy::Progress&) { return !stop(); };
+            const accuracy::Measured measured = measure_accuracy(renderer, input, options, go_on);
+            write_report(measured);
+            return report_json(measured.report).dump();
+        } catch (const accuracy::Interrupted&) {
+            throw Interrupted();
+        }
+    });
+}
+
 py::dict as_dict(const DeviceInfo& device) {
     using namespace py::literals;
     return py::dict("index"_a = device.index, "name"_a = device.name, "type"_a = device.type,
@@ -259,6 +256,20 @@ void add_renderers(py::module_& module) {
         .def("draw", draw)
         .def("movie", movie)
         .def("frame_of", frame_of)
+        .def("accuracy",
+             [](SharedRenderer& self, const Document& document, const SharedVolume& volume, const std::string& folder,
+                const std::array<int, 2>& size, double tolerance, int repeats, int orbit,
+                const std::vector<std::string>& knobs, const std::vector<std::string>& cameras) {
+                 accuracy::ReportOptions options;
+                 options.folder = folder;
+                 options.size = {size[0], size[1]};
+                 options.tolerance = tolerance;
+                 options.repeats = repeats;
+                 options.orbit_frames = orbit;
+                 options.knobs = knobs;
+                 options.cameras = cameras;
+                 return measure_steps(self, document, volume, std::move(options));
+             })
         .def("interrupt", &SharedRenderer::interrupt)
         .def("close", &SharedRenderer::close);
     module.def("list_devices", [] {

@@ -1,11 +1,12 @@
 // Volumes from files and arrays.
 #include "engine/error.h"
+#include "engine/measure/extents.h"
 #include "engine/scene/scene_document.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/load_volume.h"
 #include "engine/volume/packed_volume.h"
-#include "python/src/bindings.h"
+#include "python/src/signals.h"
 
 namespace edgesplat::python {
 namespace {
@@ -76,6 +77,36 @@ std::vector<std::pair<double, double>> suggestions(const SharedVolume& self, int
     return found;
 }
 
+using Numbers = std::pair<double, double>;  // a value, and what it is uncertain by
+
+std::vector<Numbers> numbers(const std::vector<measure::Quantity>& quantities) {
+    std::vector<Numbers> all;
+    for (const measure::Quantity& quantity : quantities)
+        all.emplace_back(quantity.value, quantity.uncertainty);
+    return all;
+}
+
+/// Volumes of the materials, mm^3, and surfaces of the iso-values, mm^2.
+std::pair<std::vector<Numbers>, std::vector<Numbers>> measured(const SharedVolume& self,
+                                                               const std::vector<double>& iso_values) {
+    return without_lock([&] {
+        Signals signals;
+        const auto extents =
+            measure::measure_extents(*self.volume, iso_values, {}, [&](double) { return !signals.ask_to_stop(); });
+        return std::pair(numbers(extents.volumes), numbers(extents.surfaces));
+    });
+}
+
+/// Labels with their voxels and volumes, mm^3.
+std::vector<std::tuple<double, std::size_t, Numbers>> measured_labels(const SharedVolume& self) {
+    return without_lock([&] {
+        std::vector<std::tuple<double, std::size_t, Numbers>> all;
+        for (const measure::LabelExtent& extent : measure::measure_labels(*self.volume))
+            all.emplace_back(extent.label, extent.voxels, Numbers(extent.volume.value, extent.volume.uncertainty));
+        return all;
+    });
+}
+
 }  // namespace
 
 VolumeSource reading_part(const VolumeSource& source) {
@@ -103,6 +134,8 @@ void add_volumes(py::module_& module) {
         .def_static("from_array", from_array)
         .def_property_readonly("array", values)
         .def("suggest_iso_values", suggestions)
+        .def("measure", measured)
+        .def("measure_labels", measured_labels)
         .def_property_readonly("shape",
                                [](const SharedVolume& self) {
                                    const glm::ivec3& dims = self.volume->geometry.dims;
