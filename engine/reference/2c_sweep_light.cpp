@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/volume_piece.h"
+
 namespace edgesplat::reference {
 
 glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
@@ -26,13 +28,17 @@ double light_reach(std::span<const SplatRecord> records, const Field& field, con
     const double length = light.kind == Light::Kind::Directional ? HUGE_VAL : glm::length(to_light);
     const glm::dvec3 u = glm::normalize(to_light);
     const double path = glm::length(geometry.index_to_world_axes * u);
+    const VolumePiece inside = piece_in_volume(geometry.dims, place, u);
     double tau = 0;
     for (const SplatRecord& record : records) {
         const glm::dvec3 v = place - glm::dvec3(field.voxel(record.voxel));
         const double along = glm::dot(v, u);
         const glm::dvec3 p = v - along * u;
         if (glm::dot(p, p) >= footprints.farthest_reach() * footprints.farthest_reach()) continue;
-        const double part = footprints.along_slice(record.edge, p, u, {along, along + length});
+        Slice slice{along, along + length};
+        if (footprints.cuts(record.edge))
+            slice = {std::max(slice.low, along + inside.low), std::min(slice.high, along + inside.high)};
+        const double part = slice.low < slice.high ? footprints.along_slice(record.edge, p, u, slice) : 0;
         tau += record.extinction(scene) * path * part;
     }
     return std::exp(-tau);

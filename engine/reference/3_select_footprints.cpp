@@ -25,27 +25,6 @@ glm::dvec3 View::ray(int x, int y) const {
     return glm::normalize(world_to_index * (frame.forward + sx * frame.right + sy * frame.up));
 }
 
-VolumePiece piece_in_volume(const View& view, const glm::dvec3& u) {
-    VolumePiece piece{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-    for (int axis = 0; axis < 3; ++axis) {
-        if (view.geometry.dims[axis] == 1) continue;  // nothing ends there
-        const double way = std::abs(u[axis]) < 1e-8 ? 1e-8 : u[axis];
-        const double a = (-0.5 - view.eye_index[axis]) / way;
-        const double b = (view.geometry.dims[axis] - 0.5 - view.eye_index[axis]) / way;
-        glm::dvec3 out(0);
-        out[axis] = way > 0 ? 1 : -1;
-        if (std::max(a, b) < piece.high) {
-            piece.high = std::max(a, b);
-            piece.far_normal = out;
-        }
-        if (std::min(a, b) > piece.low) {
-            piece.low = std::min(a, b);
-            piece.normal = -out;
-        }
-    }
-    return piece;
-}
-
 double View::depth(const glm::dvec3& index) const {
     return glm::dot(frame.forward, geometry.to_world(index) - frame.eye);
 }

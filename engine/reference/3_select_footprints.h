@@ -7,6 +7,7 @@
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/footprints.h"
 #include "engine/reference/pixel_filter.h"
+#include "engine/reference/volume_piece.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/clip_planes.h"
 
@@ -32,19 +33,6 @@ struct View {
     /// Where an index-space point in front of the eye is seen, pixels from the picture's upper left corner.
     glm::dvec2 pixel_of(const glm::dvec3& index) const;
 };
-
-/// What of a ray lies in the volume, whose border cuts kernels as a face does: from the eye, voxels; low > high where
-/// it misses it.
-struct VolumePiece {
-    double low = 0, high = 0;
-    glm::dvec3 normal{0};      ///< of the border where the ray enters, out of the volume; index space, unit
-    glm::dvec3 far_normal{0};  ///< where it leaves
-    /// Counted from a point that the eye lies `eye` from, along the ray.
-    VolumePiece seen_from(double eye) const { return {low + eye, high + eye, normal, far_normal}; }
-};
-
-/// Along the unit vector `u`, index space.
-VolumePiece piece_in_volume(const View& view, const glm::dvec3& u);
 
 /// Pixels [x0, x1) x [y0, y1).
 struct PixelBox {

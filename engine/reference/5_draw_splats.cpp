@@ -144,7 +144,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
     seen.sight = face_sight(drawn_edge(edge, settings), p, u);
     const double eye = glm::dot(view.eye_index - seen.center - p, u);
-    const VolumePiece inside = piece_in_volume(view, u).seen_from(eye);
+    const VolumePiece inside = piece_in_volume(view.geometry.dims, view.eye_index, u).seen_from(eye);
     if (plain) {
         // A widened kernel is entered as its voxel's centre would be.
         const FaceSight centre = face_sight(drawn_edge(edge, settings), glm::dvec3(0), u);
@@ -197,7 +197,7 @@ double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec
     Slice piece = slice.value_or(Slice{});
     if (footprints_.cuts(edge)) {
         const double eye = glm::dot(view_.eye_index - glm::dvec3(field_.voxel(records_[splat].voxel)), u);
-        const VolumePiece inside = piece_in_volume(view_, u).seen_from(eye);
+        const VolumePiece inside = piece_in_volume(view_.geometry.dims, view_.eye_index, u).seen_from(eye);
         piece = {std::max(piece.low, inside.low), std::min(piece.high, inside.high)};
     }
     const double reach = footprints_.reach(edge), half = std::sqrt(std::max(reach * reach - glm::dot(p, p), 0.0));

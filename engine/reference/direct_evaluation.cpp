@@ -36,7 +36,7 @@ class RayWalker {
         double end = 0;
         if (!cloud_.clip(eye, u, begin, end)) return sum;
         if (draws_faces(prepared_.settings())) {
-            const VolumePiece inside = piece_in_volume(view_, u);
+            const VolumePiece inside = piece_in_volume(view_.geometry.dims, eye, u);
             begin = std::max(begin, inside.low);
             end = std::min(end, inside.high);
             if (!(begin < end)) return sum;

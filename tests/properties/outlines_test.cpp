@@ -75,7 +75,7 @@ TEST(Outlines, ShowTheShareOfThePixelThatIsCovered) {
     }
     ASSERT_GT(passed, 30);
     std::printf("%d pixels: %.4f in the mean, %.3f at most\n", passed, sum / passed, worst);
-    EXPECT_LT(sum / passed, 0.04);
+    EXPECT_LT(sum / passed, 0.03);
     EXPECT_LT(worst, 0.15);
 }
 

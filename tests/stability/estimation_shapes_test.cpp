@@ -238,7 +238,7 @@ void expect_block(const glm::ivec3& dims) {
     for (int y = 1; y < shot.height; y += 3) {
         for (int x = 1; x < shot.width; x += 3) {
             const glm::dvec3 u = view.ray(x, y);
-            const reference::VolumePiece inside = reference::piece_in_volume(view, u);
+            const reference::VolumePiece inside = reference::piece_in_volume(dims, view.eye_index, u);
             const auto got = static_cast<double>(tau.at(x, y, 0));
             if (!(inside.low < inside.high)) {
                 EXPECT_EQ(got, 0) << x << ", " << y;
