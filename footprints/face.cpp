@@ -15,23 +15,6 @@ constexpr double kStraight = 1e-6;
 constexpr double kLeastSlope2 = 1e-8;
 constexpr double kNowhere = 1e9;  // voxels along a ray: out of every kernel's reach, and with a middle
 
-struct Roots {
-    bool real = false;
-    double low = 0, high = 0;
-};
-
-/// Where phi = -level. No root loses digits to cancellation.
-Roots roots(const Quadratic& phi, double level) {
-    const double c = phi.c + level;
-    const double a = std::abs(phi.a) < kStraight ? std::copysign(kStraight, phi.a) : phi.a;
-    const double disc = phi.b * phi.b - 4 * a * c;
-    if (!(disc >= 0)) return {};
-    const double q = -0.5 * (phi.b + (phi.b < 0 ? -std::sqrt(disc) : std::sqrt(disc)));
-    const double far = q / a;
-    const double near = q != 0 ? c / q : far;
-    return {true, std::min(near, far), std::max(near, far)};
-}
-
 /// A face that bounds the matter, and which way it faces.
 struct End {
     double level = 0;  ///< phi = -level
@@ -57,6 +40,17 @@ double reach2_of(double distance, double depth, double norm) {
 }
 
 }  // namespace
+
+FaceRoots face_roots(const Quadratic& phi, double level) {
+    const double c = phi.c + level;
+    const double a = std::abs(phi.a) < kStraight ? std::copysign(kStraight, phi.a) : phi.a;
+    const double disc = phi.b * phi.b - 4 * a * c;
+    if (!(disc >= 0)) return {};
+    const double q = -0.5 * (phi.b + (phi.b < 0 ? -std::sqrt(disc) : std::sqrt(disc)));
+    const double far = q / a;
+    const double near = q != 0 ? c / q : far;
+    return {true, std::min(near, far), std::max(near, far)};
+}
 
 FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest) {
     FaceCut cut;
@@ -91,13 +85,13 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
       crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
       facing_(cut.crease.facing) {
     const bool wall = cut.thickness < kInfinity;
-    const Roots face = roots(ray.phi, 0);
-    const Roots behind = wall ? roots(ray.phi, cut.thickness) : Roots{};
+    const FaceRoots face = face_roots(ray.phi, 0);
+    const FaceRoots behind = wall ? face_roots(ray.phi, cut.thickness) : FaceRoots{};
     // Along the ray phi has a least value between its zeros, or a largest.
     const bool opens = ray.phi.a >= 0;
-    const Roots everywhere{true, -kNowhere, kNowhere};
-    const Roots outer = opens ? face : (wall ? behind : everywhere);
-    const Roots inner = opens ? behind : face;
+    const FaceRoots everywhere{true, -kNowhere, kNowhere};
+    const FaceRoots outer = opens ? face : (wall ? behind : everywhere);
+    const FaceRoots inner = opens ? behind : face;
     if (!outer.real) return;
     const double distance = cut.crease.distance, p = ray.crease.p;
     const double way = std::abs(ray.crease.u) < kStraight ? std::copysign(kStraight, ray.crease.u) : ray.crease.u;

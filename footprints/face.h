@@ -26,6 +26,16 @@ struct Quadratic {
     double at(double z) const { return c + z * (b + z * a); }
 };
 
+/// Where a quadric is met along a ray: low <= high.
+struct FaceRoots {
+    bool real = false;
+    double low = 0, high = 0;
+};
+
+/// Where phi = -level. No root loses digits to cancellation; where phi is all but linear one lies out of every kernel's
+/// reach.
+FaceRoots face_roots(const Quadratic& phi, double level);
+
 /// What a ray x = p + z u, p its point nearest to the voxel's centre, u a unit vector, sees of a face.
 struct FaceRay {
     double rho2 = 0;    ///< |p|^2

@@ -62,8 +62,7 @@ ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const
         std::make_shared<const edgesplat::Volume>(load_with_progress(source, edgesplat::volume_folders({}), quiet));
     need_samples(*input.volume, "accuracy");
     input.scene = resolve_scene(document, *input.volume);
-    if (!source.threshold && !source.box_filter && !source.crop_low)
-        input.analytic = edgesplat::accuracy::analytic_scene_of(source.path);
+    input.analytic = edgesplat::accuracy::analytic_scene_of(source);
     input.program = "edgesplat " EDGESPLAT_VERSION;
     input.command = command_line;
     return input;

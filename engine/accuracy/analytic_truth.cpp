@@ -7,4 +7,9 @@ std::optional<AnalyticScene> analytic_scene_of(std::string_view path) {
     return builtin_scene(path);
 }
 
+std::optional<AnalyticScene> analytic_scene_of(const VolumeSource& source) {
+    if (source.threshold || source.box_filter || source.crop_low) return {};
+    return analytic_scene_of(source.path);
+}
+
 }  // namespace edgesplat::accuracy

@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include "engine/forecast/effect_rows.h"
+#include "engine/forecast/forecast.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
@@ -51,7 +52,7 @@ std::vector<Effect> view_effects() {
                     .help = "a pixel that an outline passes shows what is on both its sides, by the faces' distance",
                     .call = "effects.smooth_outlines; --smooth-outlines",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        return r.scene.effects.smooth_outlines ? "effects.smooth_outlines is true" : "";
+                        return smooths_outlines(drawn_settings(r), r.scene) ? "effects.smooth_outlines is true" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.scene.effects.smooth_outlines = true; },
                     .base = cut_at_faces,

@@ -334,9 +334,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.band = static_cast<float>(edge_reach(settings));
     p.face_depth = static_cast<float>(face_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
-    // Several rays a pixel show its sides already.
-    plan.variant.outlines =
-        scene.effects.smooth_outlines && samples == 1 && payload == shader::PAYLOAD_COLOR && draws_faces(settings);
+    plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 

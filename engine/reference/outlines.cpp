@@ -26,7 +26,7 @@ struct OutlinedSplat {
     const VoxelEdge& edge;
     const View& view;
     FaceSight sight;
-    FaceCut cut;
+    double thickness;                ///< of a wall; else infinite
     double ahead, tau, depth_along;  ///< the last: mm of depth per voxel along the ray
 
     double depth(double z) const { return (ahead + z) * depth_along; }
@@ -54,24 +54,22 @@ struct OutlinedSplat {
     std::optional<Outline> of_face() const {
         const Quadratic& phi = sight.ray.phi;
         const bool opens = phi.a >= 0;
-        if (!opens && !std::isfinite(cut.thickness)) return {};
+        if (!opens && !std::isfinite(thickness)) return {};
         const double side = opens ? 1 : -1, z = -0.5 * phi.b / not_zero(phi.a);
-        if (!(depth(z) > 0) || !(sight.ray.crease.p + z * sight.ray.crease.u < cut.crease.distance)) return {};
-        return passing(side * (phi.at(z) + (opens ? 0 : cut.thickness)),
+        if (!(depth(z) > 0) || !(sight.ray.crease.p + z * sight.ray.crease.u < edge.crease.D)) return {};
+        return passing(side * (phi.at(z) + (opens ? 0 : thickness)),
                        side * rate_across(sight.slope + z * sight.turn, z), z);
     }
 
     /// The way between face and crease shrinks to nothing.
     std::optional<Outline> of_crease() const {
         const Quadratic& phi = sight.ray.phi;
-        const double a = not_zero(phi.a), discriminant = phi.b * phi.b - 4 * a * phi.c;
-        if (!std::isfinite(cut.crease.distance) || discriminant < 0) return {};
+        const FaceRoots roots = face_roots(phi, 0);
+        if (!std::isfinite(edge.crease.D) || !roots.real) return {};
         const bool leaves = sight.ray.crease.u > 0;  // the matter by the crease's plane
         const double side = leaves ? 1 : -1, u = not_zero(sight.ray.crease.u);
-        const double q = -0.5 * (phi.b + std::copysign(std::sqrt(discriminant), phi.b)), far = q / a;
-        const double near = q != 0 ? phi.c / q : far;
-        const double at_face = (phi.a >= 0) == leaves ? std::min(near, far) : std::max(near, far);
-        const double at_crease = (cut.crease.distance - sight.ray.crease.p) / u, z = 0.5 * (at_face + at_crease);
+        const double at_face = (phi.a >= 0) == leaves ? roots.low : roots.high;
+        const double at_crease = (edge.crease.D - sight.ray.crease.p) / u, z = 0.5 * (at_face + at_crease);
         const double along = phi.b + 2 * at_face * phi.a;
         if (!(depth(z) > 0) || !(along * u < 0)) return {};
         const dvec2 rate =
@@ -85,7 +83,8 @@ struct OutlinedSplat {
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const dvec3& p, const dvec3& u, double ahead,
                                   double tau) {
     const double depth_along = glm::dot(view.frame.forward, view.geometry.index_to_world_axes * u);
-    const OutlinedSplat splat{edge, view, face_sight(edge, p, u), cut_of(edge, kFaceDepth), ahead, tau, depth_along};
+    const OutlinedSplat splat{edge, view,       face_sight(edge, p, u), cut_of(edge, kFaceDepth).thickness, ahead,
+                              tau,  depth_along};
     if (!(splat.sight.ray.rho2 < kKernelRadius * kKernelRadius)) return {};
     std::optional<Outline> outline = splat.of_face();
     keep_outer(outline, splat.of_crease());

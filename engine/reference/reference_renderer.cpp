@@ -105,8 +105,7 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const double base = records.empty() ? 0 : first_sheet(records, f, view, settings_, footprints_);
     std::vector<char> closed(pixels, 0);
     std::vector<glm::dvec4> sheet(pixels);
-    const bool smooth = scene_.effects.smooth_outlines && scene_.effects.samples == 1 && output == Output::Color &&
-                        draws_faces(settings_);
+    const bool smooth = output == Output::Color && smooths_outlines(settings_, scene_);
     std::vector<std::optional<Outline>> outlines(smooth ? pixels : 0);
     for (std::size_t s = 0; s < sorted.sheets(); ++s) {
         if (s % kSheetsPerGroup == 0) {

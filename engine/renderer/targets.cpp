@@ -51,8 +51,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
          "splat order");
     grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * kWord, Place::Device,
          "sort counters");
-    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    grow(device, targets.output, pixels * sizeof(glm::vec4), Place::Host, "output pixels",
+    grow(device, targets.output, picture_bytes(plan_in_use), Place::Host, "output pixels",
          vk::Format::eR32G32B32A32Sfloat);
 
     p.splats = volume_resources.splats.address();
@@ -174,11 +173,11 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
         targets.tiles_seen = {};
         targets.tile_pixels = {};
     }
-    const auto pixels = static_cast<std::size_t>(p.size.x) * static_cast<std::size_t>(p.size.y);
-    grow(device, targets.tile_sheets, pixels * sizeof(glm::vec4), Place::Device, "unfinished sheets",
+    grow(device, targets.tile_sheets, picture_bytes(plan_in_use), Place::Device, "unfinished sheets",
          vk::Format::eR32G32B32A32Sfloat);
     if (plan_in_use.variant.outlines)
-        grow(device, targets.outlines, pixels * kWord, Place::Device, "outlines", vk::Format::eR32Uint);
+        grow(device, targets.outlines, picture_bytes(plan_in_use) / sizeof(glm::vec4) * kWord, Place::Device,
+             "outlines", vk::Format::eR32Uint);
     else
         targets.outlines = {};
     const std::uint32_t slots = passes::prepared_slots(std::uint64_t{p.splat_count} * plan_in_use.sheets_per_splat);

@@ -148,6 +148,10 @@ Settings drawn_as(const Settings& settings, const Scene& scene) {
     return drawn_as(s);
 }
 
+bool smooths_outlines(const Settings& settings, const Scene& scene) {
+    return scene.effects.smooth_outlines && scene.effects.samples == 1 && draws_faces(settings);
+}
+
 void validate(const Settings& settings) {
     // Comparisons are written so that NaN fails them.
     const auto in = [](double v, double low, double high) { return v >= low && v <= high; };

@@ -79,6 +79,9 @@ Settings drawn_as(const Settings& settings);
 /// Likewise for a scene: without iso-values there are no edges.
 Settings drawn_as(const Settings& settings, const Scene& scene);
 
+/// Whether pixels that outlines pass show both sides: with several samples they do so anyway, and only faces know.
+bool smooths_outlines(const Settings& settings, const Scene& scene);
+
 /// Checks every range above. Throws Error naming the field, the value and the range.
 void validate(const Settings& settings);
 

@@ -210,8 +210,7 @@ std::string measure_steps(SharedRenderer& self, const Document& document, const 
         accuracy::ReportInput input;
         input.volume = volume.volume;
         input.scene = resolve_scene(scene, *volume.volume);
-        if (!scene.volume.threshold && !scene.volume.box_filter && !scene.volume.crop_low)
-            input.analytic = accuracy::analytic_scene_of(scene.volume.path);
+        input.analytic = accuracy::analytic_scene_of(scene.volume);
         input.program = "edgesplat " EDGESPLAT_VERSION;
         input.command = "edgesplat.accuracy";
         renderer.set_volume(volume.volume);

@@ -11,7 +11,6 @@ EDGESPLAT_CONSTANT float EDGE_DISTANCE_UNIT = 4.0f;  // D is stored as snorm16 o
 EDGESPLAT_CONSTANT float FACE_DISTANCE_UNIT = 4.0f;  // D2 as unorm10 of D2 / 4: steps of 4e-3 voxel
 EDGESPLAT_CONSTANT uint FACE_NONE = 1023u;           // D2 code: no second edge in reach
 // Faces (docs/method.md, passes 1 and 2).
-EDGESPLAT_CONSTANT float FACE_REACH = 2.4f;     // R and the depth at which kernels are sampled: faces further off cut nothing
 EDGESPLAT_CONSTANT float SURFEL_REACH = 1.25f;  // voxels: how far from a voxel the point of the surface may be that it finds
 EDGESPLAT_CONSTANT int SURFEL_STEPS = 12;       // of Newton's method
 EDGESPLAT_CONSTANT float FACE_SEARCH = 3.0f;    // voxels: how far from a voxel the nearest of these may be

@@ -1,11 +1,13 @@
 """Volumes, surfaces and reports."""
 
+import json
 import math
 import threading
 import time
 
 import numpy as np
 import pytest
+from conftest import write_nrrd
 
 import edgesplat
 from edgesplat import Error, Interrupted, Volume
@@ -23,9 +25,6 @@ def test_a_ball(ball):
 
 
 def test_several_surfaces_are_the_program_s(ball, program, tmp_path):
-    from conftest import write_nrrd
-    import json
-
     path = write_nrrd(tmp_path / "ball.nrrd", ball)
     extents = Volume(path).measure([60, 100])
     assert len(extents.volumes) == 3 and len(extents.surfaces) == 2
