@@ -20,12 +20,12 @@ layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(push_constant) uniform Push { uint group; };
 
-layout(location = 0) in vec3 offset;
+layout(location = 0) flat in vec4 start_plane;
 layout(location = 1) flat in vec3 from_eye;
 layout(location = 2) flat in vec4 color_sigma;
 layout(location = 3) flat in vec4 normal_distance;
 layout(location = 4) flat in vec3 shape;
-layout(location = 5) in vec2 pixels;
+layout(location = 5) flat in vec2 slopes;
 layout(location = 6) flat in vec3 matter;
 layout(location = 7) flat in uvec2 number_material;
 layout(location = 8) flat in vec4 filtered;
@@ -40,6 +40,7 @@ layout(location = 0) out vec4 sheet;
 
 #include "shaders/footprints/face_form.glsl"
 FaceForm face_form;
+vec2 pixels;  // from the voxel's centre to the fragment's; with antialias only
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 SelectedFootprint selected_footprint;
@@ -51,6 +52,10 @@ void main() {
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
                              FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0), crease);
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
+    // Not interpolated: corners of quads are drawn where the device's grid of parts of a pixel has them.
+    vec2 slope = (gl_FragCoord.xy * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    vec3 offset = start_plane.xyz + start_plane.w * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    if (ANTIALIAS == 1u) pixels = (slope - slopes) / params.frame.pixel;
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);

@@ -23,12 +23,12 @@ layout(push_constant) uniform Push { uint group; };
 #include "shaders/common/transfer.glsl"
 #include "shaders/splats/splat_inputs.glsl"
 
-layout(location = 0) out vec3 offset;              // a point of the pixel's ray, relative to the voxel, index space
+layout(location = 0) flat out vec4 start_plane;    // rays_beside()
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
 layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
 layout(location = 4) flat out vec3 shape;  // negative: the splat is not warped; depths of the slice (mm from the voxel)
-layout(location = 5) out vec2 pixels;              // from the voxel's centre to the fragment's; with antialias only
+layout(location = 5) flat out vec2 slopes;         // of the voxel's centre; with antialias only
 layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
 layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
 layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; with antialias only
@@ -70,11 +70,7 @@ void main() {
     vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1 & 1);
     vec2 slope = mix(p.low, p.high, corner);
     from_eye = p.position - params.frame.eye;
-    // A splat at the eye may lie behind the eye plane: its rays are described where every ray passes.
-    offset = p.at_eye
-        ? params.frame.near_depth * (params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y) - from_eye
-        : p.depth * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-    if (!p.at_eye) offset += p.centre;
+    start_plane = rays_beside(p, p.at_eye);
 
     SplatInputs s = splat_inputs(number, splat, e, p, depths);
     color_sigma = s.color_sigma;
@@ -94,7 +90,7 @@ void main() {
     if (CLIP_KEEP + CLIP_REMOVE > 0u) matter = s.matter;
     if (CLIP_KEEP + CLIP_REMOVE > 0u || FACES) number_material = s.number_material;
     if (ANTIALIAS == 1u) {
-        pixels = (p.slope + slope - p.view.xy / p.view.z) / params.frame.pixel;
+        slopes = p.view.xy / p.view.z;
         filtered = s.filtered;
     }
 

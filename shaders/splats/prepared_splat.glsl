@@ -6,8 +6,8 @@
 
 struct PreparedSplat {
     SplatConic conic;
-    vec3 start;      // a point of the ray with slopes (0, 0), relative to the voxel, index space
-    float plane;     // its depth, mm: other rays pass plane * (x ray_x + y ray_y) beside it
+    vec3 start;      // rays_beside()
+    float plane;
     vec2 slopes;     // of the voxel; with antialias only
     SplatInputs inputs;
 };
@@ -25,12 +25,11 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
     s.conic = splat_conic(p);
-    // The ray's point at the voxel's depth, or, where the splat may reach the eye, where every ray passes.
     bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
-    s.plane = at_eye ? params.frame.near_depth : p.view.z;
+    vec4 beside = rays_beside(p, at_eye);
+    s.start = beside.xyz;
+    s.plane = beside.w;
     s.slopes = p.view.xy / p.view.z;
-    s.start = at_eye ? s.plane * params.frame.ray_z - s.inputs.from_eye
-                     : -s.plane * (s.slopes.x * params.frame.ray_x + s.slopes.y * params.frame.ray_y);
     return s;
 }
 

@@ -165,6 +165,14 @@ void project_support(inout Projection p) {
     p.visible = p.visible && all(lessThan(p.low, p.high));
 }
 
+// Points of rays, relative to the voxel, index space: xyz is one of the ray with slopes (0, 0), w its depth, mm; the ray with slopes
+// (x, y) passes w * (x ray_x + y ray_y) beside it. At the voxel's depth or, where the splat may reach the eye, where every ray passes.
+vec4 rays_beside(Projection p, bool at_eye) {
+    vec2 slopes = p.view.xy / p.view.z;
+    return at_eye ? vec4(params.frame.near_depth * params.frame.ray_z - (p.position - params.frame.eye), params.frame.near_depth)
+                  : vec4(-p.view.z * (slopes.x * params.frame.ray_x + slopes.y * params.frame.ray_y), p.view.z);
+}
+
 // Slopes to pixels: x0 y0 x1 y1, half open, clipped.
 ivec4 pixel_box(Projection p) {
     vec2 scale = 0.5 * vec2(params.frame.size) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);

@@ -57,10 +57,11 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
                     worst = std::max(worst, std::abs(got[c] - want[i][c]));
             }
         }
-        // Single splats agree to the float32 mirror's 1e-4 of the footprint's peak; some tens of them add up in a
-        // sheet.
+        // Some tens of float32 splats add up in a sheet. A table is blended by the device, which may do it in steps of
+        // 1/256.
+        const double good_to = GetParam().mode == FootprintMode::Table ? 5e-4 : 5e-5;
         EXPECT_GT(peak, 0.5);
-        EXPECT_LE(worst, 5e-4 * peak) << "peak " << peak;
+        EXPECT_LE(worst, good_to * peak) << "peak " << peak;
         RecordProperty("worst_of_peak_" + std::string(s.name), std::to_string(worst / peak));
     }
 }
@@ -113,9 +114,8 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
                     worst = std::max(worst, std::abs(got[c] - want[i][c]));
             }
         }
-        // As above: some tens of splats of float32, each good to 1e-4 of a footprint's peak.
         EXPECT_GT(peak, 0.5);
-        EXPECT_LE(worst, 5e-4 * peak) << "peak " << peak;
+        EXPECT_LE(worst, 5e-5 * peak) << "peak " << peak;
     }
 }
 

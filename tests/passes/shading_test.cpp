@@ -200,8 +200,7 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
             }
         }
         EXPECT_GT(peak, 0.2);
-        // Tens of float32 splats, each good to 1e-4 of its peak.
-        EXPECT_LE(worst, 5e-4 * peak);
+        EXPECT_LE(worst, 5e-5 * peak);
         std::printf("%-30s %-18s worst of peak %.1e\n", GetParam().name, s.name.c_str(), worst / peak);
     }
 }
