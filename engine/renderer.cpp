@@ -120,6 +120,8 @@ FramePlan RendererState::plan_picture(const Scene& scene, const Camera& camera, 
     FramePlan out =
         plan_frame(*volume, scene, camera, settings, size, payload, volume_resources.splat_count,
                    volume_resources.box_low, volume_resources.box_high, reach, volume_resources.crease_splat_count > 0);
+    // Parts of a picture that several devices draw agree.
+    if (!device.profile().refines && exchange == nullptr) out.refined = out.may_refine = false;
     if (culls) cull_bricks(out, volume_resources.bricks, {volume->geometry, camera, size, out.variant.antialias});
     return out;
 }

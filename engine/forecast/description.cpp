@@ -111,7 +111,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
                 const CollectionPlan collection = planned_collection(with);
                 const SplatCount splats =
                     collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
-                const FrameForecast other = forecast_frame(with, collection, splats, reach);
+                const FrameForecast other = forecast_frame(with, collection, splats, reach, *forecast.profile);
                 row.bytes = static_cast<std::int64_t>(sum_of(other.resources)) -
                             static_cast<std::int64_t>(sum_of(forecast.resources));
                 for (const std::string_view pass : effect.passes)
@@ -196,7 +196,9 @@ FrameDescription describe_frame(const FrameRequest& request) {
     check(request);
     const CollectionPlan collection = planned_collection(request);
     const SplatCount splats = count_splats(*request.volume, collection);
-    return describe(request, forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request))),
+    return describe(request,
+                    forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request)),
+                                   gpu::device_profiles().front()),
                     nullptr);
 }
 

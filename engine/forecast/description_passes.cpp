@@ -10,6 +10,7 @@
 #include "engine/passes/3_select_footprints.h"
 #include "engine/passes/4_mark_pixels.h"
 #include "engine/passes/4_sort_sheets.h"
+#include "engine/passes/4_sort_tiles.h"
 #include "engine/passes/5_draw_tiles.h"
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
@@ -131,6 +132,16 @@ class Passes {
                       {shader::SPEC_CLIP_REMOVE, f.light_frames.front().variant.clip.remove}})});
     }
 
+    std::vector<std::string> sort_sheets_shaders(const passes::DrawVariant& drawn) const {
+        if (passes::sorts_side_by_side(drawn, *profile_))
+            return {variant("4a_count_slots.comp", passes::count_constants(drawn)),
+                    "4b_sum_sheets.comp, 4b_place_sheets.comp",
+                    variant("4c_scatter_slots.comp", passes::scatter_constants(drawn))};
+        return {variant("4a_count_sheets.comp", passes::count_constants(drawn)),
+                variant("4b_scan_sheets.comp", passes::scan_constants(drawn)),
+                variant("4c_scatter_splats.comp", passes::scatter_constants(drawn))};
+    }
+
     void add_draw(const FrameRequest& request, const ForecastDraw& draw) {
         const FramePlan& plan = draw.plan;
         const auto& p = plan.params;
@@ -145,12 +156,9 @@ class Passes {
         add(name, "3_select_footprints", kRates.select_splat * splats,
             {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
-            {variant("4a_count_sheets.comp", passes::count_constants(plan.variant)),
-             variant("4b_scan_sheets.comp", passes::scan_constants(plan.variant)),
-             variant("4c_scatter_splats.comp", passes::scatter_constants(plan.variant))});
+            sort_sheets_shaders(plan.variant));
         if (plan.variant.tiles) {
-            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
-                {"4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp"});
+            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries, {passes::sort_tiles_shaders(*profile_)});
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "4_mark_pixels", kRates.draw_entry * entries,

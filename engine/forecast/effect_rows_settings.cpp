@@ -101,7 +101,7 @@ std::vector<Effect> settings_effects() {
                     .passes = {"5_refine_pixels"},
                     .resources = {"lists of pixels", "closed pixels, seen", "finest splats of tiles"},
                     .resized = {"tile order", "tile entries"},
-                    .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}, {shader::SPEC_GROUP, "SPEC_GROUP", 256}},
+                    .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}},
                     .frame_fields = {"tile_finest"}});
     rows.push_back(
         {.name = "buried voxels",

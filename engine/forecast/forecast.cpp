@@ -119,8 +119,9 @@ bool keeps_buried(const FrameRequest& request) {
 }
 
 FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
-                             double reach) {
+                             double reach, const gpu::DeviceProfile& profile) {
     FrameForecast out;
+    out.profile = &profile;
     out.settings = drawn_settings(request);
     out.collection = collection;
     out.splats = splats;
@@ -129,6 +130,8 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
         out.draws.push_back(
             {names[payload], plan_frame(*request.volume, request.scene, request.camera, out.settings, request.size,
                                         payload, splats.splats, splats.box_low, splats.box_high, reach)});
+        FramePlan& plan = out.draws.back().plan;
+        plan.refined = plan.may_refine = plan.refined && profile.refines;
     }
     if (!shadow_lights(request.scene).empty()) {
         const ShadowPlan shadows = plan_shadows(request.scene, out.settings);

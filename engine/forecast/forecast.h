@@ -37,6 +37,7 @@ struct PlannedResource {
     std::string contents;                  ///< "(splats) uint"
     std::string written, read;             ///< stems of passes, or "host"
     bool host = false;                     ///< in memory that the host reads or writes
+    bool shared = false;                   ///< of gpu::Buffer::Place::Shared
     bool grows = false;                    ///< a larger one of an earlier frame is kept
     Held held = Held::Always;
 };
@@ -51,6 +52,7 @@ struct FrameForecast {
     Settings settings;  ///< as drawn: drawn_as()
     CollectionPlan collection;
     SplatCount splats;
+    const gpu::DeviceProfile* profile = nullptr;  ///< of the device that it is for
     std::vector<ForecastDraw> draws;
     std::vector<FramePlan> light_frames;     ///< pictures that the lights with shadows take
     bool occluded = false;                   ///< ambient light is
@@ -75,6 +77,6 @@ CollectionPlan planned_collection(const FrameRequest& request);
 /// `collection` is planned_collection(request), `reach` kernel_reach(drawn_settings(request)). Throws Error as
 /// plan_frame does.
 FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
-                             double reach);
+                             double reach, const gpu::DeviceProfile& profile);
 
 }  // namespace edgesplat

@@ -42,6 +42,12 @@ PlannedResource on_host(PlannedResource resource) {
     return resource;
 }
 
+/// Likewise, unless what the device sees of it lies in memory of its own.
+PlannedResource shared(PlannedResource resource) {
+    resource.shared = true;
+    return on_host(std::move(resource));
+}
+
 PlannedResource growing(PlannedResource resource) {
     resource.grows = true;
     return resource;
@@ -183,37 +189,39 @@ void add_layers(const std::vector<FramePlan>& f, std::vector<PlannedResource>& o
 }
 
 /// Sheets that are summed tile by tile: lists of what touches each tile.
-void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedResource>& out) {
+void add_tiles(const FramePlan& plan, std::uint64_t splats, const gpu::DeviceProfile& profile,
+               std::vector<PlannedResource>& out) {
     constexpr std::uint64_t word = sizeof(std::uint32_t);
     const std::uint64_t sheets = plan.params.sheet_count;
     const auto tiles =
         static_cast<std::uint64_t>(plan.params.tiles.x) * static_cast<std::uint64_t>(plan.params.tiles.y);
     out.push_back(growing(buffer("tiles of splats", splats * 2 * word, "(splats) uvec2", "3", "4")));
-    out.push_back(on_host(growing(buffer("pairs of sheets", sheets * word, "(sheets) uint", "3", "host"))));
-    out.push_back(on_host(growing(buffer("sheet starts", (sheets + 1) * word, "(sheets + 1) uint", "4", "4, host"))));
-    out.push_back(on_host(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
-    out.push_back(growing(texels(vk::Format::eR32Uint,
-                                 buffer("tile counters", tile_counter_bytes(plan.params.tiles, plan.params.tile_blocks),
-                                        "(tiles, blocks) uint", "4", "4"))));
-    out.push_back(on_host(growing(
+    out.push_back(shared(growing(buffer("pairs of sheets", sheets * word, "(sheets) uint", "3", "host"))));
+    out.push_back(shared(growing(buffer("sheet starts", (sheets + 1) * word, "(sheets + 1) uint", "4", "4, host"))));
+    out.push_back(shared(growing(buffer("chunks of sheets", sheets * 2 * word, "(sheets) uvec2", "host", "4"))));
+    out.push_back(growing(
+        texels(vk::Format::eR32Uint,
+               buffer("tile counters", tile_counter_bytes(plan.params.tiles, tile_blocks(plan.params.tiles, profile)),
+                      "(tiles, blocks) uint", "4", "4"))));
+    out.push_back(shared(growing(
         texels(vk::Format::eR32G32Uint, buffer("tile ranges", tiles * 2 * word, "(tiles) uvec2", "4", "5, host")))));
     out.push_back(
         on_host(growing(texels(vk::Format::eR32Uint, buffer("tile order", tile_order_items(plan) * word,
                                                             "(tiles) uint, longest list first", "host", "5")))));
     out.push_back(
-        growing(texels(vk::Format::eR32G32Uint, buffer("tile entries", tile_entry_pairs(plan) * 2 * word,
+        growing(texels(vk::Format::eR32G32Uint, buffer("tile entries", tile_entry_pairs(plan, profile) * 2 * word,
                                                        "(pairs at once) place in the order, sheet", "4", "5"))));
-    out.push_back(
-        growing(texels(vk::Format::eR32Uint,
-                       buffer("marks of tile entries", tile_mark_words(plan, chunk_pairs(plan.params.tiles)) * word,
-                              "(pairs at once) blocks of the tile's pixels", "4", "5"))));
+    out.push_back(growing(
+        texels(vk::Format::eR32Uint,
+               buffer("marks of tile entries", tile_mark_words(plan, chunk_pairs(plan.params.tiles, profile)) * word,
+                      "(pairs at once) blocks of the tile's pixels", "4", "5"))));
     const std::uint32_t slots = passes::prepared_slots(splats * plan.sheets_per_splat);
     out.push_back(growing(image("prepared splats", passes::prepared_shape(plan.variant, slots),
                                 "(entries at once) place, kernel, colour", "4", "5")));
     out.push_back(growing(
         texels(vk::Format::eR32Uint, buffer("closed pixels of tiles", tiles * word, "(tiles) uint", "5", "4"))));
-    out.push_back(on_host(growing(texels(vk::Format::eR32Uint, buffer("pixels to draw of tiles", tiles * word,
-                                                                      "(tiles) uint", "host, 5", "4, 5, host")))));
+    out.push_back(shared(growing(texels(vk::Format::eR32Uint, buffer("pixels to draw of tiles", tiles * word,
+                                                                     "(tiles) uint", "host, 5", "4, 5, host")))));
     if (plan.refined) {
         out.push_back(
             growing(texels(vk::Format::eR32Uint, buffer("lists of pixels", tiles * shader::TILE * shader::TILE * word,
@@ -231,7 +239,8 @@ void add_tiles(const FramePlan& plan, std::uint64_t splats, std::vector<PlannedR
 }
 
 /// What pictures are drawn with: the one that is asked for, or a light's.
-void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held held, std::vector<PlannedResource>& all) {
+void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, const gpu::DeviceProfile& profile, Held held,
+                 std::vector<PlannedResource>& all) {
     std::vector<PlannedResource> out;
     const FramePlan& order = largest(f, order_bytes);
     const FramePlan& most_sheets = largest(f, [](const FramePlan& p) { return std::uint64_t{p.params.sheet_count}; });
@@ -239,21 +248,22 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, Held hel
     const auto pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
     constexpr std::uint64_t word = sizeof(std::uint32_t);
     if (f.front().variant.tiles)
-        add_tiles(most_sheets, splats, out);
+        add_tiles(most_sheets, splats, profile, out);
     else
         add_layers(f, out);
-    out.push_back(on_host(growing(buffer("batches of splats", (splats / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2),
-                                         "(batches) first, count", "host", "3, 4"))));
+    out.push_back(shared(growing(buffer("batches of splats", (splats / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2),
+                                        "(batches) first, count", "host", "3, 4"))));
     out.push_back(growing(buffer("sheets of splats", splats * word, "(slots) uint", "3", "4, 5")));
     out.push_back(growing(buffer("splat order", order_bytes(order), "(splats x sheets each) uint", "4", "5")));
     out.push_back(
         growing(buffer("sort counters", std::uint64_t{most_sheets.params.sheet_count} * shader::SORT_BLOCKS * word,
                        "(sheets, blocks) uint", "4", "4, 5")));
     out.push_back(
-        on_host(growing(texels(vk::Format::eR32G32B32A32Sfloat,
-                               buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host")))));
+        shared(growing(texels(vk::Format::eR32G32B32A32Sfloat,
+                              buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host")))));
     for (PlannedResource& resource : out) {
         resource.held = held;
+        if (resource.shared && profile.own_memory) resource.host = false;
         all.push_back(std::move(resource));
     }
 }
@@ -268,8 +278,9 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<FramePlan> draws;
     for (const ForecastDraw& draw : forecast.draws)
         draws.push_back(draw.plan);
-    add_targets(draws, forecast.splats.splats, Held::Drawing, out);
-    if (!forecast.light_frames.empty()) add_targets(forecast.light_frames, forecast.splats.splats, Held::Sweeping, out);
+    add_targets(draws, forecast.splats.splats, *forecast.profile, Held::Drawing, out);
+    if (!forecast.light_frames.empty())
+        add_targets(forecast.light_frames, forecast.splats.splats, *forecast.profile, Held::Sweeping, out);
     add_placeholders(out);
     // Uploads go through one buffer, one after another.
     std::uint64_t staging = 0;

@@ -69,7 +69,8 @@ class Fit {
             const double reach = kernel_reach(drawn_settings(request));
             const CollectionPlan plan = planned_collection(request);
             const auto fits = [&](const SplatCount& splats) {
-                return memory_need(*device_, forecast_frame(request, plan, splats, reach), budget_).fits();
+                return memory_need(*device_, forecast_frame(request, plan, splats, reach, device_->profile()), budget_)
+                    .fits();
             };
             if (fits(most_splats(request.volume->geometry))) return true;
             return fits(count_splats(*request.volume, plan));

@@ -27,7 +27,7 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
         commands.fill(targets.counters, 0);
         passes::clear_accumulated(commands, targets.accumulated);
         span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
-        span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
+        span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
         for (std::uint32_t group = 0; group < p.group_count; ++group) {
             span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
             span("6_composite_sheet", [&] {
@@ -39,7 +39,10 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
             commands.span("2d_shadow_splats",
                           [&] { passes::shadow_splats(commands, p.splat_count, plan.variant.clip, *shadow_channel); });
         else
-            span("7_resolve", [&] { passes::resolve(commands, plan.variant, p.size, plan.gradient); });
+            span("7_resolve", [&] {
+                passes::resolve(commands, plan.variant, p.size, plan.gradient);
+                commands.to_host(targets.output);
+            });
     });
     return commands.span_times();
 }
@@ -48,6 +51,7 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
                   const Division& division) {
     const auto& p = plan.params;
     commands.run([&] {
+        commands.to_device(targets.batches);
         for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
             commands.fill(*zeroed, 0);
         if (!division.goes_on)
@@ -57,9 +61,12 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
         if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
         commands.barrier();
         commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
-        commands.span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.sort_segments); });
+        commands.span("4_sort_sheets",
+                      [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
+        for (const gpu::Buffer* seen : {&targets.sheet_pairs, &targets.sheet_starts})
+            commands.to_host(*seen);
     });
-    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), p.sheet_base));
+    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), p.sheet_base), commands.profile());
 }
 
 TilePasses::TilePasses(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
@@ -88,7 +95,7 @@ void TilePasses::sort(std::uint32_t chunk) {
         commands_.barrier();
     }
     commands_.span("4_sort_tiles", [&] {
-        passes::sort_tiles(commands_, targets_.tile_counters, blocks, chunk, static_cast<std::uint32_t>(steps));
+        passes::sort_tiles(commands_, targets_.tile_counters, plan_.params, chunk, static_cast<std::uint32_t>(steps));
     });
 }
 
@@ -116,7 +123,7 @@ void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t til
 }
 
 void TilePasses::see_tiles() {
-    if (!how_.refined) return;
+    if (!how_.refined || !how_.profile->rounds) return;
     commands_.copy(targets_.tile_closed, targets_.tiles_seen, {{0, 0, tile_count(plan_) * sizeof(std::uint32_t)}});
     commands_.barrier();
 }
@@ -134,6 +141,7 @@ void TilePasses::finish(std::uint32_t step) {
                 commands_.barrier();
             }
             passes::resolve(commands_, plan_.variant, p.size, plan_.gradient);
+            commands_.to_host(targets_.output);
         });
     }
 }

@@ -13,8 +13,11 @@ struct Steps {
     bool finish = true;  ///< what follows a step's pixels runs, too
 };
 
-std::vector<PassTime> at_once(gpu::Commands& commands, const FramePlan& plan, TilePasses& frame, const Steps& steps) {
+std::vector<PassTime> at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                              TilePasses& frame, const Steps& steps) {
     commands.run([&] {
+        for (const gpu::Buffer* written : {&targets.chunks, &targets.tile_todo})
+            commands.to_device(*written);
         for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
             const std::uint64_t tiles = tile_count(plan);
             for (std::uint32_t chunk = 0; chunk < frame.chunk_count(); ++chunk) {
@@ -25,6 +28,7 @@ std::vector<PassTime> at_once(gpu::Commands& commands, const FramePlan& plan, Ti
             }
             if (steps.finish) frame.finish(step);
         }
+        if (!steps.finish) commands.to_host(targets.output);
     });
     return commands.span_times();
 }
@@ -97,7 +101,7 @@ std::vector<PassTime> draw(gpu::Commands& commands, const FramePlan& plan, const
     if (steps.first == first_step(plan)) fill_todo(plan, targets);
     TilePasses frame(commands, plan, targets, chunks, how);
     return how.profile->rounds ? in_rounds(commands, plan, targets, frame, steps, between)
-                               : at_once(commands, plan, frame, steps);
+                               : at_once(commands, plan, targets, frame, steps);
 }
 
 }  // namespace

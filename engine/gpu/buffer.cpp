@@ -10,6 +10,9 @@ namespace edgesplat::gpu {
 
 namespace {
 
+// Beside a buffer of the device, in memory of the host: not among what the device has allocated.
+constexpr const char* kOfHost = "copy for the host";
+
 vk::BufferCreateInfo create_info(std::size_t bytes) {
     using Usage = vk::BufferUsageFlagBits;
     return {{},
@@ -39,6 +42,10 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
       name_(name),
       bytes_(std::max<std::size_t>(bytes, 16)) {
     using Memory = vk::MemoryPropertyFlagBits;
+    if (place == Place::Shared) {
+        place = device.profile().own_memory ? Place::Device : Place::Host;
+        if (place == Place::Device) of_host_ = std::make_unique<Buffer>(device, bytes, Place::Host, kOfHost);
+    }
     const auto requirements = buffer_.getMemoryRequirements();
     memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
                                                      Memory::eHostVisible | Memory::eHostCoherent, true, name)
@@ -51,14 +58,15 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
         if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
     }
-    allocated_ = requirements.size;
-    device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
+    allocated_ = name == kOfHost ? 0 : requirements.size;
+    if (allocated_ > 0) device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
 }
 
 Buffer& Buffer::operator=(Buffer&& other) noexcept {
     if (this == &other) return *this;
     release();
     device_ = std::exchange(other.device_, nullptr);
+    of_host_ = std::move(other.of_host_);
     memory_ = std::move(other.memory_);
     buffer_ = std::move(other.buffer_);
     texels_ = std::move(other.texels_);
@@ -72,7 +80,8 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
-    device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
+    if (allocated_ > 0) device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
+    of_host_ = nullptr;
     texels_ = nullptr;
     buffer_ = nullptr;
     memory_ = nullptr;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <vulkan/vulkan_raii.hpp>
 
@@ -12,7 +13,9 @@ namespace edgesplat::gpu {
 
 class Buffer {
   public:
-    enum class Place { Device, Host };  ///< Host: mapped, coherent, for what the CPU writes or reads
+    /// Host: mapped, coherent, for what the CPU writes or reads. Shared: likewise, but what the device sees may lie in
+    /// memory of its own (DeviceProfile::own_memory); then Commands::to_device and to_host bring it over.
+    enum class Place { Device, Host, Shared };
 
     Buffer() = default;
     /// `bytes` > 0 (0 becomes 16, so that an empty list still has an address). With `texels` it can be bound as texels
@@ -37,15 +40,18 @@ class Buffer {
     vk::BufferView texels() const { return *texels_; }
     explicit operator bool() const { return device_ != nullptr; }
 
-    /// The mapped memory (Place::Host only) as `count` elements.
+    /// What the host sees of it where that lies apart, else null.
+    const Buffer* of_host() const { return of_host_.get(); }
+    /// The mapped memory (not of Place::Device) as `count` elements.
     template <typename T>
     std::span<T> mapped(std::size_t count) const {
-        return {static_cast<T*>(map_), count};
+        return {static_cast<T*>(of_host_ ? of_host_->map_ : map_), count};
     }
 
   private:
     void release() noexcept;
     const Device* device_ = nullptr;
+    std::unique_ptr<Buffer> of_host_;
     vk::raii::DeviceMemory memory_ = nullptr;
     vk::raii::Buffer buffer_ = nullptr;
     vk::raii::BufferView texels_ = nullptr;

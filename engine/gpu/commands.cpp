@@ -130,6 +130,18 @@ void Commands::clear(const GpuImage& image) {
                             vk::ImageSubresourceRange(vk::ImageAspectFlagBits::eColor, 0, 1, 0, 1));
 }
 
+void Commands::to_device(const Buffer& buffer) {
+    if (buffer.of_host() == nullptr) return;
+    copy(*buffer.of_host(), buffer, {{0, 0, buffer.bytes()}});
+    barrier();
+}
+
+void Commands::to_host(const Buffer& buffer) {
+    if (buffer.of_host() == nullptr) return;
+    copy(buffer, *buffer.of_host(), {{0, 0, buffer.bytes()}});
+    barrier();
+}
+
 void Commands::begin_rendering(const GpuImage& color, const GpuImage* depth, std::uint32_t layers) {
     const auto attachment = [](const GpuImage* image) {
         return vk::RenderingAttachmentInfo(image == nullptr ? vk::ImageView() : image->view(),

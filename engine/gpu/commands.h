@@ -40,6 +40,7 @@ class Commands {
     /// longer than the time-out; the next run waits as long for it again.
     void run(const std::function<void()>& body);
     void set_timeout(std::uint64_t nanoseconds) { timeout_ = nanoseconds; }
+    const DeviceProfile& profile() const { return device_->profile(); }
     /// How many lists the device was given.
     std::uint64_t submissions() const { return submissions_; }
 
@@ -59,6 +60,9 @@ class Commands {
     void copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part);
     void copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part);
     void clear(const GpuImage& image);
+    /// What the host wrote into a buffer of Place::Shared, and what the device did; nothing where both see the same.
+    void to_device(const Buffer& buffer);
+    void to_host(const Buffer& buffer);
 
     /// Into all of `color` and `layers` of it, over what is there.
     void begin_rendering(const GpuImage& color, const GpuImage* depth = nullptr, std::uint32_t layers = 1);

@@ -14,11 +14,19 @@ constexpr std::array kProfiles{
     DeviceProfile{.name = "lavapipe",
                   .rounds = true,
                   .list_group = 16,
+                  .tile_group = 256,
                   .list_parts = 1,
                   .front_first = true,
+                  .side_by_side = false,
+                  .tile_blocks = 64,
                   .late_timestamps = true},
     DeviceProfile{.name = "generic", .list_group = 32},
-    DeviceProfile{.name = "discrete", .list_group = 64},
+    DeviceProfile{.name = "discrete",
+                  .refines = false,
+                  .chunk_pairs = 1048576,
+                  .tile_pairs = 4096,
+                  .list_parts = 32,
+                  .own_memory = true},
 };
 
 }  // namespace

@@ -14,7 +14,23 @@ gpu::Specialization scatter_constants(const DrawVariant& variant) {
     return {{shader::SPEC_SLICED, variant.sliced ? 1U : 0U}, {shader::SPEC_CULLED, variant.culled ? 1U : 0U}};
 }
 
-void sort_sheets(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t segments) {
+bool sorts_side_by_side(const DrawVariant& variant, const gpu::DeviceProfile& profile) {
+    return profile.side_by_side && variant.tiles;
+}
+
+void sort_sheets(gpu::Commands& commands, const DrawVariant& variant, const shader::FrameParams& params,
+                 std::uint32_t segments) {
+    if (sorts_side_by_side(variant, commands.profile())) {
+        commands.dispatch("4a_count_slots.comp", count_constants(variant), 0, gpu::groups_for(params.slot_count, 64));
+        commands.barrier();
+        commands.dispatch("4b_sum_sheets.comp", {}, 0, gpu::groups_for(params.sheet_count, 1));
+        commands.barrier();
+        commands.dispatch("4b_place_sheets.comp", {}, 0, {1});
+        commands.barrier();
+        commands.dispatch("4c_scatter_slots.comp", scatter_constants(variant), 0, {shader::SORT_BLOCKS});
+        commands.barrier();
+        return;
+    }
     const auto over_blocks = [&](const char* shader, const gpu::Specialization& constants) {
         for (std::uint32_t segment = 0; segment < segments; ++segment) {
             commands.dispatch(shader, constants, segment, {shader::SORT_BLOCKS / 64});

@@ -9,8 +9,11 @@ namespace edgesplat::passes {
 
 /// FrameParams: reads part `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`,
 /// which are `counters`; writes `tile_ranges` and `tile_entries`. Tiles that are closed get nothing. `steps`:
-/// dispatches of PAIR_STEPS pairs that the fullest of the `blocks` columns takes.
-void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, std::uint32_t blocks, std::uint32_t chunk,
-                std::uint32_t steps);
+/// dispatches of PAIR_STEPS pairs that the fullest of the columns takes, where pairs are not sorted side by side.
+void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shader::FrameParams& params,
+                std::uint32_t chunk, std::uint32_t steps);
+
+/// The shaders that it runs.
+std::string sort_tiles_shaders(const gpu::DeviceProfile& profile);
 
 }  // namespace edgesplat::passes

@@ -3,7 +3,7 @@
 namespace edgesplat::passes {
 
 std::uint32_t tile_group(TileDraw how) {
-    return how.refined ? how.profile->list_group : shader::TILE * shader::TILE;
+    return how.refined ? how.profile->list_group : how.profile->tile_group;
 }
 
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {

@@ -180,12 +180,9 @@ std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks) 
     return (count + shader::COLUMN_STATE) * blocks * sizeof(std::uint32_t);
 }
 
-std::uint32_t tile_blocks(const glm::ivec2& tiles) {
-    constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
+std::uint32_t tile_blocks(const glm::ivec2& tiles, const gpu::DeviceProfile& profile) {
     const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    // Of very large pictures, whose lists begin in very many places, fewer pairs at once.
-    const std::uint64_t most = count > kManyTiles ? 8 : 64;
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, most));
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, profile.tile_blocks));
 }
 
 std::uint32_t light_code(const Scene& scene) {
@@ -369,7 +366,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
     p.dims = geometry.dims;
     p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
-    p.tile_blocks = tile_blocks(p.tiles);
     draw_first(plan, static_cast<std::uint32_t>(splat_count));
     plan.reach = farthest_reach;
     p.size = size;

@@ -89,8 +89,8 @@ inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::
 /// The histogram, and how far each of its columns is gone through.
 std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks);
 
-/// Columns of that histogram, 1 to 64, as far as can be scanned.
-std::uint32_t tile_blocks(const glm::ivec2& tiles);
+/// Columns of that histogram as a device takes them, as far as can be scanned.
+std::uint32_t tile_blocks(const glm::ivec2& tiles, const gpu::DeviceProfile& profile);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

@@ -110,7 +110,8 @@ std::optional<std::uint64_t> RendererState::most_splats_in_blocks(const FrameReq
     wanted.blocks = true;
     const auto fits = [&](std::uint64_t splats) {
         const SplatCount count{SplatCount::From::Voxels, splats, glm::ivec3(0), request.volume->geometry.dims - 1};
-        return memory_need(device, forecast_frame(request, wanted, count, reach), memory_budget).fits();
+        return memory_need(device, forecast_frame(request, wanted, count, reach, device.profile()), memory_budget)
+            .fits();
     };
     if (!fits(0)) return std::nullopt;
     std::uint64_t fitting = 0, beyond = std::uint64_t{1} << 29U;

@@ -41,7 +41,7 @@ std::optional<MemoryNeed> RendererState::beyond_memory(const FrameRequest& reque
     const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
     const SplatCount splats = known.value_or(most_splats(volume->geometry));
-    FrameForecast forecast = forecast_frame(request, wanted, splats, reach);
+    FrameForecast forecast = forecast_frame(request, wanted, splats, reach, device.profile());
     std::vector<std::pair<std::string, std::uint64_t>> asked;
     for (const PlannedResource& resource : forecast.resources)
         asked.emplace_back(resource.name, resource.bytes);
@@ -49,7 +49,7 @@ std::optional<MemoryNeed> RendererState::beyond_memory(const FrameRequest& reque
     MemoryNeed need = memory_need(device, forecast, memory_budget);
     // The bound by the number of voxels is too high for most volumes; counting takes longer.
     if (!need.fits() && !known) {
-        forecast = forecast_frame(request, wanted, count_splats(*volume, wanted), reach);
+        forecast = forecast_frame(request, wanted, count_splats(*volume, wanted), reach, device.profile());
         need = memory_need(device, forecast, memory_budget);
     }
     checked = std::move(asked);
@@ -62,7 +62,7 @@ FrameForecast Renderer::forecast(const FrameRequest& request) {
     const CollectionPlan wanted = planned_collection(request);
     const auto known = request.volume == state_->volume ? state_->collected_splats(wanted) : std::nullopt;
     return forecast_frame(request, wanted, known ? *known : count_splats(*request.volume, wanted),
-                          kernel_reach(drawn_settings(request)));
+                          kernel_reach(drawn_settings(request)), state_->device.profile());
 }
 
 std::vector<FittingChange> Renderer::what_fits(const FrameRequest& request) const {

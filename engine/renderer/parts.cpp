@@ -96,7 +96,10 @@ void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& re
         const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
         std::ranges::copy(whole, pixels.begin());
         commands.run([&] {
+            commands.to_device(targets.output);
             commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan), step); });
+            for (const gpu::Buffer* seen : {&targets.output, &targets.tile_todo})
+                commands.to_host(*seen);
         });
         add_times(draw_times, commands.span_times());
         std::ranges::copy(pixels, whole.begin());
@@ -112,6 +115,7 @@ void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& re
     }
     write(commands, targets.tile_closed, std::vector<std::uint32_t>(tiles));
     std::ranges::fill(targets.output.mapped<glm::vec4>(whole.size()), glm::vec4(0));
+    commands.run([&] { commands.to_device(targets.output); });
 }
 
 void RendererState::draw_part(passes::TileDraw how) {
@@ -139,7 +143,9 @@ void RendererState::draw_part(passes::TileDraw how) {
     if (exchange->part().index > 0) return;
     std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
     commands.run([&] {
+        commands.to_device(targets.output);
         commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+        commands.to_host(targets.output);
     });
     add_times(draw_times, commands.span_times());
 }
@@ -174,6 +180,7 @@ std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::
             if (behind.any()) {
                 const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));
                 write(commands, targets.tile_closed, behind.closed_pixels(size, plan.params.tiles, todo));
+                commands.run([&] { commands.to_device(targets.output); });
                 add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
                 behind.take(in_front, pixels, part);
             }

@@ -43,7 +43,7 @@ void RendererState::need_layers(const Scene& scene, const Settings& settings) co
 void RendererState::provide_targets(FramePlan& plan_in_use) {
     auto& p = plan_in_use.params;
     provide_footprints(plan_in_use);
-    grow(device, targets.batches, (p.splat_count / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2), Place::Host,
+    grow(device, targets.batches, (p.splat_count / shader::SPLAT_BATCH + 1) * sizeof(glm::uvec2), Place::Shared,
          "batches of splats");
     std::ranges::copy(plan_in_use.batches, targets.batches.mapped<glm::uvec2>(plan_in_use.batches.size()).begin());
     grow(device, targets.sheet_of, p.splat_count * kWord, Place::Device, "sheets of splats");
@@ -51,7 +51,7 @@ void RendererState::provide_targets(FramePlan& plan_in_use) {
          "splat order");
     grow(device, targets.counters, std::size_t{p.sheet_count} * shader::SORT_BLOCKS * kWord, Place::Device,
          "sort counters");
-    grow(device, targets.output, picture_bytes(plan_in_use), Place::Host, "output pixels",
+    grow(device, targets.output, picture_bytes(plan_in_use), Place::Shared, "output pixels",
          vk::Format::eR32G32B32A32Sfloat);
 
     p.splats = volume_resources.splats.address();
@@ -148,21 +148,22 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     targets.draws = {};
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     grow(device, targets.tile_rects, p.splat_count * 2 * kWord, Place::Device, "tiles of splats");
-    grow(device, targets.sheet_pairs, p.sheet_count * kWord, Place::Host, "pairs of sheets");
-    grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Host, "sheet starts");
-    grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Host, "chunks of sheets");
+    grow(device, targets.sheet_pairs, p.sheet_count * kWord, Place::Shared, "pairs of sheets");
+    grow(device, targets.sheet_starts, (std::size_t{p.sheet_count} + 1) * kWord, Place::Shared, "sheet starts");
+    grow(device, targets.chunks, p.sheet_count * 2 * kWord, Place::Shared, "chunks of sheets");
+    p.tile_blocks = tile_blocks(p.tiles, device.profile());
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
          vk::Format::eR32Uint);
     // The host sees which tiles a round is for.
-    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Host, "tile ranges", vk::Format::eR32G32Uint);
+    grow(device, targets.tile_ranges, tiles * 2 * kWord, Place::Shared, "tile ranges", vk::Format::eR32G32Uint);
     grow(device, targets.tile_order, tile_order_items(plan_in_use) * kWord, Place::Host, "tile order",
          vk::Format::eR32Uint);
-    grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use) * 2 * kWord, Place::Device, "tile entries",
-         vk::Format::eR32G32Uint);
-    grow(device, targets.tile_marks, tile_mark_words(plan_in_use, chunk_pairs(p.tiles)) * kWord, Place::Device,
-         "marks of tile entries", vk::Format::eR32Uint);
+    grow(device, targets.tile_entries, tile_entry_pairs(plan_in_use, device.profile()) * 2 * kWord, Place::Device,
+         "tile entries", vk::Format::eR32G32Uint);
+    grow(device, targets.tile_marks, tile_mark_words(plan_in_use, chunk_pairs(p.tiles, device.profile())) * kWord,
+         Place::Device, "marks of tile entries", vk::Format::eR32Uint);
     grow(device, targets.tile_closed, tiles * kWord, Place::Device, "closed pixels of tiles", vk::Format::eR32Uint);
-    grow(device, targets.tile_todo, tiles * kWord, Place::Host, "pixels to draw of tiles", vk::Format::eR32Uint);
+    grow(device, targets.tile_todo, tiles * kWord, Place::Shared, "pixels to draw of tiles", vk::Format::eR32Uint);
     if (plan_in_use.refined) {
         grow(device, targets.tile_pixels, tiles * shader::TILE * shader::TILE * kWord, Place::Device, "lists of pixels",
              vk::Format::eR32Uint);
@@ -206,7 +207,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
          "marks of tile entries", vk::Format::eR32Uint);
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
-    if (blocks > p.tile_blocks) {
+    if (!device.profile().side_by_side && blocks > p.tile_blocks) {
         if (blocks * tiles > kMostTileCounters) {
             fail(
                 "a sheet of this view has {} pairs of splat and tile, more than can be sorted: choose a smaller "

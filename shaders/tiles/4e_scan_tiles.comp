@@ -10,9 +10,8 @@ layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_TILE_RANGES, rg32ui) uniform writeonly uimageBuffer ranges;
 #include "shaders/common/workgroup_sums.glsl"
+#include "shaders/tiles/begin_of_list.glsl"
 
-// The next list may begin there or after.
-uint begin_of_list(uint at) { return (at + MARKED_AT_ONCE - 1u) / MARKED_AT_ONCE * MARKED_AT_ONCE; }
 
 void main() {
     uint me = gl_LocalInvocationIndex, blocks = params.frame.tile_blocks;

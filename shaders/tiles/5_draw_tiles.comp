@@ -88,7 +88,7 @@ void main() {
     uint draw_round = what & 0xfffffu;
     uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (ROUNDS == 1u) item = imageLoad(order, int(tile_count() + item)).x;
-    uint groups = REFINED == 1u ? what >> 20 & 0xfu : 1u;
+    uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
     uvec2 range = imageLoad(ranges, int(tile)).xy;

@@ -9,6 +9,7 @@ layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
 layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
 layout(push_constant) uniform Push { uint chunk; };
+#include "shaders/tiles/tiles_of_splat.glsl"
 
 struct Block {
     uint first, last;  // entries of `order`
@@ -16,21 +17,10 @@ struct Block {
 };
 
 Block block_of_invocation() {
-    uvec2 all = PairsRef(params.frame.chunks).at[chunk];
-    uint per_block = (all.y - all.x + params.frame.tile_blocks - 1u) / params.frame.tile_blocks;
     uint column = gl_GlobalInvocationID.x;
-    uint first = min(all.x + column * per_block, all.y);
-    return Block(first, column < params.frame.tile_blocks ? min(first + per_block, all.y) : first, column);
+    uvec2 entries = entries_of_block(column);
+    return Block(entries.x, column < params.frame.tile_blocks ? entries.y : entries.x, column);
 }
-
-// Tiles that a splat touches: x0, y0, x1, y1, half open.
-uvec4 tiles_of(uint number) {
-    uvec2 code = PairsRef(params.frame.tile_rects).at[number];
-    return uvec4(code.x & 0xffffu, code.x >> 16, code.y & 0xffffu, code.y >> 16);
-}
-
-// Whether no pixel of a tile takes more.
-bool is_closed(uint tile) { return imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x; }
 
 uint count_at(uint place) { return imageLoad(counters, int(place)).x; }
 void set_count(uint place, uint value) { imageStore(counters, int(place), uvec4(value)); }

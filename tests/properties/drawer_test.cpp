@@ -245,7 +245,8 @@ TEST(Drawer, LevelsAreCoarseEnoughToBeEstimatedWithEveryPicture) {
 }
 
 TEST(Interruption, IsHeededAndLeavesTheRendererWhole) {
-    const DrawRequest request = ball_request();
+    DrawRequest request = ball_request();
+    request.scene.effects.samples = 2;  // it is asked between them, too
     const Image whole = expected(request, request.settings);
     int asked = 0;
     test_renderer().set_interruption([&] { return ++asked >= 2; });

@@ -83,7 +83,8 @@ TEST(Outlines, LeaveThePictureAloneWhereNonePasses) {
     Exact scene = exact_scene("ellipsoid");
     // Nothing but the middle of the solid.
     scene.shot.camera.fov_y = 4;
-    EXPECT_EQ(render(scene.shot).color.pixels, render(smooth(scene.shot)).color.pixels);
+    // Two shaders, which a compiler may round in different ways.
+    EXPECT_LE(compare_images(render(scene.shot).color, render(smooth(scene.shot)).color).max, 1e-6);
 }
 
 TEST(Outlines, OfSeveralSamplesAreTheSamples) {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "engine/gpu/device_profile.h"
 #include "engine/renderer.h"
 
 namespace edgesplat::test {
@@ -30,6 +31,11 @@ inline Renderer& test_renderer() {
             std::make_unique<Renderer>(DeviceChoice{.device = device == "gpu" ? "" : device, .validation = true});
     }
     return *renderer;
+}
+
+/// Whether pixels may follow from those around them (PixelChoice::Refined).
+inline bool refines_pixels() {
+    return gpu::profile_named(test_renderer().device().profile).refines;
 }
 
 using VolumePointer = std::shared_ptr<const Volume>;

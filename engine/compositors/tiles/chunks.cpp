@@ -4,10 +4,11 @@
 
 namespace edgesplat {
 
-std::uint64_t chunk_pairs(const glm::ivec2& tiles) {
+std::uint64_t chunk_pairs(const glm::ivec2& tiles, const gpu::DeviceProfile& profile) {
     const auto count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    const std::uint64_t most = std::uint64_t{tile_blocks(tiles)} * shader::BLOCK_PAIRS;
-    return std::min(most, std::max(256 * count, std::uint64_t{1} << 12U));
+    // Of very large pictures, whose lists begin in very many places, fewer pairs at once.
+    const std::uint64_t most = count > std::uint64_t{1} << 17U ? profile.chunk_pairs / 8 : profile.chunk_pairs;
+    return std::min(most, std::max(profile.tile_pairs * count, std::uint64_t{1} << 12U));
 }
 
 std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles) {
@@ -63,7 +64,7 @@ std::uint64_t picture_bytes(const FramePlan& plan) {
 }
 
 std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step) {
-    if (!how.refined) return 1;
+    if (!how.refined) return shader::TILE * shader::TILE / passes::tile_group(how);
     const std::uint32_t across = shader::TILE / step, coarser = across / 2;
     const std::uint32_t most = step == shader::REFINE_STEP ? across * across : across * across - coarser * coarser;
     return (most + passes::tile_group(how) - 1) / passes::tile_group(how);
@@ -91,13 +92,14 @@ std::span<const std::uint32_t> sheet_starts(const FramePlan& plan, const TargetR
     return targets.sheet_starts.mapped<std::uint32_t>(std::size_t{plan.params.sheet_count} + 1);
 }
 
-Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets) {
+Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets,
+                 const gpu::DeviceProfile& profile) {
     const auto& p = plan.params;
     const auto starts = sheet_starts(plan, targets);
     const std::size_t count = sheets.y - sheets.x;
     Chunks chunks =
         plan_chunks(sheet_pairs(plan, targets).subspan(sheets.x, count), starts.subspan(sheets.x, count + 1),
-                    chunk_pairs(p.tiles), std::uint64_t{p.prepared_mask} + 1);
+                    chunk_pairs(p.tiles, profile), std::uint64_t{p.prepared_mask} + 1);
     chunks.sheets = sheets;
     chunks.entries = starts[sheets.y] - starts[sheets.x];
     return chunks;
@@ -115,8 +117,8 @@ std::uint64_t tile_order_items(const FramePlan& plan) {
     return tile_count(plan) + items + items / 65535 + 1;  // groups_for() may make so many groups too many
 }
 
-std::uint64_t tile_entry_pairs(const FramePlan& plan) {
-    return padded_pairs(chunk_pairs(plan.params.tiles), plan.params.tiles) * (plan.refined ? 2 : 1);
+std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& profile) {
+    return padded_pairs(chunk_pairs(plan.params.tiles, profile), plan.params.tiles) * (plan.refined ? 2 : 1);
 }
 
 std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs) {

@@ -10,9 +10,8 @@
 
 namespace edgesplat {
 
-/// Pairs of a splat and a tile that a chunk of sheets may have. Small chunks close tiles early for those behind; each
-/// costs four dispatches.
-std::uint64_t chunk_pairs(const glm::ivec2& tiles);
+/// Pairs of a splat and a tile that a chunk of sheets may have.
+std::uint64_t chunk_pairs(const glm::ivec2& tiles, const gpu::DeviceProfile& profile);
 
 /// Room that lists of so many pairs take, each from a multiple of MARKED_AT_ONCE on.
 std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles);
@@ -25,7 +24,7 @@ std::uint64_t picture_bytes(const FramePlan& plan);
 /// What FrameParams::tile_order holds at most.
 std::uint64_t tile_order_items(const FramePlan& plan);
 /// Pairs that FrameParams::tile_entries has room for. Of a refined picture, the lists of several chunks are kept.
-std::uint64_t tile_entry_pairs(const FramePlan& plan);
+std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& profile);
 
 /// Words that mark for which pixels lists of so many pairs are.
 std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs);
@@ -55,7 +54,8 @@ std::span<const std::uint32_t> sheet_pairs(const FramePlan& plan, const TargetRe
 std::span<const std::uint32_t> sheet_starts(const FramePlan& plan, const TargetResources& targets);
 
 /// The chunks of such a picture's sheets, half open.
-Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets);
+Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets,
+                 const gpu::DeviceProfile& profile);
 
 /// Whether drawing some pixels first (FramePlan::refined) saves time: splats are some pixels wide.
 bool worth_refining(const Chunks& chunks);

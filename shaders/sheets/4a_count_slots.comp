@@ -1,0 +1,20 @@
+// Counting sort side by side, first step: how many splats of each block lie in each sheet. Every slot counts for itself; the
+// order in which they come changes no count.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 64) in;
+layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/sheets/sheets_of_slot.glsl"
+
+void main() {
+    uint slot = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * 64u + gl_LocalInvocationIndex;
+    if (slot >= params.frame.slot_count) return;
+    uvec2 sheets = sheets_of_slot(slot);
+    uint block = slot / slots_per_block();
+    for (uint sheet = sheets.x; sheet < sheets.y; ++sheet)
+        atomicAdd(UintsRef(params.frame.counters).at[sheet * SORT_BLOCKS + block], 1u);
+}

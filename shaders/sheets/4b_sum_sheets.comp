@@ -1,0 +1,16 @@
+// Second step: what the blocks of a sheet have before one another, and the sheet's sum. A workgroup has a sheet.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 256) in;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/common/row_sums.glsl"
+
+void main() {
+    uint sheet = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    if (sheet >= params.frame.sheet_count) return;
+    uint sum = sum_row(UintsRef(params.frame.counters), sheet * SORT_BLOCKS, SORT_BLOCKS);
+    if (gl_LocalInvocationIndex == 0u) UintsRef(params.frame.sheet_starts).at[sheet] = sum;
+}

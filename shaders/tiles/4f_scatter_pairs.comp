@@ -1,0 +1,42 @@
+// Last step: every pair of a splat and a tile that is not opaque yet goes to its place. A workgroup goes through a block; each pair
+// looks how many entries before it touch the same tile, so that lists stay in the order of the sheets.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/tiles/pairs_of_block.glsl"
+#include "shaders/splats/sheet_of_entry.glsl"
+layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform writeonly uimageBuffer entries_by_tile;
+layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
+layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CountersRef { uint at[]; };
+
+shared uint sheets[PAIR_GROUP];  // of the entries
+
+bool touches(uvec4 rect, uvec2 tile) {
+    return all(lessThanEqual(rect.xy, tile)) && all(lessThan(tile, rect.zw));
+}
+
+void main() {
+    uint block = gl_WorkGroupID.x, me = gl_LocalInvocationIndex;
+    uvec2 entries = entries_of_block(block);
+    CountersRef counters = CountersRef(params.frame.tile_counters);
+    for (uint base = entries.x; base < entries.y; base += PAIR_GROUP) {
+        uint pairs = load_pairs(base, entries.y);
+        sheets[me] = sheet_of_entry(base + me);
+        barrier();
+        for (uint n = me; n < pairs; n += PAIR_GROUP) {
+            Pair pair = pair_of(n);
+            uint tile = tile_number(pair.tile), before = 0u;
+            if (is_closed(tile)) continue;
+            for (uint i = 0u; i < pair.k; ++i) before += touches(rects[i], pair.tile) ? 1u : 0u;
+            uint place = imageLoad(ranges, int(tile)).x + counters.at[tile * params.frame.tile_blocks + block] + before;
+            imageStore(entries_by_tile, int(params.frame.entries_first + place), uvec4(base + pair.k, sheets[pair.k], 0u, 0u));
+        }
+        memoryBarrierBuffer();
+        barrier();
+        for (uint n = me; n < pairs; n += PAIR_GROUP) {
+            uint tile = tile_number(pair_of(n).tile);
+            if (!is_closed(tile)) atomicAdd(counters.at[tile * params.frame.tile_blocks + block], 1u);
+        }
+        memoryBarrierBuffer();
+        barrier();
+    }
+}
