@@ -45,7 +45,7 @@ struct RenderStats {
     std::uint64_t splats_culled = 0;  ///< never looked at: their bricks lie outside the picture, or are hidden
     std::uint32_t sheets = 0, sheet_groups = 0;
     int level = 0;         ///< resolution of the volume that was drawn: voxels of 2^level along each axis
-    int wanted_level = 0;  ///< that would have been, had its splats fitted into the memory
+    int wanted_level = 0;  ///< the level it should have had; coarser ones fit into memory
     bool complete = true;  ///< false: a coarser level stands in until the wanted one is there (Renderer::set_patience)
     bool in_blocks = false;          ///< the volume was not on the device as a whole
     std::uint64_t blocks = 0;        ///< that can hold splats

@@ -33,7 +33,9 @@ std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
 std::string Buffer::beyond_texels(const Device& device, std::size_t bytes, vk::Format texels) {
     const std::uint64_t most = device.physical().getProperties().limits.maxTexelBufferElements;
     const std::uint64_t count = bytes / vk::blockSize(texels);
-    return count > most ? fmt::format("{} texels; {} allows {}", count, device.info().name, most) : "";
+    return device.loads_texels() && count > most
+               ? fmt::format("{} texels; {} allows {}", count, device.info().name, most)
+               : "";
 }
 
 Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char* name, vk::Format texels)
@@ -53,7 +55,9 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     buffer_.bindMemory(*memory_, 0);
     if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});
-    if (texels != vk::Format::eUndefined) {
+    // Where buffers are not loaded as texels, only what stands in for them has a view.
+    constexpr std::size_t kStandIn = 16;
+    if (texels != vk::Format::eUndefined && (device.loads_texels() || bytes_ <= kStandIn)) {
         const std::string beyond = beyond_texels(device, bytes_, texels);
         if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});

@@ -37,6 +37,7 @@ class Buffer {
     std::size_t bytes() const { return bytes_; }
     /// Of the byte `offset`.
     shader::Address address(std::uint64_t offset = 0) const { return address_ + offset; }
+    /// Null where it has none.
     vk::BufferView texels() const { return *texels_; }
     explicit operator bool() const { return device_ != nullptr; }
 

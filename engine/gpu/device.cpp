@@ -234,6 +234,9 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
     }
 
     profile_ = &profile_named(info_.profile);
+    // A picture of 8192 x 8192 pixels has so many.
+    constexpr std::uint32_t kTexels = 1U << 26U;
+    loads_texels_ = profile_->texels && physical_.getProperties().limits.maxTexelBufferElements >= kTexels;
     queue_family_ = *find_queue_family(physical_);
     const bool timestamps = physical_.getQueueFamilyProperties()[queue_family_].timestampValidBits > 0;
     timestamp_period_ = timestamps ? static_cast<double>(physical_.getProperties().limits.timestampPeriod) : 0.0;

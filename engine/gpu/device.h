@@ -57,6 +57,8 @@ class Device {
     /// Nanoseconds per timestamp tick; 0 where the queue has no timestamps.
     double timestamp_period() const { return timestamp_period_; }
     const DeviceProfile& profile() const { return *profile_; }
+    /// Whether shaders load buffers as texels (DeviceProfile::texels): a picture has a texel a pixel, and lists more.
+    bool loads_texels() const { return loads_texels_; }
     /// Whether draws can be counted: pipeline statistics and precise occlusion queries.
     bool counts_draws() const { return counts_draws_; }
     /// Why it cannot draw into layers of a target; empty: it can.
@@ -105,7 +107,7 @@ class Device {
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
     const DeviceProfile* profile_ = nullptr;
-    bool has_memory_budget_ = false, counts_draws_ = false;
+    bool has_memory_budget_ = false, counts_draws_ = false, loads_texels_ = true;
 };
 
 }  // namespace edgesplat::gpu

@@ -20,7 +20,7 @@ constexpr std::array kProfiles{
                   .side_by_side = false,
                   .tile_blocks = 64,
                   .late_timestamps = true},
-    DeviceProfile{.name = "generic", .list_group = 32},
+    DeviceProfile{.name = "generic", .list_group = 32, .texels = false},
     DeviceProfile{.name = "discrete",
                   .refines = false,
                   .chunk_pairs = 1048576,

@@ -102,7 +102,9 @@ vk::Pipeline Pipelines::compute(const char* shader, const Specialization& consta
     if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
     const auto start = std::chrono::steady_clock::now();
     const auto module = load(shader);
-    const SpecializationData data(constants);
+    Specialization all = constants;
+    if (!device_->loads_texels()) all.emplace_back(shader::SPEC_TEXELS, 0U);
+    const SpecializationData data(all);
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
     vk::raii::Pipeline made(device_->handle(), cache_.handle(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
     count_creation(start);

@@ -2,10 +2,11 @@
 #pragma once
 
 #include "engine/passes/5_draw_splats.h"
+#include "shaders/drivers/iterations.h"
 
 namespace edgesplat::passes {
 
-/// What of drawing is no matter of the picture.
+/// How tiles are drawn. None of it changes the picture.
 struct TileDraw {
     /// With its rounds only entries [round_begin(round), round_begin(round + 1)) of each list are drawn.
     const gpu::DeviceProfile* profile = &gpu::device_profiles().front();

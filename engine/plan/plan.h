@@ -6,6 +6,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
+#include "shaders/drivers/iterations.h"
 #include "shaders/shared/frame_params.h"
 #include "shaders/shared/transfer_rows.h"
 
@@ -85,6 +86,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
 
 /// Counters of the tiles' histogram that can be scanned: 256 invocations go through all of them, twice.
 inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::MOST_ITERATIONS;
+
+/// Of pictures of more tiles, whose lists begin in very many places, fewer pairs are sorted at once.
+inline constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
 
 /// The histogram, and how far each of its columns is gone through.
 std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks);

@@ -74,7 +74,7 @@ void Bindings::write(const VolumeResources& volume, const TargetResources& targe
         std::pair{&targets.outlines, &no_counts_}};
     for (std::uint32_t i = 0; i < texels.size(); ++i) {
         const auto& [buffer, otherwise] = texels.at(i);
-        set_.put_texels(shader::BIND_PICTURE + i, *buffer ? *buffer : *otherwise);
+        set_.put_texels(shader::BIND_PICTURE + i, *buffer && buffer->texels() ? *buffer : *otherwise);
     }
     set_.put_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
     set_.put_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);

@@ -87,8 +87,8 @@ struct RendererState : DeviceState, SplatSet {
     bool may_hide_blocks(const FrameRequest& request) const;
     /// Those first that may show nearest to the eye.
     void sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const;
-    /// Draws what there is in front of the missing blocks from number `first` on, sorted by depth, and leaves out those
-    /// of them of which no pixel would show anything.
+    /// Sorts the missing blocks from number `first` on by depth, draws the splats in front of them, and drops the
+    /// blocks that these splats hide in every pixel.
     void leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
     /// The box of the splats that are in the list.
     void bound_held_blocks();
@@ -144,6 +144,8 @@ struct RendererState : DeviceState, SplatSet {
     void provide_layers(FramePlan& plan);
     void provide_footprints(FramePlan& plan);
     void provide_tiles(FramePlan& plan);
+    /// Addresses of what grows with the chunks.
+    void place_lists(shader::FrameParams& p) const;
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);
     /// Of the splats that are there.

@@ -193,10 +193,21 @@ void RendererState::provide_tiles(FramePlan& plan_in_use) {
     p.sheet_pairs = targets.sheet_pairs.address();
     p.sheet_starts = targets.sheet_starts.address();
     p.chunks = targets.chunks.address();
-    p.tile_counters = targets.tile_counters.address();
     p.tile_closed = targets.tile_closed.address();
     p.tile_todo = targets.tile_todo.address();
     p.tile_finest = targets.tile_finest ? targets.tile_finest.address() : 0;
+    p.tile_ranges = targets.tile_ranges.address();
+    p.tile_order = targets.tile_order.address();
+    p.tile_pixels = targets.tile_pixels ? targets.tile_pixels.address() : 0;
+    p.tile_sheets = targets.tile_sheets.address();
+    p.outlines = targets.outlines ? targets.outlines.address() : 0;
+    place_lists(p);
+}
+
+void RendererState::place_lists(shader::FrameParams& p) const {
+    p.tile_counters = targets.tile_counters.address();
+    p.tile_entries = targets.tile_entries.address();
+    p.tile_marks = targets.tile_marks.address();
 }
 
 void RendererState::provide_chunks(const Chunks& chunks) {
@@ -218,7 +229,7 @@ void RendererState::provide_chunks(const Chunks& chunks) {
     }
     grow(device, targets.tile_counters, tile_counter_bytes(p.tiles, p.tile_blocks), Place::Device, "tile counters",
          vk::Format::eR32Uint);
-    p.tile_counters = targets.tile_counters.address();
+    place_lists(p);
     p.entries_first = 0;
     bindings.write(volume_resources, targets);
     std::ranges::copy(chunks.parts, targets.chunks.mapped<glm::uvec2>(chunks.parts.size()).begin());

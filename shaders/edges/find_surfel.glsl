@@ -2,6 +2,7 @@
 // docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(ivec3, vec3) and what finds voxels.
 
 // Whether samples around leave [low, high) downwards, upwards. No surface within SURFEL_REACH passes between samples further off.
+#include "shaders/drivers/if_any.glsl"
 bvec2 crossed_around(ivec3 p, float low, float high) {
     bvec2 crossed = bvec2(false);
     for (int i = 0; i < 33; ++i) {
@@ -29,7 +30,7 @@ Edge find_surfel(ivec3 p, float value, float low, float high) {
         n = slope_value.xyz / max(slope, 1e-30);
         off = (slope_value.w - iso) / max(slope, 1e-30);
         // The last step only looks.
-        for (int move = i + 1 < SURFEL_STEPS && !lost ? 1 : 0; move > 0; --move) {
+        IF_ANY(i + 1 < SURFEL_STEPS && !lost) {
             at -= clamp(off, -0.6, 0.6) * n;
             // Slides to where the voxel sees it at right angles; the last steps lead back to the surface alone.
             at -= i >= 2 && i + 4 < SURFEL_STEPS ? 0.5 * (at - dot(at, n) * n) : vec3(0.0);

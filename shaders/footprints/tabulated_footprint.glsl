@@ -2,6 +2,7 @@
 // the including shader declares `selected_footprint` and the sampler `footprint_layers`.
 #ifndef EDGESPLAT_TABULATED_FOOTPRINT_GLSL
 #define EDGESPLAT_TABULATED_FOOTPRINT_GLSL
+#include "shaders/drivers/if_any.glsl"
 
 float table_texel(float x, float y, float layer) {
     return textureLod(footprint_layers, vec3((x + 0.5) / float(TABLE_WIDTH), (y + 0.5) / float(TABLE_ROWS), layer), 0.0).r;
@@ -16,7 +17,7 @@ FaceFootprint tabulated_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, S
     Slice own = Slice(plain ? slice.low : inside.low, plain ? slice.high : inside.high);
     bool whole = (selected_footprint.layer.code & INTEGRATED) == 0u && own.low <= -half_chord && own.high >= half_chord;
     FaceFootprint f = FaceFootprint(0.0, FaceEnd(0.0, 1.0, false), FaceEnd(0.0, 1.0, false));
-    for (uint run = whole ? 0u : 1u; run > 0u; --run) f = cut_footprint(sight, p, u, plain, inside, slice);
+    IF_ANY(!whole) f = cut_footprint(sight, p, u, plain, inside, slice);
     float looked_up = half_chord > 0.0 ? footprint_looked_up(selected_footprint.layer, along_axis, sight.ray.rho2) : 0.0;
     // Where the ray comes through the face, or within the kernel's reach.
     float b = sight.ray.phi.b, at_face = -sight.ray.phi.c / (b < 0.0 ? min(b, -FACE_STRAIGHT) : max(b, FACE_STRAIGHT));

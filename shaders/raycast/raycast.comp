@@ -2,6 +2,7 @@
 // the interpolated value crosses an iso-value. docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/raycast_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -49,7 +50,7 @@ void main() {
 
     vec4 sum = vec4(0.0);
     float previous = 0.0, current = 0.0;
-    for (int run = count > 0 ? 1 : 0; run > 0; --run) previous = field(at(ray, ray.first));
+    IF_ANY(count > 0) previous = field(at(ray, ray.first));
     uint from = material_of(previous), to = from;
     bool was_visible = is_visible(from);
     float light = 1.0, lit_at = -1e9, stale = 0.0;  // where light was found last, and what was drawn with it since
@@ -90,7 +91,7 @@ void main() {
 
         // One piece for each material that the segment passes.
         float a = min(ray.first + float(i - 1) * step, ray.last), b = min(ray.first + float(i) * step, ray.last);
-        for (int run = found && !was_visible ? 1 : 0; run > 0; --run) {
+        IF_ANY(found && !was_visible) {
             previous = field(at(ray, a));
             from = material_of(previous);
         }
@@ -101,7 +102,7 @@ void main() {
         for (int pieces = found ? abs(int(to) - int(from)) + 1 : 0; pieces > 0; --pieces) {
             float c = b;
             float iso = 0.0;
-            for (int run = pieces > 1 ? 1 : 0; run > 0; --run) {
+            IF_ANY(pieces > 1) {
                 iso = params.scene.iso[way > 0 ? from : from - 1u];
                 c = crossing(ray, a, b, f_from - iso, current - iso, iso);
             }
@@ -113,7 +114,7 @@ void main() {
             bool dark = LIGHT != LIGHT_NONE && material.a > 0.0 && (entered || (stale > STALE_LIGHT && here - lit_at >= STALE_WAY));
             // Matter that the volume's border cuts is lit by the border.
             bool cut = !entered && lit_at < -1e8 && dot(ray.border, ray.border) > 0.0;
-            for (int run = dark ? 1 : 0; run > 0; --run) {
+            IF_ANY(dark) {
                 light = light_on(cut ? ray.border : gradient(at(ray, here)), ray.u);
                 lit_at = here;
                 stale = 0.0;

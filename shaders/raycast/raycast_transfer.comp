@@ -2,6 +2,7 @@
 // two samples of a ray values are linear: what they absorb and emit is exact. docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/raycast_params.h"
 
 layout(local_size_x = 8, local_size_y = 8) in;
@@ -42,7 +43,7 @@ void main() {
             way = leap(ray, at(ray, t));
             i = way > 0.0 ? max(i + 1, int(ceil((t + way - 1e-3 - ray.first) * per_step))) : i;
         }
-        for (int run = i <= count && empty ? 1 : 0; run > 0; --run) previous = field(at(ray, min(ray.first + float(i - 1) * step, ray.last)));
+        IF_ANY(i <= count && empty) previous = field(at(ray, min(ray.first + float(i - 1) * step, ray.last)));
         empty = false;
         bool dark = false;  // light is to be found before anything else is drawn
         float middle = 0.0;
@@ -64,7 +65,7 @@ void main() {
             previous = dark ? previous : current;
             i = sum.a >= saturation ? count + 1 : dark ? i : i + 1;
         }
-        for (int run = dark ? 1 : 0; run > 0; --run) {
+        IF_ANY(dark) {
             vec3 p = at(ray, middle), border = border_beside(p);
             light = light_on(dot(border, border) > 0.0 ? border : gradient(p), ray.u);
             lit_at = middle;

@@ -11,10 +11,11 @@ layout(constant_id = SPEC_GRADIENT) const uint GRADIENT = 0u;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
 layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
-layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
-layout(binding = BIND_TILE_SHEETS, rgba32f) uniform readonly imageBuffer before;  // the picture, as it was
-layout(binding = BIND_OUTLINES, r32ui) uniform readonly uimageBuffer outlines;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/drivers/texels.glsl"
+STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+TEXEL_PIXELS(BIND_TILE_SHEETS, readonly, before, tile_sheets, load_before)  // the picture, as it was
+TEXEL_WORDS(BIND_OUTLINES, readonly, passing, outlines, load_outline)
 #include "shaders/resolve/other_side.glsl"
 
 void main() {
@@ -22,7 +23,7 @@ void main() {
     if (any(greaterThanEqual(pixel, size))) return;
     int at = pixel.y * size.x + pixel.x;
     vec4 sum = vec4(0.0);
-    if (TILES == 1u) sum = imageLoad(picture, at);
+    if (TILES == 1u) sum = load_pixel(at);
     else sum = texelFetch(accumulated, pixel, 0);
     if (OUTLINES == 1u) sum = with_other_side(sum, pixel, size);
     if (PAYLOAD == PAYLOAD_COLOR) {
@@ -39,5 +40,5 @@ void main() {
         float largest = max(abs(sum.r), max(abs(sum.g), abs(sum.b)));
         sum.rgb = largest > 0.0 ? normalize(sum.rgb / largest) : vec3(0.0);
     }
-    imageStore(picture, at, sum);
+    store_pixel(at, sum);
 }

@@ -1,4 +1,4 @@
-// How a pixel that an outline passes is shown. docs/method.md, 7_resolve. After the declarations of `outlines` and `before`, the
+// How a pixel that an outline passes is shown. docs/method.md, 7_resolve. After the declarations of load_outline and load_before, of the
 // picture with one ray a pixel.
 #ifndef EDGESPLAT_OTHER_SIDE_GLSL
 #define EDGESPLAT_OTHER_SIDE_GLSL
@@ -7,13 +7,13 @@ ivec2 held_pixel(ivec2 pixel, ivec2 size) { return clamp(pixel, ivec2(0), size -
 
 vec4 drawn_at(ivec2 pixel, ivec2 size) {
     ivec2 held = held_pixel(pixel, size);
-    return imageLoad(before, held.y * size.x + held.x);
+    return load_before(held.y * size.x + held.x);
 }
 
 // Offset of a pixel's outline along its axis, pixels; 0 without one.
 vec2 outline_offset(ivec2 pixel, ivec2 size) {
     ivec2 held = held_pixel(pixel, size);
-    uint word = imageLoad(outlines, held.y * size.x + held.x).x;
+    uint word = load_outline(held.y * size.x + held.x);
     float offset = float(word & 0xffffu) / 65535.0 * 2.0 - 1.0;
     return word == NO_OUTLINE || held != pixel ? vec2(0.0) : (word >> 16 & 1u) == 1u ? vec2(0.0, offset) : vec2(offset, 0.0);
 }

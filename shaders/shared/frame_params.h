@@ -92,6 +92,14 @@ struct FrameParams {
     Address tile_closed;    // (tiles) uint: pixels that take no more, of those that are drawn
     Address tile_todo;      // (tiles) uint: pixels that are drawn
     Address tile_finest;    // (tiles) uint: bits of the least width of a voxel of the splats over it, pixels; with refined pixels only
+    // The others that BIND_PICTURE and what follows it are for.
+    Address tile_entries;
+    Address tile_marks;
+    Address tile_ranges;
+    Address tile_order;
+    Address tile_pixels;
+    Address tile_sheets;
+    Address outlines;
     ivec2 tiles;
     uint tile_blocks;       // columns of the tiles' histogram
     uint sort_segment;      // slots of a block that are sorted at once
@@ -109,7 +117,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1472);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1528);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -43,15 +43,7 @@ EDGESPLAT_CONSTANT uint BRICK = 8u;  // voxels along a side of a brick
 EDGESPLAT_CONSTANT uint SPLAT_BATCH = 64u;  // splats of bricks in view that 3_select_footprints goes through at once
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort's histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // most even vertex cost on lavapipe in near and far views
-// lavapipe ends every loop of an invocation once all of them together have gone round 65535 times, without a word. What follows
-// keeps them below.
-EDGESPLAT_CONSTANT uint MOST_ITERATIONS = 50000u;
-EDGESPLAT_CONSTANT uint TILE_ROUND = 512u;  // entries of a tile's list that are drawn at once, each good for 128 at most
-EDGESPLAT_CONSTANT uint TILE_FIRST_ROUND = 128u;  // likewise, of the first round, after which near views have most pixels closed
 EDGESPLAT_CONSTANT uint MARKED_AT_ONCE = 32u;  // entries that a word of marks is for; lists begin at multiples of it
-EDGESPLAT_CONSTANT uint BLOCK_PAIRS = 4096u;  // pairs of splat and tile in a column of the tiles' histogram, on average
-EDGESPLAT_CONSTANT uint PAIR_STEPS = 12000u;  // of them that are gone through at once, each good for two iterations
-EDGESPLAT_CONSTANT uint COLUMN_STATE = 4u;    // words behind the histogram: how far each of two passes got in a column
 EDGESPLAT_CONSTANT uint PREPARED_ENTRIES = 131072u;  // of a chunk that are prepared; 96 bytes each by default
 EDGESPLAT_CONSTANT uint PREPARED_ROW = 4096u;  // texels of the image that holds them: lavapipe loads those fastest
 EDGESPLAT_CONSTANT uint TILE = 16u;  // pixels along a side of a tile
@@ -111,7 +103,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; t
     X(SPEC_RAY_LIGHT, 36u)    /* 0 without light, else 1 + Light::Kind */ \
     X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */ \
     X(SPEC_CREASES, 38u)      /* 1: planes beside faces cut kernels, too */ \
-    X(SPEC_OUTLINES, 39u)     /* 1: pixels that outlines pass show both sides */
+    X(SPEC_OUTLINES, 39u)     /* 1: pixels that outlines pass show both sides */ \
+    X(SPEC_TEXELS, 40u)       /* 1: buffers of texels are loaded as such, 0: through their addresses */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

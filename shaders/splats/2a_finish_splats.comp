@@ -4,6 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/scene_params.h"
 
@@ -24,7 +25,7 @@ uint material_at(ivec3 p) { return material_of(voxel(p)); }
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     bool with_edge = false, with_crease = false;
-    for (uint run = i < params.scene.list_count ? 1u : 0u; run > 0u; --run) {
+    IF_ANY(i < params.scene.list_count) {
         dims = params.scene.dims;
         i += params.scene.list_first;
         SplatsRef splats = SplatsRef(params.scene.splats);

@@ -2,6 +2,7 @@
 // creases; mirrored by engine/reference/creases.h. In shaders/splats/fit_face.glsl.
 
 // No array: what a loop indexes of one in a struct came out wrong on lavapipe 22.3.
+#include "shaders/drivers/if_any.glsl"
 struct CreaseFit {
     bool found;
     vec4 first;  // n, distance from the voxel; the nearest
@@ -84,13 +85,13 @@ void order_planes(inout vec4 a, inout vec4 b) {
 CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 a) {
     CreaseFit found = CreaseFit(false, CREASE_NONE, CREASE_NONE, CREASE_NONE);
     // Where all normals are alike, as nearly everywhere, nothing else is looked for.
-    for (int run = dot(a, a) > 0.0 ? 1 : 0; run > 0; --run) {
+    IF_ANY(dot(a, a) > 0.0) {
         vec3 b = most_different(p, material, middle, state, a, a);
         vec3 c = most_different(p, material, middle, state, a, b);
         bool third = dot(c, c) > 0.0;
         PlaneFit one = fit_plane(p, material, middle, state, a), two = fit_plane(p, material, middle, state, b);
         PlaneFit three = PlaneFit(vec3(0.0), vec3(0.0));
-        for (int more = third ? 1 : 0; more > 0; --more) three = fit_plane(p, material, middle, state, c);
+        IF_ANY(third) three = fit_plane(p, material, middle, state, c);
         bool some = dot(b, b) > 0.0 && dot(one.n, one.n) > 0.0 && dot(two.n, two.n) > 0.0;
         some = some && !cuts_other(one, two) && !cuts_other(two, one) && (!third || dot(three.n, three.n) > 0.0);
         bool cut = cuts_other(one, three) || cuts_other(two, three) || cuts_other(three, one) || cuts_other(three, two);

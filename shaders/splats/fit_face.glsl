@@ -1,6 +1,7 @@
 // A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
 // faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims` and
 // `material_at(ivec3)`.
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
 #include "shaders/footprints/face_record.glsl"
@@ -22,7 +23,7 @@ Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
     uint state = code.y >> 26 & 3u;
     // The volume's border bounds what is inside of it alone.
     bool at_border = (code.y & EDGE_BORDER) != 0u;
-    for (int run = inside && state >= EDGE_LOWER ? 1 : 0; run > 0; --run) {
+    IF_ANY(inside && state >= EDGE_LOWER) {
         Edge e = unpack_edge(code.x, code.y);
         uint own = material_at(held);
         // An upper end is the lower end of the material above.
@@ -143,7 +144,7 @@ FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Q
         Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
         vec3 r = s.at - middle;
         float w = s.there && !s.border ? surfel_weight(r, n, s.n) : 0.0;
-        for (int run = w > 0.0 ? 1 : 0; run > 0; --run) {
+        IF_ANY(w > 0.0) {
             float off = quadric_at(one, r) / max(length(quadric_slope(one, r)), 0.2), facing = dot(s.n, n);
             float level = quadric_at(wall, r);
             e.weight += w;
@@ -250,7 +251,7 @@ Face fit_face(ivec3 p, uint material) {
         return face;
     }
     if (!found) state = crossed.x ? EDGE_LOWER : EDGE_UPPER;
-    for (int run = found || crossed.x || crossed.y ? 1 : 0; run > 0; --run) {
+    IF_ANY(found || crossed.x || crossed.y) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
         Different different = none_different();
@@ -281,10 +282,10 @@ Face fit_face(ivec3 p, uint material) {
         bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < FIT_OWN * error);
         is_wall = is_wall && !is_own;
         float best = is_own ? e.own + wrong.z : error;
-        for (int run = found && best > CREASE_FROM ? 1 : 0; run > 0; --run) {
+        IF_ANY(found && best > CREASE_FROM) {
             CreaseFit crease = fit_crease(p, material, middle, state, different.n);
             float left = 1e9;
-            for (int tried = crease.found ? 1 : 0; tried > 0; --tried) left = crease_error(p, material, middle, n, crease);
+            IF_ANY(crease.found) left = crease_error(p, material, middle, n, crease);
             face.creased = left < FIT_OWN * best;
             face.crease = crease.second;
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);

@@ -2,6 +2,7 @@
 // shaders/splats/splat_projection.glsl, shading.glsl and transfer.glsl.
 #ifndef EDGESPLAT_SPLAT_INPUTS_GLSL
 #define EDGESPLAT_SPLAT_INPUTS_GLSL
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 
 struct SplatInputs {
@@ -52,7 +53,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         Bending h = Bending(vec3(0.0), vec3(0.0));
         s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
                           CREASE_NONE);
-        for (uint run = is_cut ? 1u : 0u; run > 0u; --run) {
+        IF_ANY(is_cut) {
             FaceTraits traits = traits_of(number, e);
             FaceCut cut = cut_of(e, traits);
             h = traits.h;

@@ -2,6 +2,7 @@
 // read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS, WARP and ANTIALIAS.
 #ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
 #define EDGESPLAT_SPLAT_PROJECTION_GLSL
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/antialias.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
@@ -115,7 +116,7 @@ Projection place_splat(uint number, uint voxel, Edge e) {
     p.view = view_position(p.position);
     bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
     vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
-    for (uint run = FACES && cut_or_warped ? 1u : 0u; run > 0u; --run) {
+    IF_ANY(FACES && cut_or_warped) {
         FaceTraits traits = traits_of(number, e);
         FaceCut cut = cut_of(e, traits);
         support = vec2(cut.shift, cut.radius);

@@ -3,6 +3,7 @@
 // draw, and what shaders/splats/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/footprints/face_form.glsl"
 #include "shaders/footprints/face.glsl"
@@ -200,12 +201,12 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice, float mm) {
             cap = PAYLOAD != PAYLOAD_TAU && dot(face, face) > 0.0 && (plain ? matter2 < KERNEL_R2 : inside);
         }
         vec3 payload = color_sigma.rgb;
-        for (int run = cap ? 1 : 0; run > 0; --run) payload = cap_payload(face, p, u, piece.low);
+        IF_ANY(cap) payload = cap_payload(face, p, u, piece.low);
         Slice cut = Slice(piece.low < -far ? -1e9 : piece.low, piece.high > far ? 1e9 : piece.high);
         cut = Slice(max(cut.low, slice.low), min(cut.high, slice.high));
         if (FACES) {
             vec4 value = vec4(0.0);
-            for (int run = cut.low < cut.high ? 1 : 0; run > 0; --run) value = face_value(sight, p, u, ahead, z, cut, mm);
+            IF_ANY(cut.low < cut.high) value = face_value(sight, p, u, ahead, z, cut, mm);
             sum += vec4(cap ? value.a * payload : value.rgb, value.a);
             continue;
         }

@@ -6,7 +6,8 @@
 
 layout(local_size_x = 256) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_TILE_RANGES, rg32ui) uniform uimageBuffer ranges;
+#include "shaders/drivers/texels.glsl"
+STORED_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range, store_range)
 #include "shaders/common/workgroup_sums.glsl"
 #include "shaders/tiles/begin_of_list.glsl"
 
@@ -14,11 +15,11 @@ void main() {
     uint me = gl_LocalInvocationIndex, tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
     uint per_run = (tiles + 255u) / 256u, first = min(me * per_run, tiles), last = min(first + per_run, tiles);
     uint sum = 0u;
-    for (uint tile = first; tile < last; ++tile) sum += begin_of_list(imageLoad(ranges, int(tile)).x);
+    for (uint tile = first; tile < last; ++tile) sum += begin_of_list(load_range(int(tile)).x);
     uint begin = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
-        uint end = begin + imageLoad(ranges, int(tile)).x;
-        imageStore(ranges, int(tile), uvec4(begin, end, 0u, 0u));
+        uint end = begin + load_range(int(tile)).x;
+        store_range(int(tile), uvec2(begin, end));
         begin = begin_of_list(end);
     }
 }

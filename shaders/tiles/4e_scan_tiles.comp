@@ -6,9 +6,10 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
-layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_TILE_RANGES, rg32ui) uniform writeonly uimageBuffer ranges;
+#include "shaders/drivers/texels.glsl"
+STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, load_counter, store_counter)
+STORED_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range, store_range)
 #include "shaders/common/workgroup_sums.glsl"
 #include "shaders/tiles/begin_of_list.glsl"
 
@@ -21,18 +22,18 @@ void main() {
 
     uint sum = 0u;
     for (uint tile = first; tile < last; ++tile) {
-        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += imageLoad(counters, int(i)).x;
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += load_counter(int(i));
         sum = begin_of_list(sum);
     }
     uint offset = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
         for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
-            uint n = imageLoad(counters, int(i)).x;
-            imageStore(counters, int(i), uvec4(offset));
+            uint n = load_counter(int(i));
+            store_counter(int(i), offset);
             offset += n;
         }
-        imageStore(ranges, int(tile), uvec4(begin, offset, 0u, 0u));
+        store_range(int(tile), uvec2(begin, offset));
         offset = begin_of_list(offset);
     }
 }

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/tiles/tile_entries.glsl"
 #include "shaders/splats/sheet_of_entry.glsl"
-layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform writeonly uimageBuffer entries;
+STORED_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry, store_entry)
 
 void main() {
     Block block = block_of_invocation();
@@ -17,7 +17,7 @@ void main() {
         if (!is_closed(tile)) {
             uint place = tile * params.frame.tile_blocks + block.column, pair = count_at(place);
             set_count(place, pair + 1u);
-            imageStore(entries, int(params.frame.entries_first + pair), uvec4(pairs.entry, sheet, 0u, 0u));
+            store_entry(int(params.frame.entries_first + pair), uvec2(pairs.entry, sheet));
         }
         next_pair(pairs, block);
     }

@@ -2,6 +2,7 @@
 // what each 32 entries have for it. docs/method.md, 4_mark_pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
@@ -23,12 +24,13 @@ layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
-layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
-layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
-layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
-layout(binding = BIND_TILE_MARKS, r32ui) uniform uimageBuffer marks;
-layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
-layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
+#include "shaders/drivers/texels.glsl"
+TEXEL_WORDS(BIND_TILE_CLOSED, readonly, closed_pixels, tile_closed, load_closed)
+TEXEL_WORDS(BIND_TILE_TODO, readonly, todo_pixels, tile_todo, load_todo)
+TEXEL_PAIRS(BIND_TILE_ENTRIES, readonly, entries, tile_entries, load_entry)
+STORED_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark, store_mark)
+TEXEL_PAIRS(BIND_TILE_RANGES, readonly, ranges, tile_ranges, load_range)
+TEXEL_WORDS(BIND_TILE_ORDER, readonly, order, tile_order, load_order)
 layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
@@ -51,11 +53,11 @@ const float TOO_WIDE = 1e30;
 
 void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) tile = imageLoad(order, int(tile)).x;
+    if (ROUNDS == 1u) tile = load_order(int(tile));
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    uvec2 range = imageLoad(ranges, int(tile)).xy;
+    uvec2 range = load_range(int(tile));
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
-    bool closed = imageLoad(closed_pixels, int(tile)).x == imageLoad(todo_pixels, int(tile)).x;
+    bool closed = load_closed(int(tile)) == load_todo(int(tile));
     if (range.x >= range.y || closed) return;
     ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
     int row = corner.y + int(gl_LocalInvocationID.x * ROWS);
@@ -64,11 +66,11 @@ void main() {
         int marks_at = first_mark(base) + int(gl_LocalInvocationID.x * OWN);
         uint count = min(MARKED_AT_ONCE, range.y - base);
         // Lists that are kept from step to step are marked already, where tiles were not closed.
-        if (REFINED == 1u) count = imageLoad(marks, marks_at).x == ~0u ? count : 0u;
+        if (REFINED == 1u) count = load_mark(marks_at) == ~0u ? count : 0u;
         uint marked[2u * TILE];
         for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
         for (uint k = 0u; k < count; ++k) {
-            uvec2 entry = imageLoad(entries, int(params.frame.entries_first + base + k)).xy;
+            uvec2 entry = load_entry(int(params.frame.entries_first + base + k));
             SplatConic conic;
             if (PREPARED == 1u) conic = load_conic(entry.x);
             else conic = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y).conic;
@@ -87,8 +89,8 @@ void main() {
             if (WIDE_MARKS == 1u)
                 for (uint c = 0u; c < OWN; ++c) marked[c] |= (covered >> c * CELL_X & (1u << CELL_X) - 1u) != 0u ? 1u << k : 0u;
         }
-        for (uint store = count > 0u ? 1u : 0u; store > 0u; --store)
-            for (uint c = 0u; c < OWN; ++c) imageStore(marks, marks_at + int(c), uvec4(marked[c]));
+        IF_ANY(count > 0u)
+            for (uint c = 0u; c < OWN; ++c) store_mark(marks_at + int(c), marked[c]);
     }
     // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.
     if (REFINED == 1u && gl_LocalInvocationID.x == 0u)

@@ -5,6 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
 #extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
@@ -30,15 +31,16 @@ layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
-layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
-layout(binding = BIND_TILE_ENTRIES, rg32ui) uniform readonly uimageBuffer entries;
-layout(binding = BIND_TILE_MARKS, r32ui) uniform readonly uimageBuffer marks;
-layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
-layout(binding = BIND_TILE_RANGES, rg32ui) uniform readonly uimageBuffer ranges;
-layout(binding = BIND_TILE_ORDER, r32ui) uniform readonly uimageBuffer order;
-layout(binding = BIND_TILE_PIXELS, r32ui) uniform readonly uimageBuffer listed_pixels;
-layout(binding = BIND_TILE_SHEETS, rgba32f) uniform imageBuffer unfinished;
-layout(binding = BIND_OUTLINES, r32ui) uniform uimageBuffer outlines;
+#include "shaders/drivers/texels.glsl"
+STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+TEXEL_PAIRS(BIND_TILE_ENTRIES, readonly, entries, tile_entries, load_entry)
+TEXEL_WORDS(BIND_TILE_MARKS, readonly, marks, tile_marks, load_mark)
+TEXEL_WORDS(BIND_TILE_TODO, readonly, todo_pixels, tile_todo, load_todo)
+TEXEL_PAIRS(BIND_TILE_RANGES, readonly, ranges, tile_ranges, load_range)
+TEXEL_WORDS(BIND_TILE_ORDER, readonly, order, tile_order, load_order)
+TEXEL_WORDS(BIND_TILE_PIXELS, readonly, listed_pixels, tile_pixels, load_listed)
+STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_unfinished, store_unfinished)
+STORED_WORDS(BIND_OUTLINES, passing, outlines, load_outline, store_outline)
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
@@ -76,22 +78,22 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
 const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 
 // Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
-uint pixels_of(uint tile) { return mix(imageLoad(todo_pixels, int(tile)).x, FIRST_PIXELS, what >> 31 == 1u); }
+uint pixels_of(uint tile) { return mix(load_todo(int(tile)), FIRST_PIXELS, what >> 31 == 1u); }
 
 ivec2 place_of(uint tile, uint place) {
     if (REFINED == 0u) return pixel_in_tile(place);
-    uint listed = imageLoad(listed_pixels, int(tile * TILE * TILE + place)).x;
+    uint listed = load_listed(int(tile * TILE * TILE + place));
     return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
 }
 
 void main() {
     uint draw_round = what & 0xfffffu;
     uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) item = imageLoad(order, int(tile_count() + item)).x;
+    if (ROUNDS == 1u) item = load_order(int(tile_count() + item));
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
-    uvec2 range = imageLoad(ranges, int(tile)).xy;
+    uvec2 range = load_range(int(tile));
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     if (range.x >= range.y) return;
@@ -103,11 +105,11 @@ void main() {
                   place_of(tile, min(place, max(count, 1u) - 1u));
     bool inside = pixel.x < size.x && pixel.y < size.y && place < count;
     ivec2 held = min(pixel, size - 1);
-    vec4 sum = imageLoad(picture, held.y * size.x + held.x);
+    vec4 sum = load_pixel(held.y * size.x + held.x);
     bool was_open = inside && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
     bool open = was_open;
     uint evaluated = 0u, shaded = 0u;
-    for (uint run = open ? 1u : 0u; run > 0u; --run) {
+    IF_ANY(open) {
         vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
         vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
         vec3 way = params.frame.ray_z + across;
@@ -119,20 +121,20 @@ void main() {
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint outline = NO_OUTLINE;
-        if (OUTLINES == 1u) outline = imageLoad(outlines, held.y * size.x + held.x).x;
-        uint current = imageLoad(entries, at).y;
+        if (OUTLINES == 1u) outline = load_outline(held.y * size.x + held.x);
+        uint current = load_entry(at).y;
         if (ROUNDS == 1u) {
-            bool same = went_on && imageLoad(entries, at - (went_on ? 1 : 0)).y == current;
-            sheet_sum = same ? imageLoad(unfinished, held.y * size.x + held.x) : vec4(0.0);
+            bool same = went_on && load_entry(at - (went_on ? 1 : 0)).y == current;
+            sheet_sum = same ? load_unfinished(held.y * size.x + held.x) : vec4(0.0);
             // A sheet that ended with the round before.
-            for (uint run = went_on && !same ? 1u : 0u; run > 0u; --run) fold(sum, open, imageLoad(unfinished, held.y * size.x + held.x));
+            IF_ANY(went_on && !same) fold(sum, open, load_unfinished(held.y * size.x + held.x));
         }
         uint length = range.y - range.x;
         for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
             uvec4 words;
             for (uint i = 0u; i < 4u; ++i) {
                 uint begin = base + i * MARKED_AT_ONCE, left = length - min(begin, length);
-                words[i] = imageLoad(marks, marks_at + int(begin / MARKED_AT_ONCE * CELLS)).x;
+                words[i] = load_mark(marks_at + int(begin / MARKED_AT_ONCE * CELLS));
                 words[i] = left == 0u ? 0u : words[i] & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
             }
             while ((words.x | words.y | words.z | words.w) != 0u && open) {
@@ -142,7 +144,7 @@ void main() {
                 uint rest = bits & bits - 1u;
                 words = uvec4(first == 0u ? rest : words.x, first == 1u ? rest : words.y, first == 2u ? rest : words.z,
                               first == 3u ? rest : words.w);
-                uvec2 entry = imageLoad(entries, at + int(base + first * MARKED_AT_ONCE) + findLSB(bits)).xy;
+                uvec2 entry = load_entry(at + int(base + first * MARKED_AT_ONCE) + findLSB(bits));
                 uint sheet = entry.y;
                 vec4 with_sheet = sum;
                 bool still_open = open;
@@ -186,15 +188,15 @@ void main() {
             }
         }
         // What the next round may go on with is the sheet of the last entry, whether or not it was here.
-        bool kept = goes_on && imageLoad(entries, at + int(range.y - range.x) - 1).y == current;
-        for (uint run = kept ? 0u : 1u; run > 0u; --run) {
+        bool kept = goes_on && load_entry(at + int(range.y - range.x) - 1).y == current;
+        IF_ANY(!kept) {
             fold(sum, open, sheet_sum);
             sheet_sum = vec4(0.0);
         }
-        for (uint write = goes_on && inside ? 1u : 0u; write > 0u; --write) imageStore(unfinished, held.y * size.x + held.x, sheet_sum);
-        for (uint write = was_open ? 1u : 0u; write > 0u; --write) {
-            imageStore(picture, held.y * size.x + held.x, sum);
-            if (OUTLINES == 1u) imageStore(outlines, held.y * size.x + held.x, uvec4(outline));
+        IF_ANY(goes_on && inside) store_unfinished(held.y * size.x + held.x, sheet_sum);
+        IF_ANY(was_open) {
+            store_pixel(held.y * size.x + held.x, sum);
+            if (OUTLINES == 1u) store_outline(held.y * size.x + held.x, outline);
         }
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);

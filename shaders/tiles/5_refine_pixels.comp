@@ -8,8 +8,9 @@
 layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_PICTURE, rgba32f) uniform imageBuffer picture;
-layout(binding = BIND_TILE_PIXELS, r32ui) uniform writeonly uimageBuffer pixels;
+#include "shaders/drivers/texels.glsl"
+STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+STORED_WORDS(BIND_TILE_PIXELS, pixels, tile_pixels, load_listed, store_listed)
 #include "shaders/tiles/pixel_in_tile.glsl"
 
 shared uvec2 rough;  // cells that are listed, a bit each: lists are the same whoever comes first
@@ -21,7 +22,7 @@ float largest(vec4 v) { return max(max(v.r, v.g), max(v.b, v.a)); }
 
 vec4 between(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - (a + d)) / 16.0; }
 
-void keep(ivec2 pixel, vec4 value) { imageStore(picture, pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
+void keep(ivec2 pixel, vec4 value) { store_pixel(pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
 
 void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
@@ -33,7 +34,7 @@ void main() {
     for (int y = 0; y < 4; ++y) {
         for (int x = 0; x < 4; ++x) {
             ivec2 pixel = clamp(first + int(STEP) * ivec2(x - 1, y - 1), ivec2(0), last);
-            at[y][x] = imageLoad(picture, pixel.y * size.x + pixel.x);
+            at[y][x] = load_pixel(pixel.y * size.x + pixel.x);
             seen[y][x] = shown(at[y][x]);
         }
     }
@@ -71,9 +72,9 @@ void main() {
         // Beyond the picture's sides there is nothing to draw; a list that names it does not.
         uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
         uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
-        imageStore(pixels, int(place), uvec4(code + half_code));
-        imageStore(pixels, int(place + 1u), uvec4(code + (half_code << 8)));
-        imageStore(pixels, int(place + 2u), uvec4(code + half_code + (half_code << 8)));
+        store_listed(int(place), code + half_code);
+        store_listed(int(place + 1u), code + (half_code << 8));
+        store_listed(int(place + 2u), code + half_code + (half_code << 8));
     }
     if (me == 0u) {
         UintsRef(params.frame.tile_todo).at[tile] = 3u * uint(bitCount(rough.x) + bitCount(rough.y));

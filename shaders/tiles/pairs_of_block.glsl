@@ -5,9 +5,8 @@
 
 layout(local_size_x = 128) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
-layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
 layout(push_constant) uniform Push { uint chunk; };
+#include "shaders/drivers/texels.glsl"
 #include "shaders/tiles/tiles_of_splat.glsl"
 
 const uint PAIR_GROUP = gl_WorkGroupSize.x;

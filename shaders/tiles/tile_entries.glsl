@@ -1,13 +1,14 @@
 // The walk over a chunk's splats, in the order of their sheets, by which tiles get theirs: each invocation owns a block of
 // consecutive entries and one column of the histogram, so there is no race and the order stays.
+#include "shaders/drivers/if_any.glsl"
+#include "shaders/drivers/iterations.h"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 16) in;  // columns are few: a larger workgroup would leave processors idle
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_TILE_COUNTERS, r32ui) uniform uimageBuffer counters;
-layout(binding = BIND_TILE_CLOSED, r32ui) uniform readonly uimageBuffer closed_pixels;
-layout(binding = BIND_TILE_TODO, r32ui) uniform readonly uimageBuffer todo_pixels;
+#include "shaders/drivers/texels.glsl"
+STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, load_counter, store_counter)
 layout(push_constant) uniform Push { uint chunk; };
 #include "shaders/tiles/tiles_of_splat.glsl"
 
@@ -22,8 +23,8 @@ Block block_of_invocation() {
     return Block(entries.x, column < params.frame.tile_blocks ? entries.y : entries.x, column);
 }
 
-uint count_at(uint place) { return imageLoad(counters, int(place)).x; }
-void set_count(uint place, uint value) { imageStore(counters, int(place), uvec4(value)); }
+uint count_at(uint place) { return load_counter(int(place)); }
+void set_count(uint place, uint value) { store_counter(int(place), value); }
 
 // The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
 // size lie in one chunk, so that a column may have many times the pairs of another.
@@ -51,7 +52,7 @@ Pairs begin_pairs(Block block, uint part) {
     Pairs pairs;
     pairs.entry = block.first;
     pairs.k = 0u;
-    for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
+    IF_ANY(block.first < block.last) {
         pairs.entry += count_at(at);
         pairs.k = count_at(at + 1u);
         load_entry(pairs, block);
@@ -72,7 +73,7 @@ void next_pair(inout Pairs pairs, Block block) {
 
 void end_pairs(Pairs pairs, Block block, uint part) {
     uint at = column_state(block.column, part);
-    for (uint run = block.first < block.last ? 1u : 0u; run > 0u; --run) {
+    IF_ANY(block.first < block.last) {
         set_count(at, pairs.entry - block.first);
         set_count(at + 1u, pairs.k);
     }

@@ -1,4 +1,6 @@
 // After shaders that declare WIDE_MARKS.
+#include "shaders/drivers/iterations.h"
+
 // Cells of a tile that entries are marked for, row by row: pixels, or 4 x 2 of them.
 const uint CELL_X = WIDE_MARKS == 1u ? 4u : 1u;
 const uint CELL_Y = WIDE_MARKS == 1u ? 2u : 1u;

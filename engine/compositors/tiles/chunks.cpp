@@ -6,8 +6,7 @@ namespace edgesplat {
 
 std::uint64_t chunk_pairs(const glm::ivec2& tiles, const gpu::DeviceProfile& profile) {
     const auto count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    // Of very large pictures, whose lists begin in very many places, fewer pairs at once.
-    const std::uint64_t most = count > std::uint64_t{1} << 17U ? profile.chunk_pairs / 8 : profile.chunk_pairs;
+    const std::uint64_t most = count > kManyTiles ? profile.chunk_pairs / 8 : profile.chunk_pairs;
     return std::min(most, std::max(profile.tile_pairs * count, std::uint64_t{1} << 12U));
 }
 

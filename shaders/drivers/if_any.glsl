@@ -1,0 +1,6 @@
+// `if`, before what takes longer than to look whether any invocation needs it: lavapipe runs both sides of an if for all eight that
+// go side by side, but no loop that none of them enters.
+#ifndef EDGESPLAT_IF_ANY_GLSL
+#define EDGESPLAT_IF_ANY_GLSL
+#define IF_ANY(condition) for (int any_one = (condition) ? 1 : 0; any_one > 0; --any_one)
+#endif
