@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "engine/accuracy/metrics.h"
@@ -111,6 +112,7 @@ SurfaceDifference surface_difference(const RenderResult& coarse, const RenderRes
             const bool here = a.at(x, y, 3) >= 0.5F, there = b.at(x, y, 3) >= 0.5F;
             result.invented += here && !there ? 1 : 0;
             result.lost += there && !here ? 1 : 0;
+            if (!coarse.depth || !fine.depth) continue;
             const double apart =
                 std::abs(static_cast<double>(coarse.depth->at(x, y, 0)) - static_cast<double>(fine.depth->at(x, y, 0)));
             result.displaced += here && there && apart > distance_mm ? 1 : 0;
@@ -119,6 +121,7 @@ SurfaceDifference surface_difference(const RenderResult& coarse, const RenderRes
     const double pixels = static_cast<double>(a.width) * a.height;
     for (double* share : {&result.invented, &result.lost, &result.displaced})
         *share /= pixels;
+    if (!coarse.depth || !fine.depth) result.displaced = std::numeric_limits<double>::quiet_NaN();
     return result;
 }
 
@@ -137,6 +140,7 @@ class Experiment {
     ResolutionReport run() {
         renderer_.set_volume(request_.volume);
         full_ = render_all(request_.settings);
+        full_rays_ = cast_all();
         for (const RenderResult& r : full_)
             report_.full.push_back(r.color);
         const reference::PreparedVolume model(*request_.volume, request_.scene, request_.settings);
@@ -162,6 +166,30 @@ class Experiment {
         return list;
     }
 
+    std::vector<RenderResult> cast_all() {
+        std::vector<RenderResult> list;
+        for (const ReportCamera& camera : report_.cameras)
+            list.push_back(renderer_.raycast(request_.scene, camera.camera, request_.settings, {}, request_.size.x,
+                                             request_.size.y));
+        return list;
+    }
+
+    /// What pictures of a copy show beside those of the full volume, into `variant`.
+    static void compare(const std::vector<RenderResult>& pictures, const std::vector<RenderResult>& full,
+                        double voxel_mm, VariantResult& variant) {
+        std::vector<ImageError> errors;
+        const double n = static_cast<double>(pictures.size());
+        for (std::size_t c = 0; c < pictures.size(); ++c) {
+            errors.push_back(image_error(pictures[c].color, full[c].color));
+            const SurfaceDifference d = surface_difference(pictures[c], full[c], voxel_mm);
+            variant.surface.invented += d.invented / n;
+            variant.surface.lost += d.lost / n;
+            variant.surface.displaced += d.displaced / n;
+            variant.pictures.push_back(pictures[c].color);
+        }
+        variant.rmse = pooled(errors).rms;
+    }
+
     FactorResult measure(int factor, const reference::PreparedVolume& full_model) {
         next(fmt::format("edges, factor {}", factor));
         FactorResult result;
@@ -180,22 +208,16 @@ class Experiment {
         const double voxel_mm = smallest_spacing(coarse->geometry);
         for (const auto& [name, settings] : variants_of(request_.settings)) {
             VariantResult variant{.name = name, .settings = settings};
-            const std::vector<RenderResult> pictures = render_all(settings);
-            std::vector<ImageError> errors;
-            for (std::size_t c = 0; c < pictures.size(); ++c) {
-                errors.push_back(image_error(pictures[c].color, full_[c].color));
-                const SurfaceDifference d = surface_difference(pictures[c], full_[c], voxel_mm);
-                const double n = static_cast<double>(pictures.size());
-                variant.surface.invented += d.invented / n;
-                variant.surface.lost += d.lost / n;
-                variant.surface.displaced += d.displaced / n;
-                variant.pictures.push_back(pictures[c].color);
-            }
-            variant.rmse = pooled(errors).rms;
+            compare(render_all(settings), full_, voxel_mm, variant);
             const reference::PreparedVolume model(*coarse, request_.scene, settings);
             variant.edges = edge_figures(model, coarser(surface.points, factor), range);
             result.variants.push_back(std::move(variant));
         }
+        VariantResult rays{.name = "rays", .settings = request_.settings};
+        compare(cast_all(), full_rays_, voxel_mm, rays);
+        rays.edges =
+            ray_edge_figures(*coarse, request_.scene.iso_values.front(), coarser(surface.points, factor), range);
+        result.variants.push_back(std::move(rays));
         const VariantResult plain = result.variants.front();
         for (VariantResult& v : result.variants) {
             v.recovered_rise =
@@ -209,7 +231,7 @@ class Experiment {
     const ResolutionRequest& request_;
     const ProgressFunction& progress_;
     ResolutionReport report_;
-    std::vector<RenderResult> full_;
+    std::vector<RenderResult> full_, full_rays_;
     std::size_t pieces_ = 1, done_ = 0;
 };
 

@@ -35,13 +35,14 @@ SurfaceDifference surface_difference(const RenderResult& coarse, const RenderRes
 
 /// One way to render one coarser copy; fine voxels, all cameras together.
 struct VariantResult {
-    std::string name;  ///< plain, paper, edge
+    /// plain, paper, edge; rays: the trilinear ray caster, against its own picture of the full volume.
+    std::string name;
     Settings settings;
     EdgeFigures edges;
     double rmse = 0;              ///< against the picture of the full volume, full scale = 1
     double recovered_rise = 0;    ///< (plain - this) / (plain - full), of the mean rise; 1: as sharp as the full volume
     double recovered_rmse = 0;    ///< (plain - this) / plain, of the RMSE
-    SurfaceDifference surface;    ///< by more than a coarse voxel
+    SurfaceDifference surface;    ///< by more than a coarse voxel; of rays `displaced` is not known, and NaN
     std::vector<Image> pictures;  ///< per camera
 };
 

@@ -78,7 +78,7 @@ std::string csv_of(const ResolutionReport& report) {
 }
 
 std::vector<std::string> cells_of(const std::string& name, const EdgeFigures& e, const VariantResult* v) {
-    const auto percent = [](double share) { return fmt::format("{:.2f} %", 100 * share); };
+    const auto percent = [](double share) { return share >= 0 ? fmt::format("{:.2f} %", 100 * share) : "-"; };
     return {name,
             fmt::format("{:.2f}", e.rise_mean),
             fmt::format("{:.2f}", e.location_mean),

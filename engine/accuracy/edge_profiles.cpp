@@ -108,15 +108,15 @@ SurfacePoints surface_points(const AnalyticScene& scene, int count) {
     return result;
 }
 
-EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<const SurfacePoint> points,
-                         const ProfileRange& range) {
-    Settings settings = prepared.settings();
-    settings.footprints = FootprintMode::Procedural;  // points need no table
-    const reference::Footprints footprints(settings, face_depth(prepared.scene(), prepared.volume().geometry));
+namespace {
+
+/// Of one profile a point, from one end of the range to the other.
+template <typename Profile>
+EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange& range, const Profile& profile) {
     std::vector<std::optional<ProfileEdge>> edges(points.size());
     reference::parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            edges[i] = profile_edge(two_tone_profile(prepared, footprints, points[i], range), -range.reach, range.step);
+            edges[i] = profile_edge(profile(points[i]), -range.reach, range.step);
     });
     EdgeFigures figures;
     for (const auto& edge : edges) {
@@ -135,6 +135,29 @@ EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<co
         for (double* mean : {&figures.rise_mean, &figures.location_mean, &figures.bias})
             *mean /= figures.measured;
     return figures;
+}
+
+}  // namespace
+
+EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<const SurfacePoint> points,
+                         const ProfileRange& range) {
+    Settings settings = prepared.settings();
+    settings.footprints = FootprintMode::Procedural;  // points need no table
+    const reference::Footprints footprints(settings, face_depth(prepared.scene(), prepared.volume().geometry));
+    return figures_of(points, range,
+                      [&](const SurfacePoint& point) { return two_tone_profile(prepared, footprints, point, range); });
+}
+
+EdgeFigures ray_edge_figures(const Volume& volume, double iso, std::span<const SurfacePoint> points,
+                             const ProfileRange& range) {
+    const reference::Field field{volume.geometry.dims, volume.values, {}};
+    return figures_of(points, range, [&](const SurfacePoint& point) {
+        std::vector<double> profile;
+        const int half = static_cast<int>(std::lround(range.reach / range.step));
+        for (int i = -half; i <= half; ++i)
+            profile.push_back(reference::sample(field, point.position + i * range.step * point.axis) >= iso ? 1 : 0);
+        return profile;
+    });
 }
 
 }  // namespace edgesplat::accuracy

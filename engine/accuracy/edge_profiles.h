@@ -47,4 +47,9 @@ struct EdgeFigures {
 EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<const SurfacePoint> points,
                          const ProfileRange& range = {});
 
+/// The same of what a trilinear ray caster shows: the interpolated field from `iso` on, whose edges have no rise.
+/// Points are in index space of the volume.
+EdgeFigures ray_edge_figures(const Volume& volume, double iso, std::span<const SurfacePoint> points,
+                             const ProfileRange& range = {});
+
 }  // namespace edgesplat::accuracy

@@ -230,6 +230,12 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
     EXPECT_NEAR(off.rise_mean, 1.05, 0.15);
     EXPECT_LT(on.rise_mean, 0.25);
     EXPECT_LT(on.location_mean, off.location_mean);
+    // Rays show where the interpolated field passes the iso-value, with no rise but the profile's own step.
+    const EdgeFigures rays = ray_edge_figures(volume, 0.5, points.points);
+    EXPECT_EQ(rays.measured, 20);
+    EXPECT_LE(rays.rise_max, 0.0100001);
+    EXPECT_GT(rays.location_mean, on.location_mean);
+    EXPECT_LT(rays.location_mean, 0.1);
 }
 
 TEST(AccuracyPage, TextIsSafeAndPicturesAreData) {
