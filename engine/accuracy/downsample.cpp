@@ -134,7 +134,7 @@ class Experiment {
         report_.request = request;
         report_.device = renderer.device();
         report_.cameras = report_cameras(*request.volume, request.scene, request.size.x, request.size.y);
-        pieces_ = 1 + 4 * request.factors.size();
+        pieces_ = 2 + 5 * request.factors.size();
     }
 
     ResolutionReport run() {
@@ -157,21 +157,26 @@ class Experiment {
         if (progress_ && !progress_(state)) throw Interrupted("stopped; nothing was written");
     }
 
-    std::vector<RenderResult> render_all(const Settings& settings) {
+    template <typename Picture>
+    std::vector<RenderResult> of_cameras(const Picture& picture) {
         next("pictures");
         std::vector<RenderResult> list;
         for (const ReportCamera& camera : report_.cameras)
-            list.push_back(renderer_.render(request_.scene, camera.camera, settings, request_.size.x, request_.size.y,
-                                            {.depth = true}));
+            list.push_back(picture(camera.camera));
         return list;
     }
 
+    std::vector<RenderResult> render_all(const Settings& settings) {
+        return of_cameras([&](const Camera& camera) {
+            return renderer_.render(request_.scene, camera, settings, request_.size.x, request_.size.y,
+                                    {.depth = true});
+        });
+    }
+
     std::vector<RenderResult> cast_all() {
-        std::vector<RenderResult> list;
-        for (const ReportCamera& camera : report_.cameras)
-            list.push_back(renderer_.raycast(request_.scene, camera.camera, request_.settings, {}, request_.size.x,
-                                             request_.size.y));
-        return list;
+        return of_cameras([&](const Camera& camera) {
+            return renderer_.raycast(request_.scene, camera, request_.settings, {}, request_.size.x, request_.size.y);
+        });
     }
 
     /// What pictures of a copy show beside those of the full volume, into `variant`.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <random>
 
 #include "engine/accuracy/metrics.h"
@@ -34,9 +35,10 @@ bool undisturbed(const AnalyticScene& scene, const SurfacePoint& point, double r
     return true;
 }
 
-/// One profile: the kernels of all voxels inside, summed along the axis.
-std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, const reference::Footprints& footprints,
-                                     const SurfacePoint& point, const ProfileRange& range) {
+/// What the kernels of all voxels inside sum up to, at places on the profile of a point.
+std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolume& prepared,
+                                                  const reference::Footprints& footprints, const SurfacePoint& point,
+                                                  const ProfileRange& range) {
     struct Splat {
         const reference::VoxelEdge* edge;
         glm::dvec3 center;
@@ -57,18 +59,14 @@ std::vector<double> two_tone_profile(const reference::PreparedVolume& prepared, 
             }
         }
     }
-    std::vector<double> profile;
-    const int half = static_cast<int>(std::lround(range.reach / range.step));
-    for (int i = -half; i <= half; ++i) {
-        const glm::dvec3 p = point.position + i * range.step * point.axis;
+    return [&footprints, splats = std::move(splats)](const glm::dvec3& p) {
         double sum = 0;
         for (const Splat& splat : splats) {
             const glm::dvec3 r = p - splat.center;
             if (glm::dot(r, r) < splat.reach * splat.reach) sum += footprints.at_point(*splat.edge, r);
         }
-        profile.push_back(sum);
-    }
-    return profile;
+        return sum;
+    };
 }
 
 SurfacePoints points_with_room(const AnalyticScene& scene, int count, double room) {
@@ -110,13 +108,19 @@ SurfacePoints surface_points(const AnalyticScene& scene, int count) {
 
 namespace {
 
-/// Of one profile a point, from one end of the range to the other.
-template <typename Profile>
-EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange& range, const Profile& profile) {
+/// `values_at(point)`: what the profile of that point has at a place.
+template <typename ValuesAt>
+EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange& range, const ValuesAt& values_at) {
     std::vector<std::optional<ProfileEdge>> edges(points.size());
+    const int half = static_cast<int>(std::lround(range.reach / range.step));
     reference::parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
-        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i)
-            edges[i] = profile_edge(profile(points[i]), -range.reach, range.step);
+        for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
+            const auto value_at = values_at(points[i]);
+            std::vector<double> profile;
+            for (int k = -half; k <= half; ++k)
+                profile.push_back(value_at(points[i].position + k * range.step * points[i].axis));
+            edges[i] = profile_edge(profile, -range.reach, range.step);
+        }
     });
     EdgeFigures figures;
     for (const auto& edge : edges) {
@@ -145,18 +149,14 @@ EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<co
     settings.footprints = FootprintMode::Procedural;  // points need no table
     const reference::Footprints footprints(settings, face_depth(prepared.scene(), prepared.volume().geometry));
     return figures_of(points, range,
-                      [&](const SurfacePoint& point) { return two_tone_profile(prepared, footprints, point, range); });
+                      [&](const SurfacePoint& point) { return two_tone(prepared, footprints, point, range); });
 }
 
 EdgeFigures ray_edge_figures(const Volume& volume, double iso, std::span<const SurfacePoint> points,
                              const ProfileRange& range) {
     const reference::Field field{volume.geometry.dims, volume.values, {}};
-    return figures_of(points, range, [&](const SurfacePoint& point) {
-        std::vector<double> profile;
-        const int half = static_cast<int>(std::lround(range.reach / range.step));
-        for (int i = -half; i <= half; ++i)
-            profile.push_back(reference::sample(field, point.position + i * range.step * point.axis) >= iso ? 1 : 0);
-        return profile;
+    return figures_of(points, range, [&](const SurfacePoint&) {
+        return [&](const glm::dvec3& p) { return reference::sample(field, p) >= iso ? 1.0 : 0.0; };
     });
 }
 

@@ -36,9 +36,8 @@ struct PlannedResource {
     vk::Format texels{};                   ///< of a buffer that shaders have as texels
     std::string contents;                  ///< "(splats) uint"
     std::string written, read;             ///< stems of passes, or "host"
-    bool host = false;                     ///< in memory that the host reads or writes
-    bool shared = false;                   ///< of gpu::Buffer::Place::Shared
-    bool grows = false;                    ///< a larger one of an earlier frame is kept
+    gpu::Buffer::Place place = gpu::Buffer::Place::Device;
+    bool grows = false;  ///< a larger one of an earlier frame is kept
     Held held = Held::Always;
 };
 

@@ -38,14 +38,14 @@ PlannedResource buffer(std::string name, std::uint64_t bytes, std::string conten
 }
 
 PlannedResource on_host(PlannedResource resource) {
-    resource.host = true;
+    resource.place = gpu::Buffer::Place::Host;
     return resource;
 }
 
 /// Likewise, unless what the device sees of it lies in memory of its own.
 PlannedResource shared(PlannedResource resource) {
-    resource.shared = true;
-    return on_host(std::move(resource));
+    resource.place = gpu::Buffer::Place::Shared;
+    return resource;
 }
 
 PlannedResource growing(PlannedResource resource) {
@@ -263,7 +263,6 @@ void add_targets(const std::vector<FramePlan>& f, std::uint64_t splats, const gp
                               buffer("output pixels", pixels * sizeof(glm::vec4), "(y, x) vec4", "7", "host")))));
     for (PlannedResource& resource : out) {
         resource.held = held;
-        if (resource.shared && profile.own_memory) resource.host = false;
         all.push_back(std::move(resource));
     }
 }

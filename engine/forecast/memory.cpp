@@ -133,7 +133,10 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
         const auto& [bytes, resource] = entry;
         const std::uint64_t before = held_as(name);
         uploads = uploads || (resource->image && resource->written == "host" && before < bytes);
-        Sums& place = sums.at(resource->host ? 1 : 0);
+        using Place = gpu::Buffer::Place;
+        const bool on_host =
+            resource->place == Place::Host || (resource->place == Place::Shared && !device.profile().own_memory);
+        Sums& place = sums.at(on_host ? 1 : 0);
         const bool first = rows.try_emplace(name, MemoryNeed::Row{name, 0, before}).second;
         rows[name].needed = std::max(rows[name].needed, bytes);
         place.by_time.at(static_cast<std::size_t>(when)) += resource->grows ? std::max(bytes, before) : bytes;

@@ -51,7 +51,7 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
                   const Division& division) {
     const auto& p = plan.params;
     commands.run([&] {
-        commands.to_device(targets.batches);
+        if (plan.variant.culled) commands.to_device(targets.batches);
         for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
             commands.fill(*zeroed, 0);
         if (!division.goes_on)
@@ -86,17 +86,17 @@ std::uint64_t TilePasses::most_pairs(std::uint32_t chunk, std::uint32_t columns)
 }
 
 void TilePasses::sort(std::uint32_t chunk) {
-    const std::uint32_t blocks = plan_.params.tile_blocks;
-    const auto steps = (most_pairs(chunk, blocks) + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS;
+    // Side by side a column is gone through at once.
+    const std::uint64_t in_column = how_.profile->side_by_side ? 0 : most_pairs(chunk, plan_.params.tile_blocks);
+    const auto steps = static_cast<std::uint32_t>((in_column + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
     if (how_.refined) {
         const std::uint64_t first = targets_.frame.mapped<shader::FrameParams>(1)[0].entries_first;
         const std::uint64_t room = padded_pairs(most_pairs(chunk), plan_.params.tiles);
         commands_.fill(targets_.tile_marks, ~0U, first * sizeof(std::uint32_t), room * sizeof(std::uint32_t));
         commands_.barrier();
     }
-    commands_.span("4_sort_tiles", [&] {
-        passes::sort_tiles(commands_, targets_.tile_counters, plan_.params, chunk, static_cast<std::uint32_t>(steps));
-    });
+    commands_.span("4_sort_tiles",
+                   [&] { passes::sort_tiles(commands_, targets_.tile_counters, plan_.params, chunk, steps); });
 }
 
 void TilePasses::prepare(std::uint32_t chunk) {

@@ -10,9 +10,6 @@ namespace edgesplat::gpu {
 
 namespace {
 
-// Beside a buffer of the device, in memory of the host: not among what the device has allocated.
-constexpr const char* kOfHost = "copy for the host";
-
 vk::BufferCreateInfo create_info(std::size_t bytes) {
     using Usage = vk::BufferUsageFlagBits;
     return {{},
@@ -46,14 +43,14 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     using Memory = vk::MemoryPropertyFlagBits;
     if (place == Place::Shared) {
         place = device.profile().own_memory ? Place::Device : Place::Host;
-        if (place == Place::Device) of_host_ = std::make_unique<Buffer>(device, bytes, Place::Host, kOfHost);
+        if (place == Place::Device) of_host_ = std::make_unique<Buffer>(device, bytes, Place::Copy, name);
     }
     const auto requirements = buffer_.getMemoryRequirements();
-    memory_ = place == Place::Host ? device.allocate(requirements, Memory::eHostCached,
-                                                     Memory::eHostVisible | Memory::eHostCoherent, true, name)
-                                   : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
+    memory_ = place != Place::Device ? device.allocate(requirements, Memory::eHostCached,
+                                                       Memory::eHostVisible | Memory::eHostCoherent, true, name)
+                                     : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
     buffer_.bindMemory(*memory_, 0);
-    if (place == Place::Host) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
+    if (place != Place::Device) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
     address_ = device.handle().getBufferAddress({*buffer_});
     // Where buffers are not loaded as texels, only what stands in for them has a view.
     constexpr std::size_t kStandIn = 16;
@@ -62,7 +59,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
         if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
     }
-    allocated_ = name == kOfHost ? 0 : requirements.size;
+    allocated_ = place == Place::Copy ? 0 : requirements.size;
     if (allocated_ > 0) device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
 }
 

@@ -15,7 +15,8 @@ class Buffer {
   public:
     /// Host: mapped, coherent, for what the CPU writes or reads. Shared: likewise, but what the device sees may lie in
     /// memory of its own (DeviceProfile::own_memory); then Commands::to_device and to_host bring it over.
-    enum class Place { Device, Host, Shared };
+    /// Copy: what the host has of such a buffer then, not counted among what the device has allocated.
+    enum class Place { Device, Host, Shared, Copy };
 
     Buffer() = default;
     /// `bytes` > 0 (0 becomes 16, so that an empty list still has an address). With `texels` it can be bound as texels

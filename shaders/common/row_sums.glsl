@@ -1,9 +1,9 @@
-// A row of a histogram, summed by a workgroup. The including shader declares 256 invocations.
+// A row of a histogram, summed by a workgroup.
 #include "shaders/common/workgroup_sums.glsl"
 
 // Counters [first, first + count) become the sums of those before them; returns the sum of all.
 uint sum_row(UintsRef counters, uint first, uint count) {
-    uint me = gl_LocalInvocationIndex, per_run = (count + 255u) / 256u;
+    uint me = gl_LocalInvocationIndex, per_run = (count + SUMS - 1u) / SUMS;
     uint begin = first + min(me * per_run, count), end = first + min((me + 1u) * per_run, count);
     uint sum = 0u;
     for (uint i = begin; i < end; ++i) sum += counters.at[i];
@@ -13,5 +13,5 @@ uint sum_row(UintsRef counters, uint first, uint count) {
         counters.at[i] = offset;
         offset += n;
     }
-    return sums[255];
+    return sums[SUMS - 1u];
 }

@@ -1,14 +1,15 @@
-// What the 256 invocations of a workgroup have before one another. The including shader declares that size.
+// What the invocations of a workgroup have before one another. The including shader declares the workgroup's size, along x.
 #ifndef EDGESPLAT_WORKGROUP_SUMS_GLSL
 #define EDGESPLAT_WORKGROUP_SUMS_GLSL
-shared uint sums[256];
+const uint SUMS = gl_WorkGroupSize.x;
+shared uint sums[SUMS];
 
-// The sum over the invocations before this one; sums[255] is that of all. Called by all of them.
+// The sum over the invocations before this one; sums[i] is that of the invocations up to i. Called by all of them.
 uint sum_before(uint own) {
     uint me = gl_LocalInvocationIndex;
     sums[me] = own;
     barrier();
-    for (uint step = 1u; step < 256u; step *= 2u) {
+    for (uint step = 1u; step < SUMS; step *= 2u) {
         uint left = me >= step ? sums[me - step] : 0u;
         barrier();
         sums[me] += left;

@@ -1,46 +1,30 @@
 // Buffers that shaders load as texels, which lavapipe does faster, or through their addresses, where a device has fewer texels than a
-// picture may have pixels. After the declaration of `params`; `format` of each is in bindings.h.
+// picture may have pixels. After the declaration of `params`; what each is for is in bindings.h.
 #ifndef EDGESPLAT_TEXELS_GLSL
 #define EDGESPLAT_TEXELS_GLSL
 layout(constant_id = SPEC_TEXELS) const uint TEXELS = 1u;
 
-// uint load(int), by the buffer's name and the field of FrameParams with its address; STORED_: void store(int, uint), too.
-#define TEXEL_WORDS(slot, access, name, address, load)                      \
-    layout(binding = slot, r32ui) uniform access uimageBuffer name;         \
-    uint load(int at) {                                                     \
-        if (TEXELS == 1u) return imageLoad(name, at).x;                     \
-        return UintsRef(params.frame.address).at[at];                       \
+uvec4 as_texel(uint value) { return uvec4(value, 0u, 0u, 0u); }
+uvec4 as_texel(uvec2 value) { return uvec4(value, 0u, 0u); }
+vec4 as_texel(vec4 value) { return value; }
+
+// A buffer by its name, its slot and the field of FrameParams with its address: T load(uint), of what is STORED void store(uint, T), too.
+#define TEXELS_OF(T, texel, image, Ref, slot, access, name, address, load) \
+    layout(binding = slot, texel) uniform access image name;               \
+    T load(uint at) {                                                      \
+        if (TEXELS == 1u) return T(imageLoad(name, int(at)));              \
+        return Ref(params.frame.address).at[at];                           \
     }
-#define STORED_WORDS(slot, name, address, load, store)                      \
-    TEXEL_WORDS(slot, restrict, name, address, load)                        \
-    void store(int at, uint value) {                                        \
-        if (TEXELS == 1u) imageStore(name, at, uvec4(value, 0u, 0u, 0u));   \
-        else UintsRef(params.frame.address).at[at] = value;                 \
+#define STORED_OF(T, texel, image, Ref, slot, name, address, load, store)          \
+    TEXELS_OF(T, texel, image, Ref, slot, restrict, name, address, load)           \
+    void store(uint at, T value) {                                                 \
+        if (TEXELS == 1u) imageStore(name, int(at), as_texel(value));              \
+        else Ref(params.frame.address).at[at] = value;                             \
     }
-// uvec2.
-#define TEXEL_PAIRS(slot, access, name, address, load)                      \
-    layout(binding = slot, rg32ui) uniform access uimageBuffer name;        \
-    uvec2 load(int at) {                                                    \
-        if (TEXELS == 1u) return imageLoad(name, at).xy;                    \
-        return PairsRef(params.frame.address).at[at];                       \
-    }
-#define STORED_PAIRS(slot, name, address, load, store)                      \
-    TEXEL_PAIRS(slot, restrict, name, address, load)                        \
-    void store(int at, uvec2 value) {                                       \
-        if (TEXELS == 1u) imageStore(name, at, uvec4(value, 0u, 0u));       \
-        else PairsRef(params.frame.address).at[at] = value;                 \
-    }
-// vec4.
-#define TEXEL_PIXELS(slot, access, name, address, load)                     \
-    layout(binding = slot, rgba32f) uniform access imageBuffer name;        \
-    vec4 load(int at) {                                                     \
-        if (TEXELS == 1u) return imageLoad(name, at);                       \
-        return PixelsRef(params.frame.address).at[at];                      \
-    }
-#define STORED_PIXELS(slot, name, address, load, store)                     \
-    TEXEL_PIXELS(slot, restrict, name, address, load)                       \
-    void store(int at, vec4 value) {                                        \
-        if (TEXELS == 1u) imageStore(name, at, value);                      \
-        else PixelsRef(params.frame.address).at[at] = value;                \
-    }
+#define TEXEL_WORDS(slot, name, address, load) TEXELS_OF(uint, r32ui, uimageBuffer, UintsRef, slot, readonly, name, address, load)
+#define TEXEL_PAIRS(slot, name, address, load) TEXELS_OF(uvec2, rg32ui, uimageBuffer, PairsRef, slot, readonly, name, address, load)
+#define TEXEL_PIXELS(slot, name, address, load) TEXELS_OF(vec4, rgba32f, imageBuffer, PixelsRef, slot, readonly, name, address, load)
+#define STORED_WORDS(slot, name, address, load, store) STORED_OF(uint, r32ui, uimageBuffer, UintsRef, slot, name, address, load, store)
+#define STORED_PAIRS(slot, name, address, load, store) STORED_OF(uvec2, rg32ui, uimageBuffer, PairsRef, slot, name, address, load, store)
+#define STORED_PIXELS(slot, name, address, load, store) STORED_OF(vec4, rgba32f, imageBuffer, PixelsRef, slot, name, address, load, store)
 #endif

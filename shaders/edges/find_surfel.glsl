@@ -1,8 +1,9 @@
 // Where the surface is nearest to a voxel beside it: a point of it at right angles, by Newton's method on the field.
 // docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(ivec3, vec3) and what finds voxels.
 
-// Whether samples around leave [low, high) downwards, upwards. No surface within SURFEL_REACH passes between samples further off.
 #include "shaders/drivers/if_any.glsl"
+
+// Whether samples around leave [low, high) downwards, upwards. No surface within SURFEL_REACH passes between samples further off.
 bvec2 crossed_around(ivec3 p, float low, float high) {
     bvec2 crossed = bvec2(false);
     for (int i = 0; i < 33; ++i) {

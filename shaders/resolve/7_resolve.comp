@@ -14,8 +14,8 @@ layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
-TEXEL_PIXELS(BIND_TILE_SHEETS, readonly, before, tile_sheets, load_before)  // the picture, as it was
-TEXEL_WORDS(BIND_OUTLINES, readonly, passing, outlines, load_outline)
+TEXEL_PIXELS(BIND_TILE_SHEETS, before, tile_sheets, load_before)  // the picture, as it was
+TEXEL_WORDS(BIND_OUTLINES, passing, outlines, load_outline)
 #include "shaders/resolve/other_side.glsl"
 
 void main() {

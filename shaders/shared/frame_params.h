@@ -125,6 +125,10 @@ layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatsRef {
     float at[];
 };
+// Of what a workgroup adds to and reads again.
+layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CountersRef {
+    uint at[];
+};
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer PairsRef {
     uvec2 at[];
 };

@@ -9,21 +9,15 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(push_constant) uniform Push { uint segment; };  // of each block: one after another
+#include "shaders/sheets/sheets_of_slot.glsl"
 
 void main() {
     uint block = gl_GlobalInvocationID.x;
-    uint per_block = (params.frame.slot_count + SORT_BLOCKS - 1u) / SORT_BLOCKS;
-    uint end = min((block + 1u) * per_block, params.frame.slot_count);
-    uint first = block * per_block + segment * params.frame.sort_segment, last = min(first + params.frame.sort_segment, end);
-    UintsRef sheets = UintsRef(params.frame.sheets), counters = UintsRef(params.frame.counters);
+    uvec2 slots = slots_of_block(block);
+    uint first = slots.x + segment * params.frame.sort_segment, last = min(first + params.frame.sort_segment, slots.y);
+    UintsRef counters = UintsRef(params.frame.counters);
     for (uint slot = first; slot < last; ++slot) {
-        uint sheet = sheets.at[slot];
-        if (SLICED == 1u) {
-            uint first = sheet & ((1u << SHEET_BITS) - 1u);
-            uint end = sheet != SHEET_NONE ? first + (sheet >> SHEET_BITS) + 1u : 0u;
-            for (sheet = first; sheet < end; ++sheet) ++counters.at[sheet * SORT_BLOCKS + block];
-        } else {
-            if (sheet != SHEET_NONE) ++counters.at[sheet * SORT_BLOCKS + block];
-        }
+        uvec2 sheets = sheets_of_slot(slot);
+        for (uint sheet = sheets.x; sheet < sheets.y; ++sheet) ++counters.at[sheet * SORT_BLOCKS + block];
     }
 }

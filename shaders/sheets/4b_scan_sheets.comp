@@ -9,27 +9,14 @@
 layout(local_size_x = 256) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(constant_id = SPEC_TILES) const uint TILES = 1u;
-#include "shaders/common/workgroup_sums.glsl"
+#include "shaders/common/row_sums.glsl"
 
 void main() {
     UintsRef counters = UintsRef(params.frame.counters);
-    uint me = gl_LocalInvocationIndex;
-    uint count = params.frame.sheet_count * SORT_BLOCKS;
-    uint per_run = (count + 255u) / 256u;
-    uint first = me * per_run, last = min(first + per_run, count);
-
-    uint sum = 0u;
-    for (uint i = first; i < last; ++i) sum += counters.at[i];
-    uint offset = sum_before(sum);
-    for (uint i = first; i < last; ++i) {
-        uint n = counters.at[i];
-        counters.at[i] = offset;
-        offset += n;
-    }
+    uint me = gl_LocalInvocationIndex, total = sum_row(counters, 0u, params.frame.sheet_count * SORT_BLOCKS);
     memoryBarrierBuffer();
     barrier();
 
-    uint total = sums[255];
     if (TILES == 1u) {
         UintsRef starts = UintsRef(params.frame.sheet_starts);
         for (uint s = me; s < params.frame.sheet_count; s += 256u) starts.at[s] = counters.at[s * SORT_BLOCKS];

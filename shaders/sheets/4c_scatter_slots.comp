@@ -9,22 +9,21 @@ layout(local_size_x = 256) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CountersRef { uint at[]; };
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 shared uvec2 together[256];  // sheets of the slots that are gone through at once
 
 void main() {
     uint block = gl_WorkGroupID.x, me = gl_LocalInvocationIndex;
-    uint first = block * slots_per_block(), end = min(first + slots_per_block(), params.frame.slot_count);
+    uvec2 slots = slots_of_block(block);
     CountersRef counters = CountersRef(params.frame.counters);
     UintsRef starts = UintsRef(params.frame.sheet_starts), order = UintsRef(params.frame.order);
-    for (uint base = first; base < end; base += 256u) {
+    for (uint base = slots.x; base < slots.y; base += 256u) {
         uint slot = base + me, number = slot;
-        uvec2 own = slot < end ? sheets_of_slot(slot) : uvec2(0u);
+        uvec2 own = slot < slots.y ? sheets_of_slot(slot) : uvec2(0u);
         together[me] = own;
         barrier();
-        if (CULLED == 1u && slot < end)
+        if (CULLED == 1u && slot < slots.y)
             number = PairsRef(params.frame.batches).at[slot / SPLAT_BATCH].x + slot % SPLAT_BATCH;
         for (uint sheet = own.x; sheet < own.y; ++sheet) {
             uint before = 0u;

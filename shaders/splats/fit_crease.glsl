@@ -1,8 +1,8 @@
 // A crease beside a splat: up to three planes between which its matter lies, where no quadric fits. docs/method.md, pass 2,
 // creases; mirrored by engine/reference/creases.h. In shaders/splats/fit_face.glsl.
+#include "shaders/drivers/if_any.glsl"
 
 // No array: what a loop indexes of one in a struct came out wrong on lavapipe 22.3.
-#include "shaders/drivers/if_any.glsl"
 struct CreaseFit {
     bool found;
     vec4 first;  // n, distance from the voxel; the nearest

@@ -15,11 +15,11 @@ void main() {
     uint me = gl_LocalInvocationIndex, tiles = uint(params.frame.tiles.x * params.frame.tiles.y);
     uint per_run = (tiles + 255u) / 256u, first = min(me * per_run, tiles), last = min(first + per_run, tiles);
     uint sum = 0u;
-    for (uint tile = first; tile < last; ++tile) sum += begin_of_list(load_range(int(tile)).x);
+    for (uint tile = first; tile < last; ++tile) sum += begin_of_list(load_range(tile).x);
     uint begin = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
-        uint end = begin + load_range(int(tile)).x;
-        store_range(int(tile), uvec2(begin, end));
+        uint end = begin + load_range(tile).x;
+        store_range(tile, uvec2(begin, end));
         begin = begin_of_list(end);
     }
 }

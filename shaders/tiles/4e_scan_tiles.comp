@@ -22,18 +22,18 @@ void main() {
 
     uint sum = 0u;
     for (uint tile = first; tile < last; ++tile) {
-        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += load_counter(int(i));
+        for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) sum += load_counter(i);
         sum = begin_of_list(sum);
     }
     uint offset = sum_before(sum);
     for (uint tile = first; tile < last; ++tile) {
         uint begin = offset;
         for (uint i = tile * blocks; i < tile * blocks + blocks; ++i) {
-            uint n = load_counter(int(i));
-            store_counter(int(i), offset);
+            uint n = load_counter(i);
+            store_counter(i, offset);
             offset += n;
         }
-        store_range(int(tile), uvec2(begin, offset));
+        store_range(tile, uvec2(begin, offset));
         offset = begin_of_list(offset);
     }
 }

@@ -14,5 +14,5 @@ void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
     uint sum = sum_row(UintsRef(params.frame.tile_counters), tile * params.frame.tile_blocks, params.frame.tile_blocks);
-    if (gl_LocalInvocationIndex == 0u) store_range(int(tile), uvec2(sum, 0u));
+    if (gl_LocalInvocationIndex == 0u) store_range(tile, uvec2(sum, 0u));
 }

@@ -5,8 +5,7 @@
 #include "shaders/tiles/pairs_of_block.glsl"
 #include "shaders/splats/sheet_of_entry.glsl"
 STORED_PAIRS(BIND_TILE_ENTRIES, entries_by_tile, tile_entries, load_entry, store_entry)
-TEXEL_PAIRS(BIND_TILE_RANGES, readonly, ranges, tile_ranges, load_range)
-layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CountersRef { uint at[]; };
+TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 
 shared uint sheets[PAIR_GROUP];  // of the entries
 
@@ -27,8 +26,8 @@ void main() {
             uint tile = tile_number(pair.tile), before = 0u;
             if (is_closed(tile)) continue;
             for (uint i = 0u; i < pair.k; ++i) before += touches(rects[i], pair.tile) ? 1u : 0u;
-            uint place = load_range(int(tile)).x + counters.at[tile * params.frame.tile_blocks + block] + before;
-            store_entry(int(params.frame.entries_first + place), uvec2(base + pair.k, sheets[pair.k]));
+            uint place = load_range(tile).x + counters.at[tile * params.frame.tile_blocks + block] + before;
+            store_entry(params.frame.entries_first + place, uvec2(base + pair.k, sheets[pair.k]));
         }
         memoryBarrierBuffer();
         barrier();

@@ -17,7 +17,7 @@ void main() {
         if (!is_closed(tile)) {
             uint place = tile * params.frame.tile_blocks + block.column, pair = count_at(place);
             set_count(place, pair + 1u);
-            store_entry(int(params.frame.entries_first + pair), uvec2(pairs.entry, sheet));
+            store_entry(params.frame.entries_first + pair, uvec2(pairs.entry, sheet));
         }
         next_pair(pairs, block);
     }

@@ -25,12 +25,12 @@ layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 #include "shaders/drivers/texels.glsl"
-TEXEL_WORDS(BIND_TILE_CLOSED, readonly, closed_pixels, tile_closed, load_closed)
-TEXEL_WORDS(BIND_TILE_TODO, readonly, todo_pixels, tile_todo, load_todo)
-TEXEL_PAIRS(BIND_TILE_ENTRIES, readonly, entries, tile_entries, load_entry)
+TEXEL_WORDS(BIND_TILE_CLOSED, closed_pixels, tile_closed, load_closed)
+TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
+TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
 STORED_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark, store_mark)
-TEXEL_PAIRS(BIND_TILE_RANGES, readonly, ranges, tile_ranges, load_range)
-TEXEL_WORDS(BIND_TILE_ORDER, readonly, order, tile_order, load_order)
+TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
+TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 layout(push_constant) uniform Push { uint draw_round; };
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
@@ -53,11 +53,11 @@ const float TOO_WIDE = 1e30;
 
 void main() {
     uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) tile = load_order(int(tile));
+    if (ROUNDS == 1u) tile = load_order(tile);
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
-    uvec2 range = load_range(int(tile));
+    uvec2 range = load_range(tile);
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
-    bool closed = load_closed(int(tile)) == load_todo(int(tile));
+    bool closed = load_closed(tile) == load_todo(tile);
     if (range.x >= range.y || closed) return;
     ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
     int row = corner.y + int(gl_LocalInvocationID.x * ROWS);
@@ -70,7 +70,7 @@ void main() {
         uint marked[2u * TILE];
         for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
         for (uint k = 0u; k < count; ++k) {
-            uvec2 entry = load_entry(int(params.frame.entries_first + base + k));
+            uvec2 entry = load_entry(params.frame.entries_first + base + k);
             SplatConic conic;
             if (PREPARED == 1u) conic = load_conic(entry.x);
             else conic = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y).conic;

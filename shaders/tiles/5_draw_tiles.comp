@@ -33,12 +33,12 @@ layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
-TEXEL_PAIRS(BIND_TILE_ENTRIES, readonly, entries, tile_entries, load_entry)
-TEXEL_WORDS(BIND_TILE_MARKS, readonly, marks, tile_marks, load_mark)
-TEXEL_WORDS(BIND_TILE_TODO, readonly, todo_pixels, tile_todo, load_todo)
-TEXEL_PAIRS(BIND_TILE_RANGES, readonly, ranges, tile_ranges, load_range)
-TEXEL_WORDS(BIND_TILE_ORDER, readonly, order, tile_order, load_order)
-TEXEL_WORDS(BIND_TILE_PIXELS, readonly, listed_pixels, tile_pixels, load_listed)
+TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
+TEXEL_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark)
+TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
+TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
+TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
+TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_unfinished, store_unfinished)
 STORED_WORDS(BIND_OUTLINES, passing, outlines, load_outline, store_outline)
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
@@ -78,22 +78,22 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
 const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 
 // Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
-uint pixels_of(uint tile) { return mix(load_todo(int(tile)), FIRST_PIXELS, what >> 31 == 1u); }
+uint pixels_of(uint tile) { return mix(load_todo(tile), FIRST_PIXELS, what >> 31 == 1u); }
 
 ivec2 place_of(uint tile, uint place) {
     if (REFINED == 0u) return pixel_in_tile(place);
-    uint listed = load_listed(int(tile * TILE * TILE + place));
+    uint listed = load_listed(tile * TILE * TILE + place);
     return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
 }
 
 void main() {
     uint draw_round = what & 0xfffffu;
     uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) item = load_order(int(tile_count() + item));
+    if (ROUNDS == 1u) item = load_order(tile_count() + item);
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
-    uvec2 range = load_range(int(tile));
+    uvec2 range = load_range(tile);
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     if (range.x >= range.y) return;

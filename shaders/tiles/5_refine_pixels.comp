@@ -72,9 +72,9 @@ void main() {
         // Beyond the picture's sides there is nothing to draw; a list that names it does not.
         uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
         uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
-        store_listed(int(place), code + half_code);
-        store_listed(int(place + 1u), code + (half_code << 8));
-        store_listed(int(place + 2u), code + half_code + (half_code << 8));
+        store_listed(place, code + half_code);
+        store_listed(place + 1u, code + (half_code << 8));
+        store_listed(place + 2u, code + half_code + (half_code << 8));
     }
     if (me == 0u) {
         UintsRef(params.frame.tile_todo).at[tile] = 3u * uint(bitCount(rough.x) + bitCount(rough.y));

@@ -8,26 +8,19 @@ layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params
 layout(push_constant) uniform Push { uint chunk; };
 #include "shaders/drivers/texels.glsl"
 #include "shaders/tiles/tiles_of_splat.glsl"
+#include "shaders/common/workgroup_sums.glsl"
 
 const uint PAIR_GROUP = gl_WorkGroupSize.x;
 shared uvec4 rects[PAIR_GROUP];  // tiles of each entry: x0, y0, x1, y1, half open
-shared uint ends[PAIR_GROUP];    // pairs of the entries up to each
 
-// Entries [base, end), as far as a group goes: how many pairs they have.
+// Entries [base, end), as far as a group goes: how many pairs they have; `sums` says where those of each end.
 uint load_pairs(uint base, uint end) {
     uint me = gl_LocalInvocationIndex, entry = base + me;
     uvec4 own = entry < end ? tiles_of(UintsRef(params.frame.order).at[min(entry, end - 1u)]) : uvec4(0u);
-    barrier();
+    barrier();  // the last entries are done with
     rects[me] = own;
-    ends[me] = (own.z - own.x) * (own.w - own.y);
-    barrier();
-    for (uint step = 1u; step < PAIR_GROUP; step *= 2u) {
-        uint left = me >= step ? ends[me - step] : 0u;
-        barrier();
-        ends[me] += left;
-        barrier();
-    }
-    return ends[PAIR_GROUP - 1u];
+    sum_before((own.z - own.x) * (own.w - own.y));
+    return sums[PAIR_GROUP - 1u];
 }
 
 struct Pair {
@@ -37,8 +30,8 @@ struct Pair {
 
 Pair pair_of(uint number) {
     uint k = 0u;
-    for (uint step = PAIR_GROUP / 2u; step > 0u; step /= 2u) k += ends[k + step - 1u] <= number ? step : 0u;
-    uint local = number - (k > 0u ? ends[k - 1u] : 0u), across = rects[k].z - rects[k].x;
+    for (uint step = PAIR_GROUP / 2u; step > 0u; step /= 2u) k += sums[k + step - 1u] <= number ? step : 0u;
+    uint local = number - (k > 0u ? sums[k - 1u] : 0u), across = rects[k].z - rects[k].x;
     return Pair(k, rects[k].xy + uvec2(local % across, local / across));
 }
 

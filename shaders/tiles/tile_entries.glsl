@@ -8,7 +8,7 @@
 layout(local_size_x = 16) in;  // columns are few: a larger workgroup would leave processors idle
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
-STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, load_counter, store_counter)
+STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, count_at, set_count)
 layout(push_constant) uniform Push { uint chunk; };
 #include "shaders/tiles/tiles_of_splat.glsl"
 
@@ -22,9 +22,6 @@ Block block_of_invocation() {
     uvec2 entries = entries_of_block(column);
     return Block(entries.x, column < params.frame.tile_blocks ? entries.y : entries.x, column);
 }
-
-uint count_at(uint place) { return load_counter(int(place)); }
-void set_count(uint place, uint value) { store_counter(int(place), value); }
 
 // The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
 // size lie in one chunk, so that a column may have many times the pairs of another.

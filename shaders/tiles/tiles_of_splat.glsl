@@ -1,5 +1,5 @@
-TEXEL_WORDS(BIND_TILE_CLOSED, readonly, closed_pixels, tile_closed, load_closed)
-TEXEL_WORDS(BIND_TILE_TODO, readonly, todo_pixels, tile_todo, load_todo)
+TEXEL_WORDS(BIND_TILE_CLOSED, closed_pixels, tile_closed, load_closed)
+TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
 
 // Tiles that a splat touches: x0, y0, x1, y1, half open.
 uvec4 tiles_of(uint number) {
@@ -8,7 +8,7 @@ uvec4 tiles_of(uint number) {
 }
 
 // Whether no pixel of a tile takes more.
-bool is_closed(uint tile) { return load_closed(int(tile)) == load_todo(int(tile)); }
+bool is_closed(uint tile) { return load_closed(tile) == load_todo(tile); }
 
 // Entries of a block of the chunk, half open.
 uvec2 entries_of_block(uint block) {
