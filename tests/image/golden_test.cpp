@@ -40,6 +40,7 @@ Image seen(const ImageCase& c) {
 class Golden : public testing::TestWithParam<ImageCase> {};
 
 TEST_P(Golden, IsTheSame) {
+    if (const std::string why = refusal_of_layers(GetParam()); !why.empty()) GTEST_SKIP() << why;
     // Pictures of a profile that is forced lie apart.
     const char* profile = std::getenv("EDGESPLAT_DEVICE_PROFILE");
     const auto folder = std::filesystem::path(EDGESPLAT_PICTURES) / (profile == nullptr ? "" : profile);

@@ -375,6 +375,18 @@ std::vector<ImageCase> golden_cases() {
     return cases;
 }
 
+std::string refusal_of_layers(const ImageCase& c) {
+    const auto& lights = c.shot.scene.lights;
+    if (c.shot.settings.sheet_format == SheetFormat::Tiles && std::ranges::none_of(lights, &Light::shadows)) return {};
+    try {
+        render(c.shot);
+    } catch (const Error& error) {
+        if (std::string_view(error.what()).find("no shaderOutputLayer") == std::string_view::npos) throw;
+        return error.what();
+    }
+    return {};
+}
+
 Image render_on_device(const ImageCase& c) {
     const RenderResult r = render(c.shot, {.tau = c.output == Output::Tau,
                                            .depth = c.output == Output::Depth,

@@ -28,6 +28,9 @@ std::vector<ImageCase> reference_cases();
 /// Held against the pictures in tests/image/golden.
 std::vector<ImageCase> golden_cases();
 
+/// Where the device has no layers and the case needs them: what the renderer says. Empty otherwise.
+std::string refusal_of_layers(const ImageCase& image_case);
+
 /// The output of a case as the device renders it.
 Image render_on_device(const ImageCase& image_case);
 

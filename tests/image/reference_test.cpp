@@ -34,6 +34,10 @@ void blank_unseen(Image& image, const Image& color) {
 TEST(Reference, EveryCaseAgrees) {
     for (const ImageCase& c : reference_cases()) {
         SCOPED_TRACE(c.name);
+        if (const std::string why = refusal_of_layers(c); !why.empty()) {
+            std::printf("%-40s not drawn: %s\n", c.name.c_str(), why.c_str());
+            continue;
+        }
         const reference::PreparedVolume prepared(*c.shot.volume, c.shot.scene, c.shot.settings, true);
         Image expected = prepared.render(c.shot.camera, c.shot.width, c.shot.height, c.output);
         Image actual = render_on_device(c);

@@ -9,6 +9,8 @@
 namespace edgesplat::test {
 namespace {
 
+class SweepLight : public NeedsLayers<> {};
+
 /// First and second: the lights with shadows.
 Reaches device_reaches(const PassScene& s) {
     return reaches_of(s, &VolumeResources::shadows);
@@ -52,7 +54,7 @@ glm::dvec3 place_of(const reference::SplatRecord& record, const glm::ivec3& dims
     return {v % dims.x, v / dims.x % dims.y, v / dims.x / dims.y};
 }
 
-TEST(SweepLight, EqualsTheReferencesOpticalDepths) {
+TEST_F(SweepLight, EqualsTheReferencesOpticalDepths) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const VolumeGeometry& geometry = s.volume.geometry;
@@ -90,7 +92,7 @@ TEST(SweepLight, EqualsTheReferencesOpticalDepths) {
 }
 
 /// A haze slab over an opaque floor, both across z, seen by light from several directions.
-TEST(SweepLight, AnAbsorbingSlabLetsThroughWhatItsThicknessSays) {
+TEST_F(SweepLight, AnAbsorbingSlabLetsThroughWhatItsThicknessSays) {
     const glm::ivec3 dims(48, 48, 40);
     const double haze = 0.12, thickness = 8;
     for (const glm::dvec3 spacing : {glm::dvec3(1), glm::dvec3(1, 0.8, 1.7)}) {
@@ -140,7 +142,7 @@ void for_floor(const Reaches& got, const glm::ivec3& dims, double top, const Vis
     }
 }
 
-TEST(SweepLight, ABallsShadowIsAnEllipseAtTheRightPlaceAndThePlateHasNoAcne) {
+TEST_F(SweepLight, ABallsShadowIsAnEllipseAtTheRightPlaceAndThePlateHasNoAcne) {
     const glm::ivec3 dims(48, 48, 40);
     const glm::dvec3 ball(20, 24, 26);
     const double r = 7, top = 6.4;
@@ -182,7 +184,7 @@ TEST(SweepLight, ABallsShadowIsAnEllipseAtTheRightPlaceAndThePlateHasNoAcne) {
     }
 }
 
-TEST(SweepLight, APointLightsShadowGrowsWithTheDistance) {
+TEST_F(SweepLight, APointLightsShadowGrowsWithTheDistance) {
     const glm::ivec3 dims(56, 56, 40);
     const glm::dvec3 ball(27.5, 27.5, 22);
     const double r = 4, top = 5.4;
@@ -214,7 +216,7 @@ TEST(SweepLight, APointLightsShadowGrowsWithTheDistance) {
     }
 }
 
-TEST(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
+TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
     PassScene s = pass_scenes()[0];
     const Light a = sun({0.3, -0.4, 1}), b = lamp(s.volume.geometry.to_world({-20, 5, 30}));
     s.scene.lights = {a};
@@ -235,7 +237,7 @@ TEST(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
     EXPECT_GT(state.collect(s.scene, s.settings, false), 0);
 }
 
-TEST(SweepLight, NothingIsThereWithoutIt) {
+TEST_F(SweepLight, NothingIsThereWithoutIt) {
     PassScene s = pass_scenes()[0];
     RendererState& state = prepared(s);
     EXPECT_FALSE(state.volume_resources.shadows);
@@ -250,7 +252,7 @@ TEST(SweepLight, NothingIsThereWithoutIt) {
     EXPECT_FALSE(state.volume_resources.shadows);
 }
 
-TEST(SweepLight, LightsAnywhereGiveFiniteShares) {
+TEST_F(SweepLight, LightsAnywhereGiveFiniteShares) {
     PassScene s = pass_scenes()[1];
     const VolumeGeometry& geometry = s.volume.geometry;
     const glm::dvec3 middle = geometry.to_world(0.5 * glm::dvec3(geometry.dims - 1));

@@ -45,7 +45,7 @@ struct Variant {
     double spacing;
 };
 
-class SlicedSheets : public testing::TestWithParam<Variant> {
+class SlicedSheets : public NeedsLayers<testing::TestWithParam<Variant>> {
   protected:
     static PassScene with(PassScene s) {
         s.settings.sheets = SheetCut::Sliced;

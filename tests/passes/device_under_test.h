@@ -5,6 +5,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <string_view>
 
 #include "engine/renderer/state.h"
@@ -26,6 +27,20 @@ inline RendererState& device_under_test() {
     }
     return *state;
 }
+
+/// Why the device under test draws no sheets in layers, and so no shadows either; empty where it does.
+inline const std::string& layers_obstacle() {
+    return device_under_test().device.layers_obstacle();
+}
+
+/// Tests of sheets in layers: skipped, with the reason, on a device that has none.
+template <typename Base = testing::Test>
+class NeedsLayers : public Base {
+  protected:
+    void SetUp() override {
+        if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
+    }
+};
 
 /// Closes the device before main ends: the validation layer's own statics are gone when ours would be destroyed.
 class DeviceClosesInMain : public testing::Environment {

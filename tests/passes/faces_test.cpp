@@ -156,7 +156,7 @@ struct Drawn {
     bool clip = false;
 };
 
-class DrawFaces : public testing::TestWithParam<Drawn> {};
+class DrawFaces : public NeedsLayers<testing::TestWithParam<Drawn>> {};
 
 TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
     PassScene s = with_faces(pass_scenes()[GetParam().scene]);

@@ -101,6 +101,11 @@ class ZeroCost : public testing::TestWithParam<std::size_t> {
     void SetUp() override {
         if (effect().name == "refined pixels" && !device_under_test().device.profile().refines)
             GTEST_SKIP() << "every pixel is drawn on such a device";
+        try {
+            device_under_test().need_layers(with().scene, with().settings);
+        } catch (const Error& error) {
+            GTEST_SKIP() << error.what();
+        }
     }
     const Effect& effect() const { return effect_table()[GetParam()]; }
 
