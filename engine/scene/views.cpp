@@ -115,22 +115,29 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
     const auto count = static_cast<std::int64_t>(end / step);
     const IndexClip clip = index_clip(request.scene->effects.clip, geometry);
     const glm::ivec3 last = geometry.dims - 1;
+    const glm::dmat3 to_normal = glm::transpose(glm::inverse(geometry.index_to_world_axes));
+    bool in_volume = false;  // the place before
     for (std::int64_t i = 0; i <= count; ++i) {
         const double t = static_cast<double>(i) * step;
         const glm::dvec3 place = geometry.to_index(eye + t * direction);
         const glm::ivec3 index(glm::round(place));
-        if (glm::any(glm::lessThan(index, glm::ivec3(0))) || glm::any(glm::greaterThan(index, last))) continue;
-        if (!shows(*request.scene, static_cast<double>(value_at(volume, index))) || clip.cuts_away(place)) continue;
+        const bool enters = !in_volume;
+        in_volume = glm::all(glm::greaterThanEqual(index, glm::ivec3(0))) && glm::all(glm::lessThanEqual(index, last));
+        if (!in_volume || clip.cuts_away(place) || !shows(*request.scene, static_cast<double>(value_at(volume, index))))
+            continue;
         glm::dvec3 gradient(0);
         for (int axis = 0; axis < 3; ++axis) {
             glm::ivec3 up = index, down = index;
             up[axis] = std::min(index[axis] + 1, last[axis]);
             down[axis] = std::max(index[axis] - 1, 0);
-            gradient[axis] = static_cast<double>(value_at(volume, up) - value_at(volume, down));
+            // Matter that the volume's border cuts is flat there, whatever it is within.
+            if (!enters || i == 0)
+                gradient[axis] = static_cast<double>(value_at(volume, up) - value_at(volume, down));
+            else if (up[axis] - down[axis] < 2)
+                gradient[axis] = 1;
         }
-        glm::dvec3 normal = glm::transpose(glm::inverse(geometry.index_to_world_axes)) * gradient;
+        glm::dvec3 normal = to_normal * gradient;
         const double length = glm::length(normal);
-        // Matter that the volume's border cuts has none of its own.
         normal = length > 0 ? normal / length : -direction;
         return Meeting{t, glm::dot(normal, direction) > 0 ? -normal : normal};
     }
@@ -159,8 +166,9 @@ std::optional<glm::dvec3> point_to_look_at(const Camera& camera, const ViewReque
     return grazed;
 }
 
-/// How much a picture tells of shape: the entropy of the directions that surfaces face in it, by share of the picture.
-/// A wall, however near, tells nothing; a slab from its narrow side is small.
+/// How much a picture tells of shape: in how many directions surfaces face (the exponential of their entropy), by the
+/// area that they cover across the rays, in mm^2. A wall, however near, tells nothing; a slab from its narrow side is
+/// small, and so is a row of things from its end, however large the first of them is drawn.
 double told_by(const Camera& camera, const ViewRequest& request) {
     constexpr int kRays = 40, kBins = 6;  // along a side of the picture; of directions
     const CameraFrame frame = camera_frame(camera);
@@ -177,13 +185,14 @@ double told_by(const Camera& camera, const ViewRequest& request) {
             const auto found = first_surface(camera.eye, direction, request);
             if (!found) continue;
             const int column = bin(glm::dot(found->normal, frame.right)), row = bin(glm::dot(found->normal, frame.up));
-            ++faced[static_cast<std::size_t>(row * kBins + column)];
-            ++met;
+            const double area = found->distance * found->distance;  // rays are as far apart as they are long
+            faced[static_cast<std::size_t>(row * kBins + column)] += area;
+            met += area;
         }
     double entropy = 0;
-    for (const double count : faced)
-        if (count > 0) entropy -= count / met * std::log(count / met);
-    return entropy * met / (kRays * kRays);
+    for (const double area : faced)
+        if (area > 0) entropy -= area / met * std::log(area / met);
+    return std::exp(entropy) * met;
 }
 
 Camera camera_around(const std::vector<glm::dvec3>& points, const glm::dvec3& direction, const glm::dvec3& up,

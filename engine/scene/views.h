@@ -30,8 +30,8 @@ std::span<const std::string_view> view_names();
 /// is; a voxel of it covers 24 pixels, in the middle. Throws Error listing the names.
 Camera named_view(std::string_view name, const ViewRequest& request);
 
-/// Of the views along the world's axes the one that tells most of what is seen: surfaces that face many ways and fill
-/// the picture. front, unless another tells clearly more (from the other side of a container, along a slab's axis). The
+/// Of the views along the world's axes the one that tells most of what is seen: surfaces that face many ways and are
+/// large. front, unless another tells clearly more (from the other side of a container, along a slab's axis). The
 /// same volume and scene have always the same.
 std::string_view telling_view(const ViewRequest& request);
 

@@ -161,6 +161,37 @@ TEST(SceneViews, CloseLooksAtASurfaceWhereTheMiddleHasNone) {
     }
 }
 
+/// 40 x 70 x 40 voxels of `inside`, a distance in voxels, > 0 within.
+template <typename Inside>
+Volume volume_of(const Inside& inside) {
+    Volume volume;
+    volume.geometry.dims = {40, 70, 40};
+    for (int z = 0; z < 40; ++z)
+        for (int y = 0; y < 70; ++y)
+            for (int x = 0; x < 40; ++x)
+                volume.values.push_back(static_cast<float>(std::clamp(0.5 + inside(glm::dvec3(x, y, z)), 0.0, 1.0)));
+    volume.max_value = 1;
+    return volume;
+}
+
+std::string_view told_best(const Volume& volume) {
+    return telling_view({&volume, &surface_scene(), 45, 300, 300, true});
+}
+
+TEST(SceneViews, ThingsInARowAreSeenFromTheSideThoughOneFillsThePictureFromTheEnd) {
+    const auto ball = [](const glm::dvec3& p, double y) { return 13 - glm::length(p - glm::dvec3(19.5, y, 19.5)); };
+    EXPECT_EQ(told_best(volume_of([&](const glm::dvec3& p) { return ball(p, 20); })), "front");
+    EXPECT_NE(told_best(volume_of([&](const glm::dvec3& p) { return std::max(ball(p, 15), ball(p, 50)); })), "front");
+}
+
+TEST(SceneViews, ACutThroughMatterTellsNothingHoweverRoughTheMatterIs) {
+    // Half a ball whose cut faces front, of matter that is nowhere smooth.
+    Volume half = volume_of([](const glm::dvec3& p) { return 18 - glm::length(p - glm::dvec3(19.5, 0, 19.5)); });
+    for (std::size_t i = 0; i < half.values.size(); ++i)
+        if (half.values[i] >= 1) half.values[i] = 0.7F + 0.3F * static_cast<float>(i * 7919 % 101) / 101;
+    EXPECT_NE(told_best(half), "front");
+}
+
 TEST(SceneViews, UnknownNameListsTheNames) {
     const Volume volume = oblique_volume();
     EXPECT_THAT(
