@@ -121,7 +121,7 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
         const double t = static_cast<double>(i) * step;
         const glm::dvec3 place = geometry.to_index(eye + t * direction);
         const glm::ivec3 index(glm::round(place));
-        const bool enters = !in_volume;
+        const bool at_border = i > 0 && !in_volume;
         in_volume = glm::all(glm::greaterThanEqual(index, glm::ivec3(0))) && glm::all(glm::lessThanEqual(index, last));
         if (!in_volume || clip.cuts_away(place) || !shows(*request.scene, static_cast<double>(value_at(volume, index))))
             continue;
@@ -130,11 +130,9 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
             glm::ivec3 up = index, down = index;
             up[axis] = std::min(index[axis] + 1, last[axis]);
             down[axis] = std::max(index[axis] - 1, 0);
+            const double rises = static_cast<double>(value_at(volume, up) - value_at(volume, down));
             // Matter that the volume's border cuts is flat there, whatever it is within.
-            if (!enters || i == 0)
-                gradient[axis] = static_cast<double>(value_at(volume, up) - value_at(volume, down));
-            else if (up[axis] - down[axis] < 2)
-                gradient[axis] = 1;
+            gradient[axis] = !at_border ? rises : up[axis] - down[axis] < 2 ? 1 : 0;
         }
         glm::dvec3 normal = to_normal * gradient;
         const double length = glm::length(normal);
