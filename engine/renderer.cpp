@@ -6,6 +6,7 @@
 #include "engine/error.h"
 #include "engine/image/sample_mean.h"
 #include "engine/overlays/overlays.h"
+#include "engine/plan/resource_table.h"
 #include "engine/renderer/state.h"
 #include "engine/volume/filters.h"
 #include "footprints/kernel.h"
@@ -13,9 +14,6 @@
 
 namespace edgesplat {
 namespace {
-
-using Place = gpu::Buffer::Place;
-using Usage = vk::ImageUsageFlagBits;
 
 /// Channels [first, first + count) of the RGBA picture in `pixels`.
 Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {
@@ -32,24 +30,18 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
 }  // namespace
 
 RendererState::RendererState(const DeviceChoice& choice) : DeviceState(choice), opened_as(choice) {
-    targets.frame = gpu::Buffer(device, sizeof(shader::FrameParams), Place::Host, "frame parameters");
-    targets.drawn = gpu::Buffer(device, 3 * sizeof(std::uint32_t), Place::Host, "drawn splats");
-    const auto indices = passes::quad_indices();
-    targets.indices = gpu::Buffer(device, indices.size() * sizeof(indices[0]), Place::Host, "quad indices");
-    std::copy(indices.begin(), indices.end(), targets.indices.mapped<std::uint32_t>(indices.size()).begin());
+    for (const TargetBufferRow& row : target_buffer_rows())
+        if (row.always) targets.*row.buffer = gpu::Buffer(device, row.bytes({}, device.profile()), row.place, row.text.name);
+    std::ranges::copy(passes::quad_indices(), targets.indices.mapped<std::uint32_t>(targets.indices.bytes() / sizeof(std::uint32_t)).begin());
     bindings.write(volume_resources, targets);
     commands.run([&] { bindings.prepare(commands); });
 }
 
 void upload_volume(RendererState& state) {
     const auto field = scaled_field(*state.volume);
+    const VolumeImageRow& row = row_of(&VolumeResources::volume);
     auto& image = state.volume_resources.volume;
-    image = gpu::GpuImage(state.device,
-                          {.format = vk::Format::eR32Sfloat,
-                           .size = state.volume->geometry.dims,
-                           .volume = true,
-                           .usage = Usage::eStorage | Usage::eTransferDst},
-                          "volume");
+    image = gpu::GpuImage(state.device, shape_of(row, state.volume->geometry.dims), row.text.name);
     upload_image(state.commands, state.device, image, field.data(), sizeof(float));
 }
 
@@ -58,9 +50,8 @@ double RendererState::collect(const Scene& scene, const Settings& settings, bool
     const auto start = Clock::now();
     collection_times.clear();
     const bool anew = changed || !collected || *collected != wanted;
-    const bool global =
-        wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic;  // coefficients depend on all samples
-    if (changed && collected == wanted && !global)
+    // The spline's coefficients depend on all samples.
+    if (changed && collected == wanted && !wanted.takes_coefficients())
         collect_changes();
     else if (anew)
         collect_anew(wanted);
@@ -88,7 +79,7 @@ void RendererState::collect_anew(const CollectionPlan& wanted) {
     shadowed.reset();
     volume_resources.occlusion = {};
     volume_resources.shadows = {};
-    if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic) provide_coefficients();
+    if (wanted.takes_coefficients()) provide_coefficients();
     collection_times = run_collection(device, commands, bindings, wanted, volume_resources);
     if (wanted.edge_field) voxels_estimated += volume->geometry.voxel_count();
     collected = wanted;
@@ -99,12 +90,8 @@ bool RendererState::provide_coefficients() {
     if (volume_resources.coefficients) return false;
     const glm::ivec3 dims = volume->geometry.dims;
     const auto coefficients = bspline_coefficients(scaled_field(*volume), dims);
-    volume_resources.coefficients = gpu::GpuImage(device,
-                                                  {.format = vk::Format::eR32Sfloat,
-                                                   .size = dims,
-                                                   .volume = true,
-                                                   .usage = Usage::eStorage | Usage::eTransferDst},
-                                                  "B-spline coefficients");
+    const VolumeImageRow& row = row_of(&VolumeResources::coefficients);
+    volume_resources.coefficients = gpu::GpuImage(device, shape_of(row, dims), row.text.name);
     upload_image(commands, device, volume_resources.coefficients, coefficients.data(), sizeof(float));
     return true;
 }

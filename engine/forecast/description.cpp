@@ -148,19 +148,19 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     out.estimate = estimate_basis(device);
     for (const PlannedResource& resource : forecast.resources) {
         const auto same = std::ranges::find_if(out.resources, [&](const ResourceDescription& r) {
-            return r.name == resource.name && r.held == name_of(resource.held);
+            return r.name == resource.text.name && r.held == name_of(resource.held);
         });
         if (same != out.resources.end()) {
             same->bytes += resource.bytes;  // placeholders
             continue;
         }
-        ResourceDescription row{resource.name,
+        ResourceDescription row{resource.text.name,
                                 shape_of(resource),
                                 resource.image ? format_name(resource.image->format) : "buffer",
-                                resource.contents,
-                                resource.written,
-                                resource.read,
-                                reason_for(effects, resource.name, &Effect::resources),
+                                std::string(resource.text.contents),
+                                std::string(resource.text.written),
+                                std::string(resource.text.read),
+                                reason_for(effects, resource.text.name, &Effect::resources),
                                 resource.bytes,
                                 {},
                                 {},
@@ -208,7 +208,7 @@ FrameDescription describe_frame(const FrameRequest& request, Renderer& renderer,
     FrameDescription out = describe(request, forecast, &renderer.device());
     std::map<std::pair<std::string, std::string>, std::uint64_t> required;
     for (const PlannedResource& resource : forecast.resources)
-        required[{resource.name, name_of(resource.held)}] += renderer.required_bytes(resource);
+        required[{resource.text.name, name_of(resource.held)}] += renderer.required_bytes(resource);
     for (ResourceDescription& resource : out.resources)
         resource.device_bytes = required.at({resource.name, resource.held});
     if (measured == nullptr) return out;

@@ -7,7 +7,7 @@
 
 #include "engine/forecast/effect_table.h"
 #include "engine/gpu/image.h"
-#include "engine/plan/plan.h"
+#include "engine/plan/resource_table.h"
 
 namespace edgesplat {
 
@@ -30,12 +30,10 @@ enum class Held { Always, Uploading, Occluding, Sweeping, Drawing };
 
 /// An image or a buffer that a frame holds.
 struct PlannedResource {
-    std::string name;                      ///< as it is allocated
+    ResourceText text;
     std::optional<gpu::ImageShape> image;  ///< else a buffer
     std::uint64_t bytes = 0;               ///< of its texels or elements; the device may round up
     vk::Format texels{};                   ///< of a buffer that shaders have as texels
-    std::string contents;                  ///< "(splats) uint"
-    std::string written, read;             ///< stems of passes, or "host"
     gpu::Buffer::Place place = gpu::Buffer::Place::Device;
     bool grows = false;  ///< a larger one of an earlier frame is kept
     Held held = Held::Always;

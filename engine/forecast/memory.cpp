@@ -26,13 +26,13 @@ std::uint64_t bytes_on(const gpu::Device& device, const PlannedResource& resourc
                                    ? gpu::Buffer::beyond_texels(device, resource.bytes, resource.texels)
                                    : "";
     if (!beyond.empty()) {
-        need.too_large.push_back(resource.name + ": " + beyond);
+        need.too_large.push_back(fmt::format("{}: {}", resource.text.name, beyond));
         return resource.bytes;
     }
     const std::uint64_t bytes = resource.image ? gpu::required_bytes(device, *resource.image)
                                                : gpu::Buffer::required_bytes(device, resource.bytes);
     if (bytes > device.largest_allocation()) {
-        need.too_large.push_back(fmt::format("{}: {:.1f} MiB in one piece; {} allows {:.1f} MiB", resource.name,
+        need.too_large.push_back(fmt::format("{}: {:.1f} MiB in one piece; {} allows {:.1f} MiB", resource.text.name,
                                              mebibytes(bytes), device.info().name,
                                              mebibytes(device.largest_allocation())));
     }
@@ -122,7 +122,7 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
     std::map<std::string, MemoryNeed::Row> rows;
     std::map<std::pair<std::string, Held>, std::pair<std::uint64_t, const PlannedResource*>> merged;
     for (const PlannedResource& resource : forecast.resources) {
-        auto& [bytes, one] = merged[{resource.name, resource.held}];
+        auto& [bytes, one] = merged[{resource.text.name, resource.held}];
         bytes += bytes_on(device, resource, need);
         one = &resource;
     }
@@ -132,7 +132,7 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
         const auto& [name, when] = key;
         const auto& [bytes, resource] = entry;
         const std::uint64_t before = held_as(name);
-        uploads = uploads || (resource->image && resource->written == "host" && before < bytes);
+        uploads = uploads || (resource->image && resource->text.written == "host" && before < bytes);
         using Place = gpu::Buffer::Place;
         const bool on_host =
             resource->place == Place::Host || (resource->place == Place::Shared && !device.profile().own_memory);

@@ -24,14 +24,12 @@ std::uint32_t prepared_stride(const DrawVariant& variant) {
     return vectors;
 }
 
-gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots) {
+glm::ivec2 prepared_size(const DrawVariant& variant, std::uint32_t slots) {
     // Whether there are creases is known only when splats are: there is room for them wherever there are faces.
     DrawVariant roomy = variant;
     roomy.creases = cuts_at_faces(variant);
     const std::uint32_t rows = (slots * prepared_stride(roomy) + shader::PREPARED_ROW - 1) / shader::PREPARED_ROW;
-    return {.format = vk::Format::eR32G32B32A32Sfloat,
-            .size = {static_cast<int>(shader::PREPARED_ROW), static_cast<int>(rows), 1},
-            .usage = vk::ImageUsageFlagBits::eStorage};
+    return {shader::PREPARED_ROW, rows};
 }
 
 std::uint32_t prepared_slots(std::uint64_t entries) {

@@ -14,8 +14,8 @@ void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::ui
 /// Texels of a record: PREPARED_STRIDE of shaders/splats/prepared_splat.glsl.
 std::uint32_t prepared_stride(const DrawVariant& variant);
 
-/// The image that holds so many.
-gpu::ImageShape prepared_shape(const DrawVariant& variant, std::uint32_t slots);
+/// Texels of the rgba32f image that holds so many.
+glm::ivec2 prepared_size(const DrawVariant& variant, std::uint32_t slots);
 
 /// Slots for pictures of at most so many entries, a power of two up to PREPARED_ENTRIES. Chunks of more are not
 /// prepared.

@@ -175,17 +175,6 @@ passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, c
     return {static_cast<std::uint32_t>(planes.keep.size()), static_cast<std::uint32_t>(planes.remove.size())};
 }
 
-std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks) {
-    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    return (count + shader::COLUMN_STATE) * blocks * sizeof(std::uint32_t);
-}
-
-std::uint32_t tile_blocks(const glm::ivec2& tiles, const gpu::DeviceProfile& profile) {
-    const std::uint64_t count = static_cast<std::uint64_t>(tiles.x) * static_cast<std::uint64_t>(tiles.y);
-    const std::uint64_t most = count > kManyTiles ? profile.tile_blocks / 8 : profile.tile_blocks;
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(kMostTileCounters / count, 1, most));
-}
-
 std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
 }

@@ -29,8 +29,8 @@ struct CollectionPlan {
     /// voxel's face may be fitted to what two of them share.
     bool skip_buried = true;
     bool faces = false;  ///< edges are faces, found on both sides, and splats carry their second derivatives
-    /// Bytes of a splat's traits; 0 where it has none.
-    std::size_t trait_bytes() const { return faces ? 8 : 0; }
+    /// Whether edges are found with the spline through the samples.
+    bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }
     /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not
     /// depend on the planes: they move without a new collection.
     passes::ClipCount clip{};
@@ -83,18 +83,6 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                      const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
                      const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0,
                      bool creases = true);
-
-/// Counters of the tiles' histogram that can be scanned: 256 invocations go through all of them, twice.
-inline constexpr std::uint64_t kMostTileCounters = std::uint64_t{128} * shader::MOST_ITERATIONS;
-
-/// Of pictures of more tiles, whose lists begin in very many places, fewer pairs are sorted at once.
-inline constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
-
-/// The histogram, and how far each of its columns is gone through.
-std::uint64_t tile_counter_bytes(const glm::ivec2& tiles, std::uint32_t blocks);
-
-/// Columns of that histogram as a device takes them, as far as can be scanned.
-std::uint32_t tile_blocks(const glm::ivec2& tiles, const gpu::DeviceProfile& profile);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

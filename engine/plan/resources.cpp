@@ -1,33 +1,11 @@
 #include "engine/plan/resources.h"
 
 #include <algorithm>
-#include <array>
 #include <cstring>
 
-#include "shaders/shared/footprint_table.h"
+#include "engine/plan/resource_table.h"
 
 namespace edgesplat {
-namespace {
-
-using Usage = vk::ImageUsageFlagBits;
-
-constexpr std::size_t kStagingBytes = std::size_t{64} << 20U;
-
-gpu::GpuImage placeholder(const gpu::Device& device, vk::Format format, bool volume, bool array,
-                          vk::ImageUsageFlags usage) {
-    return {
-        device, {.format = format, .size = {1, 1, 1}, .volume = volume, .array = array, .usage = usage}, "placeholder"};
-}
-
-}  // namespace
-
-gpu::ImageShape footprint_table_shape() {
-    return {.format = vk::Format::eR16Sfloat,
-            .size = {static_cast<int>(shader::TABLE_WIDTH), static_cast<int>(shader::TABLE_ROWS), 1},
-            .layers = static_cast<int>(shader::TABLE_LAYERS),
-            .array = true,
-            .usage = Usage::eSampled | Usage::eTransferDst | Usage::eTransferSrc};
-}
 
 Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) : set_(device, pipelines) {
     vk::SamplerCreateInfo sampler;
@@ -35,46 +13,47 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
     nearest_ = vk::raii::Sampler(device.handle(), sampler);
     sampler.setMinFilter(vk::Filter::eLinear).setMagFilter(vk::Filter::eLinear);
     linear_ = vk::raii::Sampler(device.handle(), sampler);
-    no_scalar_ = placeholder(device, vk::Format::eR32Sfloat, true, false, Usage::eStorage);
-    no_edges_ = placeholder(device, vk::Format::eR32G32Uint, true, false, Usage::eStorage);
-    no_mask_ = placeholder(device, vk::Format::eR8Uint, true, false, Usage::eStorage);
-    no_records_ = placeholder(device, vk::Format::eR32G32B32A32Sfloat, false, false, Usage::eStorage);
-    no_array_ = placeholder(device, vk::Format::eR16Sfloat, false, true, Usage::eSampled);
-    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, "placeholder block");
-    no_texels_ =
-        gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder texels", vk::Format::eR32G32B32A32Sfloat);
-    no_counts_ = gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder counts", vk::Format::eR32Uint);
-    no_entries_ = gpu::Buffer(device, 16, gpu::Buffer::Place::Device, "placeholder entries", vk::Format::eR32G32Uint);
-    no_picture_ = placeholder(device, vk::Format::eR32Sfloat, false, false, Usage::eSampled);
+    for (const gpu::ImageShape& shape : placeholder_images())
+        no_images_.emplace_back(device, shape, kPlaceholder.name);
+    for (const vk::Format format : placeholder_texels())
+        no_texels_.emplace_back(device, kPlaceholderBytes, gpu::Buffer::Place::Device, kPlaceholderTexels.name, format);
+    no_block_ =
+        gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, kPlaceholderBlock.name);
 }
 
 void Bindings::prepare(gpu::Commands& commands) const {
-    commands.prepare({&no_scalar_, &no_edges_, &no_mask_, &no_records_, &no_array_, &no_picture_});
+    for (const gpu::GpuImage& image : no_images_)
+        commands.prepare({&image});
+}
+
+void Bindings::put_image(std::uint32_t binding, const gpu::GpuImage& image, const gpu::ImageShape& kind,
+                         vk::Sampler sampler) {
+    const auto stands_in = std::ranges::find_if(no_images_, [&](const gpu::GpuImage& other) {
+        const gpu::ImageShape& shape = other.shape();
+        return shape.volume == kind.volume && shape.array == kind.array &&
+               (sampler ? bool(shape.usage & vk::ImageUsageFlagBits::eSampled) : shape.format == kind.format);
+    });
+    set_.put_image(binding, image ? image : *stands_in, sampler);
 }
 
 void Bindings::write_volume(const VolumeResources& volume) {
-    set_.put_image(shader::BIND_VOLUME, volume.volume ? volume.volume : no_scalar_);
-    set_.put_image(shader::BIND_COEFFICIENTS, volume.coefficients ? volume.coefficients : no_scalar_);
-    set_.put_image(shader::BIND_EDGES, volume.edges ? volume.edges : no_edges_);
+    for (const VolumeImageRow& row : volume_image_rows())
+        put_image(row.binding, volume.*row.image, row.kind);
 }
 
 void Bindings::write(const VolumeResources& volume, const TargetResources& targets) {
     write_volume(volume);
-    set_.put_image(shader::BIND_BURIED, volume.buried ? volume.buried : no_mask_);
-    set_.put_image(shader::BIND_PREPARED, targets.prepared ? targets.prepared : no_records_);
-    set_.put_image(shader::BIND_SHEETS, targets.sheets ? targets.sheets : no_array_, *nearest_);
-    set_.put_image(shader::BIND_ACCUMULATED, targets.accumulated ? targets.accumulated : no_picture_, *nearest_);
-    set_.put_image(shader::BIND_TABLE, targets.footprint_table ? targets.footprint_table : no_array_, *linear_);
-    const std::array texels{
-        std::pair{&targets.output, &no_texels_},        std::pair{&targets.tile_counters, &no_counts_},
-        std::pair{&targets.tile_closed, &no_counts_},   std::pair{&targets.tile_todo, &no_counts_},
-        std::pair{&targets.tile_entries, &no_entries_}, std::pair{&targets.tile_marks, &no_counts_},
-        std::pair{&targets.tile_ranges, &no_entries_},  std::pair{&targets.tile_order, &no_counts_},
-        std::pair{&targets.tile_pixels, &no_counts_},   std::pair{&targets.tile_sheets, &no_texels_},
-        std::pair{&targets.outlines, &no_counts_}};
-    for (std::uint32_t i = 0; i < texels.size(); ++i) {
-        const auto& [buffer, otherwise] = texels.at(i);
-        set_.put_texels(shader::BIND_PICTURE + i, *buffer && buffer->texels() ? *buffer : *otherwise);
+    for (const TargetImageRow& row : target_image_rows()) {
+        const bool sampled = row.sampling != Sampling::None;
+        if (row.binding == kUnbound) continue;
+        put_image(row.binding, targets.*row.image, row.kind,
+                  !sampled ? vk::Sampler{} : row.sampling == Sampling::Linear ? *linear_ : *nearest_);
+    }
+    for (const TargetBufferRow& row : target_buffer_rows()) {
+        if (row.binding == kUnbound) continue;
+        const gpu::Buffer& buffer = targets.*row.buffer;
+        const auto otherwise = std::ranges::find(placeholder_texels(), row.texels) - placeholder_texels().begin();
+        set_.put_texels(row.binding, buffer && buffer.texels() ? buffer : no_texels_[static_cast<std::size_t>(otherwise)]);
     }
     set_.put_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
     set_.put_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
@@ -82,6 +61,8 @@ void Bindings::write(const VolumeResources& volume, const TargetResources& targe
 }
 
 namespace {
+
+constexpr std::size_t kStagingBytes = std::size_t{64} << 20U;
 
 /// Rows and slices that go up at once. A slice may be larger than the staging buffer should be; then it goes up in
 /// bands of rows.
@@ -123,7 +104,7 @@ void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::G
     const auto [row, rows_at_once, slices_at_once] = upload_band(shape, texel_bytes);
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
-    const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, "staging buffer");
+    const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, kStagingBuffer.name);
     for (std::size_t z = 0; z < slices; z += slices_at_once) {
         const std::size_t depth = std::min(slices_at_once, slices - z);
         for (std::size_t y = 0; y < static_cast<std::size_t>(shape.size.y); y += rows_at_once) {

@@ -5,6 +5,7 @@
 #include <iterator>
 
 #include "engine/error.h"
+#include "engine/plan/resource_table.h"
 #include "engine/renderer/state.h"
 #include "engine/store/light.h"
 #include "engine/volume/filters.h"
@@ -13,7 +14,6 @@ namespace edgesplat {
 namespace {
 
 using Place = gpu::Buffer::Place;
-using Usage = vk::ImageUsageFlagBits;
 
 // A level of so many voxels is there in a moment.
 constexpr std::size_t kCoarseVoxels = std::size_t{1} << 17U;
@@ -147,9 +147,12 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
         count += residence->held[i]->count;
     if (count == before && !shrink) return false;
     // Each list moves to one of its own length: the parts that stay, one behind the other.
-    const auto close_up = [&](gpu::Buffer& list, std::size_t bytes, const char* name) {
-        if (!list) return;
-        gpu::Buffer closed(device, std::max<std::uint64_t>(count, 1) * bytes, Place::Device, name);
+    auto& params = lists.scene.mapped<shader::SceneParams>(1)[0];
+    for (const SplatListRow& row : splat_list_rows()) {
+        gpu::Buffer& list = lists.*row.list;
+        const std::uint64_t bytes = row.bytes(*collected);
+        if (!list) continue;
+        gpu::Buffer closed(device, std::max<std::uint64_t>(count, 1) * bytes, Place::Device, row.text.name);
         std::vector<vk::BufferCopy> parts;
         std::uint64_t to = 0;
         for (const std::size_t i : kept) {
@@ -164,15 +167,8 @@ bool RendererState::drop_blocks(const std::vector<std::size_t>& needed, bool shr
             });
         }
         list = std::move(closed);
-    };
-    const std::size_t room = lists.splats ? lists.splats.bytes() / sizeof(shader::Splat) : 1;
-    close_up(lists.splats, sizeof(shader::Splat), "splat list");
-    close_up(lists.traits, lists.traits ? lists.traits.bytes() / room : 0, "splat traits");
-    close_up(lists.values, sizeof(float), "classified values");
-    auto& params = lists.scene.mapped<shader::SceneParams>(1)[0];
-    params.splats = lists.splats.address();
-    if (lists.traits) params.traits = lists.traits.address();
-    if (lists.values) params.values = lists.values.address();
+        params.*row.collected = list.address();
+    }
     lists.splat_count = lists.edge_splat_count = lists.crease_splat_count = 0;
     for (const std::size_t i : kept) {
         residence->held[i]->first = lists.splat_count;
@@ -192,23 +188,9 @@ void RendererState::begin_blocks(const CollectionPlan& wanted) {
     residence->source = source_of(volume->values.empty() ? original : volume, level);
     residence->blocks = blocks_with_splats(*residence->source, *volume, wanted);
     residence->held.resize(residence->blocks.size());
-    const CollectionBlock largest = largest_block(wanted.dims);
-    const auto image = [&](const char* name) {
-        gpu::GpuImage out(device,
-                          {.format = vk::Format::eR32Sfloat,
-                           .size = largest.size,
-                           .volume = true,
-                           .usage = Usage::eStorage | Usage::eTransferDst},
-                          name);
-        commands.run([&] { commands.prepare({&out}); });
-        return out;
-    };
     resources.volume = {};
-    resources.volume = image("volume");
     resources.coefficients = {};
-    if (wanted.edge_field && wanted.estimator == EdgeEstimator::Cubic)
-        resources.coefficients = image("B-spline coefficients");
-    prepare_collection(device, commands, bindings, wanted, largest, resources);
+    prepare_collection(device, commands, bindings, wanted, largest_block(wanted.dims), resources);
     collected = wanted;
 }
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "engine/error.h"
+#include "engine/plan/resource_table.h"
 #include "engine/renderer/state.h"
 #include "engine/store/light.h"
 #include "footprints/kernel.h"
@@ -40,7 +41,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
     shadowed.reset();
     drop_targets();
     volume_resources.shadows = {};
-    volume_resources.shadows = gpu::Buffer(device, volume_resources.splat_count * sizeof(std::uint32_t),
+    volume_resources.shadows = gpu::Buffer(device, volume_resources.splat_count * kLightBytes,
                                            gpu::Buffer::Place::Device, "splat shadows");
     // What lies in no picture of the light is in nothing's shadow.
     commands.run([&] { commands.fill(volume_resources.shadows, ~0U); });
@@ -58,7 +59,7 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
                     light.params.size.x, light.params.size.y, light.params.sheet_count, light_layer_bytes(light) >> 20U,
                     kMostLayerBytes >> 20U);
             }
-            const gpu::Buffer layers(device, light_layer_bytes(light), gpu::Buffer::Place::Device, "light layers");
+            const gpu::Buffer layers(device, light_layer_bytes(light), gpu::Buffer::Place::Device, kLightLayers.name);
             light.params.light_layers = layers.address();
             provide_targets(light);
             add_times(collection_times, draw_sheets(commands, light, targets, channel));
@@ -71,9 +72,8 @@ bool RendererState::cast_shadows(const Scene& scene, const Settings& settings) {
 
 void RendererState::drop_targets() {
     TargetResources kept;
-    kept.frame = std::move(targets.frame);
-    kept.drawn = std::move(targets.drawn);
-    kept.indices = std::move(targets.indices);
+    for (const TargetBufferRow& row : target_buffer_rows())
+        if (row.always) kept.*row.buffer = std::move(targets.*row.buffer);
     targets = std::move(kept);
 }
 

@@ -44,7 +44,7 @@ std::optional<MemoryNeed> RendererState::beyond_memory(const FrameRequest& reque
     FrameForecast forecast = forecast_frame(request, wanted, splats, reach, device.profile());
     std::vector<std::pair<std::string, std::uint64_t>> asked;
     for (const PlannedResource& resource : forecast.resources)
-        asked.emplace_back(resource.name, resource.bytes);
+        asked.emplace_back(resource.text.name, resource.bytes);
     if (asked == checked) return checked_need;
     MemoryNeed need = memory_need(device, forecast, memory_budget);
     // The bound by the number of voxels is too high for most volumes; counting takes longer.

@@ -141,11 +141,8 @@ struct RendererState : DeviceState, SplatSet {
     void release_unused(const Settings& drawn);
     /// Targets and buffers of the plan's sizes; fills in addresses and the frame's parameters.
     void provide_targets(FramePlan& plan);
-    void provide_layers(FramePlan& plan);
-    void provide_footprints(FramePlan& plan);
-    void provide_tiles(FramePlan& plan);
-    /// Addresses of what grows with the chunks.
-    void place_lists(shader::FrameParams& p) const;
+    /// The footprints of kernels at faces, in the table.
+    void fill_table(float face_depth);
     /// Room for the pairs of the largest chunk; brings the chunks to the device.
     void provide_chunks(const Chunks& chunks);
     /// Of the splats that are there.

@@ -5,12 +5,12 @@
 #include <utility>
 
 #include "engine/error.h"
+#include "engine/plan/resource_table.h"
 
 namespace edgesplat {
 namespace {
 
 using Place = gpu::Buffer::Place;
-using Usage = vk::ImageUsageFlagBits;
 
 // A splat's number is multiplied by its size in 32 bits.
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
@@ -65,17 +65,12 @@ void lengthen(const gpu::Device& device, gpu::Commands& commands, gpu::Buffer& l
 void reserve(const gpu::Device& device, gpu::Commands& commands, const CollectionPlan& plan, std::uint64_t count,
              VolumeResources& resources) {
     auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
-    const std::uint64_t used = resources.splat_count;
-    lengthen(device, commands, resources.splats, count * sizeof(shader::Splat), used * sizeof(shader::Splat),
-             "splat list");
-    params.splats = resources.splats.address();
-    if (const std::size_t bytes = plan.trait_bytes(); bytes > 0) {
-        lengthen(device, commands, resources.traits, count * bytes, used * bytes, "splat traits");
-        params.traits = resources.traits.address();
-    }
-    if (!plan.transfer.empty()) {
-        lengthen(device, commands, resources.values, count * sizeof(float), used * sizeof(float), "classified values");
-        params.values = resources.values.address();
+    for (const SplatListRow& row : splat_list_rows()) {
+        const std::uint64_t bytes = row.bytes(plan);
+        if (bytes == 0) continue;
+        gpu::Buffer& list = resources.*row.list;
+        lengthen(device, commands, list, count * bytes, resources.splat_count * bytes, row.text.name);
+        params.*row.collected = list.address();
     }
 }
 
@@ -101,39 +96,32 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
 
 void prepare_collection(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                         const CollectionPlan& plan, const CollectionBlock& largest, VolumeResources& resources) {
-    const auto volume_image = [&](vk::Format format, const char* name) {
-        return gpu::GpuImage(
-            device,
-            {.format = format, .size = largest.size, .volume = true, .usage = Usage::eStorage | Usage::eTransferSrc},
-            name);
-    };
     // What a change of the scene replaces is not held next to its successor.
+    for (const SplatListRow& row : splat_list_rows())
+        resources.*row.list = {};
+    for (const CollectionBufferRow& row : collection_buffer_rows())
+        resources.*row.buffer = {};
     resources.edges = {};
     resources.buried = {};
-    resources.run_offsets = {};
-    resources.splats = {};
-    resources.traits = {};
-    resources.scene = {};
-    resources.transfer = {};
-    resources.values = {};
     resources.splat_count = resources.edge_splat_count = resources.crease_splat_count = 0;
     resources.bricks.clear();
-    resources.edges = plan.edge_field ? volume_image(vk::Format::eR32G32Uint, "edge field") : gpu::GpuImage();
-    resources.buried = plan.buried ? volume_image(vk::Format::eR8Uint, "buried mask") : gpu::GpuImage();
-    resources.scene = gpu::Buffer(device, sizeof(shader::SceneParams), Place::Host, "scene parameters");
-    resources.run_offsets = gpu::Buffer(device, (passes::collect_runs(largest.core_size) + 2) * sizeof(std::uint32_t),
-                                        Place::Host, "run offsets");
-    auto& params = resources.scene.mapped<shader::SceneParams>(1)[0];
-    params = plan.params;
-    if (!plan.transfer.empty()) {
-        resources.transfer =
-            gpu::Buffer(device, plan.transfer.size() * sizeof(shader::TransferRow), Place::Host, "transfer function");
-        std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
+    std::vector<const gpu::GpuImage*> fresh;
+    for (const VolumeImageRow& row : volume_image_rows()) {
+        gpu::GpuImage& image = resources.*row.image;
+        if (image || !row.held(plan)) continue;
+        image = gpu::GpuImage(device, shape_of(row, largest.size), row.text.name);
+        fresh.push_back(&image);
     }
+    for (const CollectionBufferRow& row : collection_buffer_rows())
+        if (const std::uint64_t bytes = row.bytes(plan, largest.core_size); bytes > 0)
+            resources.*row.buffer = gpu::Buffer(device, bytes, Place::Host, row.text.name);
+    resources.scene.mapped<shader::SceneParams>(1)[0] = plan.params;
+    if (resources.transfer)
+        std::ranges::copy(plan.transfer, resources.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
     bindings.write(resources, {});
     commands.run([&] {
-        if (plan.buried) commands.prepare({&resources.buried});
-        if (plan.edge_field) commands.prepare({&resources.edges});
+        for (const gpu::GpuImage* image : fresh)
+            commands.prepare({image});
     });
 }
 
@@ -152,9 +140,8 @@ void place_block(const CollectionPlan& plan, const CollectionBlock& block, Volum
     place_planes(params.clip_keep, block.low);
     place_planes(params.clip_remove, block.low);
     params.run_offsets = resources.run_offsets.address();
-    params.splats = lists.splats;
-    params.traits = lists.traits;
-    params.values = lists.values;
+    for (const SplatListRow& row : splat_list_rows())
+        params.*row.collected = lists.*row.collected;
     if (resources.transfer) params.transfer = resources.transfer.address();
 }
 

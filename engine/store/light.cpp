@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/passes/2b_occlude_ambient.h"
+#include "engine/plan/resource_table.h"
 
 namespace edgesplat {
 namespace {
@@ -171,9 +172,9 @@ std::uint64_t light_layer_bytes(const FramePlan& plan) {
 
 std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
                                     const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources) {
-    resources.occlusion = gpu::Buffer(device, resources.splat_count * sizeof(std::uint32_t), gpu::Buffer::Place::Device,
-                                      "splat occlusion");
-    const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, "occlusion parameters");
+    resources.occlusion =
+        gpu::Buffer(device, resources.splat_count * kLightBytes, gpu::Buffer::Place::Device, "splat occlusion");
+    const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, kOcclusionBlock.name);
     auto& params = block.mapped<shader::OcclusionParams>(1)[0];
     params = {};
     params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(volume.geometry.index_to_world_axes)));

@@ -64,7 +64,7 @@ TEST(Texels, ThatAreTooManyDoNotFit) {
     if (!device.loads_texels()) GTEST_SKIP() << "buffers are loaded through their addresses here";
     FrameForecast forecast;
     PlannedResource& pixels = forecast.resources.emplace_back();
-    pixels.name = "pixels";
+    pixels.text.name = "pixels";
     pixels.texels = vk::Format::eR32Uint;
     pixels.bytes = (std::size_t{device.physical().getProperties().limits.maxTexelBufferElements} + 1) * 4;
     EXPECT_THAT(memory_need(device, forecast, 0).too_large, testing::Contains(testing::HasSubstr("texels")));

@@ -1,33 +1,13 @@
-// A tiled picture is drawn in chunks of sheets: which ones, how large its lists are, and what is drawn first.
+// A tiled picture is drawn in chunks of sheets: which ones, and what is drawn first.
 #pragma once
 
 #include <span>
 #include <vector>
 
-#include "engine/passes/5_draw_tiles.h"
-#include "engine/plan/plan.h"
 #include "engine/plan/resources.h"
+#include "engine/plan/sizes.h"
 
 namespace edgesplat {
-
-/// Pairs of a splat and a tile that a chunk of sheets may have.
-std::uint64_t chunk_pairs(const glm::ivec2& tiles, const gpu::DeviceProfile& profile);
-
-/// Room that lists of so many pairs take, each from a multiple of MARKED_AT_ONCE on.
-std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles);
-
-std::uint64_t tile_count(const FramePlan& plan);
-
-/// Of colour and opacity of all pixels.
-std::uint64_t picture_bytes(const FramePlan& plan);
-
-/// What FrameParams::tile_order holds at most.
-std::uint64_t tile_order_items(const FramePlan& plan);
-/// Pairs that FrameParams::tile_entries has room for. Of a refined picture, the lists of several chunks are kept.
-std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& profile);
-
-/// Words that mark for which pixels lists of so many pairs are.
-std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs);
 
 /// Consecutive sheets that are drawn at once.
 struct Chunks {
@@ -62,9 +42,6 @@ bool worth_refining(const Chunks& chunks);
 
 /// The first of a picture's steps; each is half of the one before, the last is 1.
 std::uint32_t first_step(const FramePlan& plan);
-
-/// Groups of invocations for the most pixels that a tile draws at once, after that step of a refined picture.
-std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step);
 
 /// How many pixels of each tile are drawn first.
 void fill_todo(const FramePlan& plan, const TargetResources& targets);
