@@ -15,6 +15,18 @@ class Error : public std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
+/// Renderer::render was told to stop (Renderer::set_interruption): there is no picture.
+class Interrupted : public Error {
+  public:
+    Interrupted() : Error("render: interrupted") {}
+};
+
+/// The device was lost (VK_ERROR_DEVICE_LOST), and again after it had been opened anew: there is no picture.
+class DeviceLost : public Error {
+  public:
+    using Error::Error;
+};
+
 template <typename... Args>
 [[noreturn]] void fail(fmt::format_string<Args...> format, Args&&... args) {
     throw Error(fmt::format(format, std::forward<Args>(args)...));

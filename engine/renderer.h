@@ -69,21 +69,12 @@ struct RenderResult {
     RenderStats stats;
 };
 
+/// Where a result has an extra output.
+std::optional<Image> RenderResult::*image_of(const Aov& aov);
+
 struct FrameForecast;    // engine/forecast/forecast.h
 struct PlannedResource;  // engine/forecast/forecast.h
 struct FittingChange;    // engine/forecast/description.h
-
-/// render() was told to stop (Renderer::set_interruption): there is no picture.
-class Interrupted : public Error {
-  public:
-    Interrupted() : Error("render: interrupted") {}
-};
-
-/// The device was lost (VK_ERROR_DEVICE_LOST), and again after it had been opened anew: there is no picture.
-class DeviceLost : public Error {
-  public:
-    using Error::Error;
-};
 
 /// What a Renderer owns (engine/renderer/state.h); of no use to those who embed it.
 struct RendererState;

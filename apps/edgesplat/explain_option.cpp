@@ -81,8 +81,3 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
             {"record", record},
             {"left_out", left_out}};
 }
-
-edgesplat::AovRequest aov_request(const std::vector<std::string>& names) {
-    const auto wants = [&](const char* name) { return std::ranges::find(names, name) != names.end(); };
-    return {wants("tau"), wants("depth"), wants("normal"), wants("distance")};
-}

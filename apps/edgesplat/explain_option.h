@@ -18,6 +18,3 @@ void add_explain_options(CLI::App& command, ExplainOption& option);
 
 /// The description's tables as JSON.
 nlohmann::ordered_json to_json(const edgesplat::FrameDescription& description);
-
-/// The extra outputs named, as the renderer takes them.
-edgesplat::AovRequest aov_request(const std::vector<std::string>& names);

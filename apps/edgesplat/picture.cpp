@@ -76,7 +76,7 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     if (output.compare_raycast) frames.push_back({"raycast", settings, {}, {}, true});
     const bool edges = settings.edges != edgesplat::EdgeEstimator::Off;
     frames.push_back({edges ? "edges" : "plain", settings, {}});
-    const edgesplat::AovRequest aovs = aov_request(output.aovs);
+    const edgesplat::AovRequest aovs = edgesplat::aov_request(output.aovs);
     const glm::ivec2& size = output.size;
     const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
     renderer.divide_sheets(exchange.get());
@@ -137,9 +137,10 @@ void make_picture(PictureRequest request) {
     const edgesplat::Camera camera = resolve_camera(request.document, *volume, scene);
     if (!request.quiet && eye_in_opaque(*volume, scene, camera)) warn_of_eye(*volume, camera);
 
-    const edgesplat::FrameRequest planned{volume, scene, camera, settings, output.size, aov_request(output.aovs)};
+    const edgesplat::FrameRequest planned{volume,   scene,       camera,
+                                          settings, output.size, edgesplat::aov_request(output.aovs)};
     if (output.file.empty()) {
-        fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned)));
+        fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned, request.device.profile)));
         return;
     }
     RunDescription description{request.command_line,     volume.get(), &scene, camera,

@@ -23,8 +23,6 @@ namespace {
 
 using edgesplat::SceneDocument;
 
-constexpr std::array<const char*, 4> kAovNames{"tau", "depth", "normal", "distance"};
-
 /// Everything the command line said.
 struct RenderCommand {
     std::string source;  ///< a volume or a scene file
@@ -70,10 +68,10 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
                    });
                },
                "Extra outputs, with commas between: channels of an .exr picture, or FILE.tau.exr, ... beside a .png")
-            ->type_name("tau,depth,normal,distance")
+            ->type_name(fmt::format("{}", fmt::join(edgesplat::aov_names(), ",")))
             ->delimiter(',')
             ->allow_extra_args(false)
-            ->check(CLI::IsMember(std::vector<std::string>(kAovNames.begin(), kAovNames.end())).description(""))
+            ->check(CLI::IsMember(edgesplat::aov_names()).description(""))
             ->group(kGroup);
     app.add_option_function<std::vector<std::string>>(
            "--compare",

@@ -101,14 +101,11 @@ edgesplat::Image side_by_side(const edgesplat::Image& left, const edgesplat::Ima
 /// The extra outputs there are, each under its name and with its channels' names.
 std::vector<std::pair<std::string, edgesplat::ImageLayer>> aov_layers(const edgesplat::RenderResult& result) {
     std::vector<std::pair<std::string, edgesplat::ImageLayer>> layers;
-    const auto add = [&](const char* name, const std::optional<edgesplat::Image>& image,
-                         std::vector<std::string> channels) {
-        if (image) layers.push_back({name, {&*image, std::move(channels)}});
-    };
-    add("tau", result.tau, {"tau"});
-    add("depth", result.depth, {"depth.Z"});
-    add("normal", result.normal, {"normal.X", "normal.Y", "normal.Z"});
-    add("distance", result.distance, {"distance"});
+    for (const edgesplat::Aov& aov : edgesplat::aovs()) {
+        const std::optional<edgesplat::Image>& image = result.*image_of(aov);
+        const std::vector<std::string> channels(aov.channels.begin(), aov.channels.begin() + aov.count());
+        if (image) layers.push_back({std::string(aov.name), {&*image, channels}});
+    }
     return layers;
 }
 

@@ -10,7 +10,7 @@
 
 #include "engine/distribute/part_exchange.h"
 #include "engine/scene/camera.h"
-#include "engine/store/collection.h"
+#include "engine/store/volume_store.h"
 
 namespace edgesplat {
 

@@ -93,8 +93,15 @@ std::uint64_t sum_of(const std::vector<PlannedResource>& resources) {
         [](const PlannedResource& r) { return r.bytes; });
 }
 
+/// Whether some pass of those that an effect has runs, or it has none of its own.
+bool runs(const Effect& effect, const std::vector<PassDescription>& passes) {
+    return effect.passes.empty() || std::ranges::any_of(effect.passes, [&](std::string_view name) {
+               return std::ranges::find(passes, name, &PassDescription::name) != passes.end();
+           });
+}
+
 /// What every effect that is off would add.
-std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast,
+std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device,
                               const std::vector<std::pair<const Effect*, std::string>>& on) {
     std::vector<LeftOut> rows;
     for (const Effect& effect : effect_table()) {
@@ -112,6 +119,11 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
                 const SplatCount splats =
                     collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
                 const FrameForecast other = forecast_frame(with, collection, splats, reach, *forecast.profile);
+                if (!runs(effect, described_passes(with, other, device))) {
+                    row.obstacle = "device profile " + std::string(forecast.profile->name) + " does without";
+                    rows.push_back(std::move(row));
+                    continue;
+                }
                 row.bytes = static_cast<std::int64_t>(sum_of(other.resources)) -
                             static_cast<std::int64_t>(sum_of(forecast.resources));
                 for (const std::string_view pass : effect.passes)
@@ -126,7 +138,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
 }
 
 FrameDescription describe(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device) {
-    const auto effects = called_for(request);
+    auto effects = called_for(request);
     const glm::ivec3 dims = request.volume->geometry.dims;
     const FramePlan& plan = forecast.draws.front().plan;
     FrameDescription out;
@@ -143,6 +155,8 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;
     out.passes = described_passes(request, forecast, device);
+    // What is called for, and done without on this device.
+    std::erase_if(effects, [&](const auto& entry) { return !runs(*entry.first, out.passes); });
     for (PassDescription& pass : out.passes)
         pass.reason = reason_for(effects, pass.name, &Effect::passes);
     out.estimate = estimate_basis(device);
@@ -174,7 +188,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
             out.record.push_back({std::string(field.name), fmt::format("{}: {}", effect->name, reason), field.bytes});
         out.called_for.emplace_back(std::string(effect->name), reason);
     }
-    out.left_out = left_out(request, forecast, effects);
+    out.left_out = left_out(request, forecast, device, effects);
     return out;
 }
 
@@ -192,14 +206,17 @@ std::uint64_t FrameDescription::total_bytes() const {
         [](const ResourceDescription& r) { return r.allocated_bytes.value_or(r.device_bytes.value_or(r.bytes)); });
 }
 
-FrameDescription describe_frame(const FrameRequest& request) {
+FrameDescription describe_frame(const FrameRequest& request, const std::string& profile) {
     check(request);
+    const gpu::ChosenProfile chosen = gpu::choose_profile(profile);
     const CollectionPlan collection = planned_collection(request);
     const SplatCount splats = count_splats(*request.volume, collection);
-    return describe(request,
-                    forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request)),
-                                   gpu::device_profiles().front()),
-                    nullptr);
+    FrameDescription out = describe(
+        request, forecast_frame(request, collection, splats, kernel_reach(drawn_settings(request)), *chosen.profile),
+        nullptr);
+    out.profile = chosen.profile->name;
+    out.profile_reason = chosen.reason;
+    return out;
 }
 
 FrameDescription describe_frame(const FrameRequest& request, Renderer& renderer, const RenderStats* measured) {

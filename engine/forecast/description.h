@@ -71,8 +71,9 @@ struct FittingChange {
     FrameRequest request;
 };
 
-/// Of no device: bytes as the formats say, times of a software device. Throws Error for a request that cannot be drawn.
-FrameDescription describe_frame(const FrameRequest& request);
+/// Of no device: bytes as the formats say, times of a software device. `profile`: as in DeviceChoice. Throws Error for
+/// a request that cannot be drawn.
+FrameDescription describe_frame(const FrameRequest& request, const std::string& profile = {});
 
 /// The same for what a renderer holds and the device that it uses; with the frame's own statistics also what passes
 /// took and what was allocated.

@@ -14,7 +14,7 @@
 #include "engine/passes/5_draw_tiles.h"
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
-#include "engine/store/collection.h"
+#include "engine/store/splat_store.h"
 
 namespace edgesplat {
 namespace {
@@ -72,9 +72,8 @@ double fragments(const FrameRequest& request, const FramePlan& plan) {
 
 class Passes {
   public:
-    explicit Passes(const DeviceInfo* device)
-        : milliseconds_per_(on_processor(device) ? 1e-6 : 1e-6 / kGpuFactor),
-          profile_(device == nullptr ? &gpu::device_profiles().front() : &gpu::profile_named(device->profile)) {}
+    Passes(const DeviceInfo* device, const gpu::DeviceProfile& profile)
+        : milliseconds_per_(on_processor(device) ? 1e-6 : 1e-6 / kGpuFactor), profile_(&profile) {}
 
     void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
         out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
@@ -202,7 +201,7 @@ class Passes {
 
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
                                               const DeviceInfo* device) {
-    Passes passes(device);
+    Passes passes(device, *forecast.profile);
     passes.add_setup(forecast);
     passes.add_reach(request, forecast);
     for (const ForecastDraw& draw : forecast.draws)

@@ -53,7 +53,7 @@ std::string joined(const std::vector<std::string>& words) {
 std::string to_text(const FrameDescription& d) {
     std::string text =
         fmt::format("{}; {} x {} pixels{}\n", d.volume, d.size.x, d.size.y, d.device.empty() ? "" : " on " + d.device);
-    if (!d.device.empty()) text += fmt::format("device profile {}: {}\n", d.profile, d.profile_reason);
+    text += fmt::format("device profile {}: {}\n", d.profile, d.profile_reason);
     text += fmt::format("{} of {} voxels are splats ({}), in {} sheets, {} groups\n", d.splats, d.voxels, d.splats_from,
                         d.sheets, d.sheet_groups);
     const bool measured =

@@ -1,41 +1,37 @@
 // Extra outputs: each is the frame drawn once more with another quantity in place of colour.
+#include <utility>
+
 #include "engine/forecast/effect_rows.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
+namespace {
+
+template <std::size_t number>
+Effect output_effect() {
+    const Aov& aov = aovs()[number];
+    static const std::string name = "output " + std::string(aov.name);
+    static const std::string call =
+        "output.aovs holds \"" + std::string(aov.name) + "\"; --aov " + std::string(aov.name);
+    return {.name = name,
+            .help = aov.help,
+            .call = call,
+            .reason = [](const FrameRequest& r) -> std::string {
+                return r.outputs.*aovs()[number].wanted ? "it is asked for" : "";
+            },
+            .turn_on = [](FrameRequest& r) { r.outputs.*aovs()[number].wanted = true; },
+            .constants = {{shader::SPEC_PAYLOAD, "SPEC_PAYLOAD"}}};
+}
+
+template <std::size_t... numbers>
+std::vector<Effect> effects_of(std::index_sequence<numbers...>) {
+    return {output_effect<numbers>()...};
+}
+
+}  // namespace
 
 std::vector<Effect> output_effects() {
-    std::vector<Effect> rows;
-    const std::vector<EffectConstant> payload{{shader::SPEC_PAYLOAD, "SPEC_PAYLOAD"}};
-    rows.push_back(
-        {.name = "output tau",
-         .help = "optical depth along each pixel's ray; no voxel is dropped for it",
-         .call = "output.aovs holds \"tau\"; --aov tau",
-         .reason = [](const FrameRequest& r) -> std::string { return r.outputs.tau ? "it is asked for" : ""; },
-         .turn_on = [](FrameRequest& r) { r.outputs.tau = true; },
-         .constants = payload});
-    rows.push_back(
-        {.name = "output depth",
-         .help = "mean distance along the view axis",
-         .call = "output.aovs holds \"depth\"; --aov depth",
-         .reason = [](const FrameRequest& r) -> std::string { return r.outputs.depth ? "it is asked for" : ""; },
-         .turn_on = [](FrameRequest& r) { r.outputs.depth = true; },
-         .constants = payload});
-    rows.push_back(
-        {.name = "output normal",
-         .help = "mean world normal of what is seen",
-         .call = "output.aovs holds \"normal\"; --aov normal",
-         .reason = [](const FrameRequest& r) -> std::string { return r.outputs.normal ? "it is asked for" : ""; },
-         .turn_on = [](FrameRequest& r) { r.outputs.normal = true; },
-         .constants = payload});
-    rows.push_back(
-        {.name = "output distance",
-         .help = "mean signed distance of the seen voxels to their edge",
-         .call = "output.aovs holds \"distance\"; --aov distance",
-         .reason = [](const FrameRequest& r) -> std::string { return r.outputs.distance ? "it is asked for" : ""; },
-         .turn_on = [](FrameRequest& r) { r.outputs.distance = true; },
-         .constants = payload});
-    return rows;
+    return effects_of(std::make_index_sequence<kAovCount>());
 }
 
 }  // namespace edgesplat

@@ -102,14 +102,6 @@ Settings drawn_settings(const FrameRequest& request) {
     return drawn_as(request.settings, request.scene);
 }
 
-std::vector<std::uint32_t> payloads_of(const AovRequest& outputs) {
-    std::vector<std::uint32_t> payloads{shader::PAYLOAD_COLOR};
-    if (outputs.tau) payloads.push_back(shader::PAYLOAD_TAU);
-    if (outputs.depth || outputs.distance) payloads.push_back(shader::PAYLOAD_DEPTH_DISTANCE);
-    if (outputs.normal) payloads.push_back(shader::PAYLOAD_NORMAL);
-    return payloads;
-}
-
 CollectionPlan planned_collection(const FrameRequest& request) {
     return plan_collection(*request.volume, request.scene, drawn_settings(request), keeps_buried(request));
 }
@@ -126,24 +118,17 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     out.collection = collection;
     out.splats = splats;
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
-        const char* names[] = {"colour", "tau", "depth, distance", "normal"};
         out.draws.push_back(
-            {names[payload], plan_frame(*request.volume, request.scene, request.camera, out.settings, request.size,
-                                        payload, splats.splats, splats.box_low, splats.box_high, reach)});
-        FramePlan& plan = out.draws.back().plan;
-        plan.refined = plan.may_refine = plan.refined && profile.refines;
+            {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
+                                               request.size, payload, splats.extent(), reach, profile.refines)});
     }
     if (!shadow_lights(request.scene).empty()) {
         const ShadowPlan shadows = plan_shadows(request.scene, out.settings);
-        VolumeResources places;
-        places.splat_count = splats.splats;
-        places.box_low = splats.box_low;
-        places.box_high = splats.box_high;
         for (const Light& light : shadows.lights)
             for (const Camera& view : light_views(light, request.volume->geometry, splats.box_low, splats.box_high,
                                                   reach, shadows.quality.resolution))
                 out.light_frames.push_back(
-                    plan_light_frame(*request.volume, request.scene, shadows, view, places, reach));
+                    plan_light_frame(*request.volume, request.scene, shadows, view, splats.extent(), reach));
     }
     out.occluded = occludes_ambient(request.scene);
     out.resources = planned_resources(out);

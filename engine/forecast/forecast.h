@@ -16,7 +16,8 @@ struct SplatCount {
     enum class From { Voxels, Materials, Frame };
     From from = From::Voxels;  ///< every voxel; those that can be seen, found on the host; as collected
     std::uint64_t splats = 0;
-    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive, whole rows (VolumeResources)
+    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive, whole rows (SplatLists)
+    SplatExtent extent() const { return {splats, box_low, box_high}; }
 };
 
 /// As if every voxel were a splat.
@@ -41,7 +42,7 @@ struct PlannedResource {
 
 /// One draw of the splats: the picture first, then the extra outputs.
 struct ForecastDraw {
-    std::string name;  ///< "colour", "tau", "depth, distance" or "normal"
+    std::string name;  ///< payload_name()
     FramePlan plan;
 };
 
@@ -58,9 +59,6 @@ struct FrameForecast {
 
 /// The request's settings as they are drawn: drawn_as().
 Settings drawn_settings(const FrameRequest& request);
-
-/// The payloads that a request draws, colour first: shader::PAYLOAD_*.
-std::vector<std::uint32_t> payloads_of(const AovRequest& outputs);
 
 /// Whether nothing may be dropped for being buried.
 bool keeps_buried(const FrameRequest& request);

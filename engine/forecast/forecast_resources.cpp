@@ -36,8 +36,12 @@ void add_placeholders(std::vector<PlannedResource>& out) {
 void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const CollectionPlan& plan = f.collection;
     const CollectionBlock largest = plan.blocks ? largest_block(plan.dims) : whole_block(plan.dims);
-    for (const VolumeImageRow& row : volume_image_rows())
-        if (row.held(plan)) out.push_back(image(row.text, shape_of(row, largest.size)));
+    const auto add_images = [&](const auto& rows) {
+        for (const auto& row : rows)
+            if (row.held(plan)) out.push_back(image(row.text, row.shape(largest.size)));
+    };
+    add_images(volume_image_rows());
+    add_images(field_image_rows());
     for (const CollectionBufferRow& row : collection_buffer_rows())
         if (const std::uint64_t bytes = row.bytes(plan, largest.core_size); bytes > 0)
             out.push_back(buffer(row.text, bytes, gpu::Buffer::Place::Host));
@@ -48,17 +52,17 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
 
 /// What of the light reaches each splat, and what that is found with.
 void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
-    const auto add_list = [&](gpu::Buffer VolumeResources::*list) {
+    const auto add_list = [&](gpu::Buffer SplatLists::*list) {
         const auto row = std::ranges::find(light_list_rows(), list, &LightListRow::list);
         out.push_back(buffer(row->text, f.splats.splats * kLightBytes));
     };
     if (f.occluded) {
-        add_list(&VolumeResources::occlusion);
+        add_list(&SplatLists::occlusion);
         out.push_back(buffer(kOcclusionBlock, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host));
         out.back().held = Held::Occluding;
     }
     if (f.light_frames.empty()) return;
-    add_list(&VolumeResources::shadows);
+    add_list(&SplatLists::shadows);
     std::uint64_t layers = 0;
     for (const FramePlan& light : f.light_frames)
         layers = std::max(layers, light_layer_bytes(light));
@@ -74,7 +78,7 @@ void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& 
         for (const FramePlan& plan : draws)
             if (const auto size = row.size(plan)) largest = glm::max(largest.value_or(*size), *size);
         if (!largest) continue;
-        out.push_back(image(row.text, shape_of(row, *largest)));
+        out.push_back(image(row.text, row.shape(*largest)));
         out.back().grows = row.higher_serves;
         out.back().held = held;
     }

@@ -52,6 +52,12 @@ ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const s
     return {&profile_named("generic"), "of a " + vk::to_string(device.deviceType) + " nothing more is known"};
 }
 
+ChosenProfile choose_profile(const std::string& wanted) {
+    vk::PhysicalDeviceProperties processor;
+    processor.deviceType = vk::PhysicalDeviceType::eCpu;
+    return choose_profile(processor, wanted);
+}
+
 bool is_processor(const vk::PhysicalDeviceProperties& device) {
     return device.deviceType == vk::PhysicalDeviceType::eCpu;
 }

@@ -63,6 +63,8 @@ struct ChosenProfile {
 /// `wanted`: a name, which may be any device's; empty: what the environment variable EDGESPLAT_DEVICE_PROFILE says,
 /// else what the device is.
 ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const std::string& wanted);
+/// The same of no device: else what the processor is.
+ChosenProfile choose_profile(const std::string& wanted);
 
 /// Whether the device is the processor itself, whatever its profile.
 bool is_processor(const vk::PhysicalDeviceProperties& device);

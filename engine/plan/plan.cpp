@@ -251,13 +251,13 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 }
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
-                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach, bool creases) {
+                     const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats, double farthest_reach,
+                     bool refines) {
     const auto& geometry = volume.geometry;
     const glm::dmat3 to_world = geometry.index_to_world_axes, to_index = glm::inverse(to_world);
     const CameraFrame view = camera_frame(camera);
     const glm::dvec3 down = -view.up;
-    const glm::dvec3 anchor = 0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high));
+    const glm::dvec3 anchor = 0.5 * (glm::dvec3(splats.low) + glm::dvec3(splats.high));
     const glm::dvec3 anchor_view = geometry.to_world(anchor) - view.eye;
     const double voxel_along_view = 1.0 / glm::length(to_index * view.forward);
     const double thickness = sheet_thickness(geometry, camera, settings);
@@ -275,10 +275,11 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                         sliced && settings.sheet_spacing <= kThinSlice                               ? kSliceNodes
                         : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kFewNodes
                                                                                                      : kManyNodes)};
-    plan.variant.creases = creases && draws_faces(settings);
+    plan.variant.creases = splats.creases && draws_faces(settings);
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
-    plan.refined = plan.variant.tiles && payload == shader::PAYLOAD_COLOR && settings.pixels == PixelChoice::Refined &&
+    plan.refined = refines && plan.variant.tiles && payload == shader::PAYLOAD_COLOR &&
+                   settings.pixels == PixelChoice::Refined &&
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.may_refine = plan.refined;
     plan.variant.transfer = !scene.transfer.empty();
@@ -328,7 +329,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     double nearest = std::numeric_limits<double>::max(), farthest = 0;
     for (int corner = 0; corner < 8; ++corner) {
         const glm::bvec3 high((corner & 1) != 0, (corner & 2) != 0, (corner & 4) != 0);
-        const glm::dvec3 at = glm::mix(glm::dvec3(box_low), glm::dvec3(box_high), high);
+        const glm::dvec3 at = glm::mix(glm::dvec3(splats.low), glm::dvec3(splats.high), high);
         const double z = glm::dot(view.forward, geometry.to_world(at) - view.eye);
         nearest = std::min(nearest, z);
         farthest = std::max(farthest, z);
@@ -356,7 +357,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     p.group_count = (p.sheet_count + p.sheets_per_group - 1) / p.sheets_per_group;
     p.dims = geometry.dims;
     p.tiles = (size + static_cast<int>(shader::TILE) - 1) / static_cast<int>(shader::TILE);
-    draw_first(plan, static_cast<std::uint32_t>(splat_count));
+    draw_first(plan, static_cast<std::uint32_t>(splats.count));
     plan.reach = farthest_reach;
     p.size = size;
     // Optical depth is wanted whole, and what accumulates then is no opacity.

@@ -76,13 +76,18 @@ void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& v
 /// The picture is then of the splats of these bricks, which ascend, if those are fewer than all.
 void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers);
 
-/// Throws Error when the scene has more sheets than the sort can hold. `splat_count` and the voxel box that holds them
-/// come from the collection; no kernel reaches further than `farthest_reach` voxels. Without `creases` no splat has
-/// any.
+/// The splats of a list.
+struct SplatExtent {
+    std::uint64_t count = 0;
+    glm::ivec3 low{0}, high{0};  ///< inclusive box of voxels that holds them
+    bool creases = true;         ///< some may have a plane beside their face
+};
+
+/// Throws Error when the scene has more sheets than the sort can hold. No kernel reaches further than `farthest_reach`
+/// voxels. `refines`: whether the device may draw some pixels first.
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
-                     const glm::ivec2& size, std::uint32_t payload, std::uint64_t splat_count,
-                     const glm::ivec3& box_low, const glm::ivec3& box_high, double farthest_reach = 0,
-                     bool creases = true);
+                     const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats,
+                     double farthest_reach = 0, bool refines = true);
 
 /// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,

@@ -12,7 +12,7 @@ namespace edgesplat {
 
 /// For those who read what a frame takes.
 struct ResourceText {
-    const char* name = "";          ///< as it is allocated
+    const char* name = "";           ///< as it is allocated
     std::string_view contents;       ///< "(splats) uint"
     std::string_view written, read;  ///< stems of passes, or "host"
 };
@@ -20,22 +20,24 @@ struct ResourceText {
 /// Of what passes have by its address alone.
 inline constexpr std::uint32_t kUnbound = ~0U;
 
-/// What the volume becomes before it is splats: as large as the volume, or as the largest of its blocks.
+/// A voxel's texel each: as large as the volume, or as the largest of its blocks.
+template <typename Owner>
 struct VolumeImageRow {
     ResourceText text;
-    gpu::GpuImage VolumeResources::*image;
+    gpu::GpuImage Owner::*image;
     std::uint32_t binding;
     gpu::ImageShape kind;                 ///< without size
     bool (*held)(const CollectionPlan&);  ///< whether there is one
+    gpu::ImageShape shape(const glm::ivec3& size) const;
 };
-std::span<const VolumeImageRow> volume_image_rows();
-gpu::ImageShape shape_of(const VolumeImageRow& row, const glm::ivec3& size);
-const VolumeImageRow& row_of(gpu::GpuImage VolumeResources::*image);
+std::span<const VolumeImageRow<VolumeImages>> volume_image_rows();
+/// What is known of each voxel before it becomes a splat.
+std::span<const VolumeImageRow<SplatLists>> field_image_rows();
 
 /// Mapped, of a plan and the voxels that become splats at once.
 struct CollectionBufferRow {
     ResourceText text;
-    gpu::Buffer VolumeResources::*buffer;
+    gpu::Buffer SplatLists::*buffer;
     std::uint64_t (*bytes)(const CollectionPlan&, const glm::ivec3& core_size);  ///< 0: none
 };
 std::span<const CollectionBufferRow> collection_buffer_rows();
@@ -43,7 +45,7 @@ std::span<const CollectionBufferRow> collection_buffer_rows();
 /// A list with an element for each splat.
 struct SplatListRow {
     ResourceText text;
-    gpu::Buffer VolumeResources::*list;
+    gpu::Buffer SplatLists::*list;
     shader::Address shader::SceneParams::*collected;  ///< where pass 2 finds it
     shader::Address shader::FrameParams::*drawn;      ///< where the passes of a picture do
     std::uint64_t (*bytes)(const CollectionPlan&);    ///< of an element; 0: none
@@ -53,7 +55,7 @@ std::span<const SplatListRow> splat_list_rows();
 /// What of the light reaches the splats, 4 bytes each: there where a scene calls for it.
 struct LightListRow {
     ResourceText text;
-    gpu::Buffer VolumeResources::*list;
+    gpu::Buffer SplatLists::*list;
     shader::Address shader::FrameParams::*drawn;
 };
 inline constexpr std::uint64_t kLightBytes = 4;
@@ -72,9 +74,9 @@ struct TargetImageRow {
     /// Width, height, layers; nothing: pictures of that plan have none.
     std::optional<glm::ivec3> (*size)(const FramePlan&);
     bool higher_serves = false;  ///< one of more rows does as well
+    gpu::ImageShape shape(const glm::ivec3& size_and_layers) const;
 };
 std::span<const TargetImageRow> target_image_rows();
-gpu::ImageShape shape_of(const TargetImageRow& row, const glm::ivec3& size);
 
 struct TargetBufferRow {
     ResourceText text;

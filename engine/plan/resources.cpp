@@ -17,8 +17,7 @@ Bindings::Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines) :
         no_images_.emplace_back(device, shape, kPlaceholder.name);
     for (const vk::Format format : placeholder_texels())
         no_texels_.emplace_back(device, kPlaceholderBytes, gpu::Buffer::Place::Device, kPlaceholderTexels.name, format);
-    no_block_ =
-        gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, kPlaceholderBlock.name);
+    no_block_ = gpu::Buffer(device, sizeof(shader::FrameParams), gpu::Buffer::Place::Host, kPlaceholderBlock.name);
 }
 
 void Bindings::prepare(gpu::Commands& commands) const {
@@ -36,28 +35,35 @@ void Bindings::put_image(std::uint32_t binding, const gpu::GpuImage& image, cons
     set_.put_image(binding, image ? image : *stands_in, sampler);
 }
 
-void Bindings::write_volume(const VolumeResources& volume) {
-    for (const VolumeImageRow& row : volume_image_rows())
-        put_image(row.binding, volume.*row.image, row.kind);
+void Bindings::write_volume(const VolumeImages& images) {
+    for (const auto& row : volume_image_rows())
+        put_image(row.binding, images.*row.image, row.kind);
 }
 
-void Bindings::write(const VolumeResources& volume, const TargetResources& targets) {
-    write_volume(volume);
+void Bindings::write_splats(const SplatLists& lists) {
+    for (const auto& row : field_image_rows())
+        put_image(row.binding, lists.*row.image, row.kind);
+    set_.put_block(shader::BIND_SCENE, lists.scene ? lists.scene : no_block_);
+    set_.put_block(shader::BIND_OCCLUSION, no_block_);
+}
+
+void Bindings::write_targets(const TargetResources& targets) {
     for (const TargetImageRow& row : target_image_rows()) {
         const bool sampled = row.sampling != Sampling::None;
         if (row.binding == kUnbound) continue;
         put_image(row.binding, targets.*row.image, row.kind,
-                  !sampled ? vk::Sampler{} : row.sampling == Sampling::Linear ? *linear_ : *nearest_);
+                  !sampled                           ? vk::Sampler{}
+                  : row.sampling == Sampling::Linear ? *linear_
+                                                     : *nearest_);
     }
     for (const TargetBufferRow& row : target_buffer_rows()) {
         if (row.binding == kUnbound) continue;
         const gpu::Buffer& buffer = targets.*row.buffer;
         const auto otherwise = std::ranges::find(placeholder_texels(), row.texels) - placeholder_texels().begin();
-        set_.put_texels(row.binding, buffer && buffer.texels() ? buffer : no_texels_[static_cast<std::size_t>(otherwise)]);
+        set_.put_texels(row.binding,
+                        buffer && buffer.texels() ? buffer : no_texels_[static_cast<std::size_t>(otherwise)]);
     }
-    set_.put_block(shader::BIND_SCENE, volume.scene ? volume.scene : no_block_);
     set_.put_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
-    set_.put_block(shader::BIND_OCCLUSION, no_block_);
 }
 
 namespace {
@@ -104,7 +110,8 @@ void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::G
     const auto [row, rows_at_once, slices_at_once] = upload_band(shape, texel_bytes);
     const auto slice = row * static_cast<std::size_t>(shape.size.y);
     const auto slices = static_cast<std::size_t>(shape.volume ? shape.size.z : shape.layers);
-    const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host, kStagingBuffer.name);
+    const gpu::Buffer staging(device, slices_at_once * rows_at_once * row, gpu::Buffer::Place::Host,
+                              kStagingBuffer.name);
     for (std::size_t z = 0; z < slices; z += slices_at_once) {
         const std::size_t depth = std::min(slices_at_once, slices - z);
         for (std::size_t y = 0; y < static_cast<std::size_t>(shape.size.y); y += rows_at_once) {

@@ -5,23 +5,29 @@
 #include <cstdint>
 #include <vector>
 
-#include "engine/culling/bricks.h"
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/commands.h"
 #include "engine/gpu/image.h"
+#include "engine/plan/plan.h"
 #include "shaders/shared/bindings.h"
 
 namespace edgesplat {
 
-/// What stands until the volume, the scene's materials or the edge settings change. What each holds, and when there is
-/// one, its row says (resource_table.h).
-struct VolumeResources {
-    gpu::GpuImage volume, coefficients, edges, buried;
+/// What stands until the volume or its resolution changes. What each holds, and when there is one, its row says
+/// (resource_table.h).
+struct VolumeImages {
+    gpu::GpuImage volume, coefficients;
+};
+
+/// What stands until the scene's materials or the edge settings change, too; likewise.
+struct SplatLists {
+    gpu::GpuImage edges, buried;
     gpu::Buffer scene, run_offsets, transfer;
     gpu::Buffer splats, traits, values, occlusion, shadows;
     std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
     SplatBricks bricks;                  ///< of the list
+    SplatExtent extent() const { return {splat_count, box_low, box_high, crease_splat_count > 0}; }
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes; likewise.
@@ -30,7 +36,6 @@ struct TargetResources {
     gpu::Buffer batches, sheet_of, order, counters, output;
     gpu::GpuImage footprint_table;
     gpu::Buffer footprints;
-    double table_depth = 0;  ///< the table's, voxels
     // Of a picture whose sheets are layers.
     gpu::GpuImage sheets, depth, accumulated;
     gpu::Buffer groups, draws;
@@ -49,9 +54,9 @@ class Bindings {
     const gpu::DescriptorSet& set() const { return set_; }
     /// Moves the placeholders into layout GENERAL; once, while recording.
     void prepare(gpu::Commands& commands) const;
-    void write(const VolumeResources& volume, const TargetResources& targets);
-    /// Only what the volume's images alone say: samples, coefficients, edges.
-    void write_volume(const VolumeResources& volume);
+    void write_volume(const VolumeImages& images);
+    void write_splats(const SplatLists& lists);
+    void write_targets(const TargetResources& targets);
 
   private:
     gpu::DescriptorSet set_;

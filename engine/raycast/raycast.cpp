@@ -63,12 +63,14 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 RaycastResources::RaycastResources(const gpu::Device& device, const gpu::Pipelines& pipelines, gpu::Commands& commands)
     : bindings_(device, pipelines),
       block_(device, sizeof(shader::RaycastBlock), gpu::Buffer::Place::Host, "ray parameters") {
-    bindings_.write({}, {});
+    bindings_.write_volume({});
+    bindings_.write_splats({});
+    bindings_.write_targets({});
     bindings_.set().put_block(shader::BIND_RAYS, block_);
     commands.run([&] { bindings_.prepare(commands); });
 }
 
-void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume) {
+void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeImages& volume) {
     if (size_ != plan.size) {
         const auto pixels = static_cast<std::size_t>(plan.size.x) * static_cast<std::size_t>(plan.size.y);
         output_ = {};

@@ -30,7 +30,7 @@ class RaycastResources {
 
     /// Buffers of the plan's size, and its numbers in them. `volume` holds the uploaded volume, and the spline's
     /// coefficients if the plan's filter is cubic.
-    void prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeResources& volume);
+    void prepare(const gpu::Device& device, const RaycastPlan& plan, const VolumeImages& volume);
 
     /// Finds the transparent bricks and waits, if the plan skips them and its materials are others than last time.
     /// Whether that was so.

@@ -7,18 +7,6 @@
 namespace edgesplat {
 namespace {
 
-/// What was asked of `lost`, asked of `fresh`.
-void take_over(RendererState& fresh, const RendererState& lost) {
-    fresh.patience = lost.patience;
-    fresh.interruption = lost.interruption;
-    fresh.memory_budget = lost.memory_budget;
-    fresh.counting = lost.counting;
-    fresh.commands.count_draws(lost.counting);
-    fresh.messages_before = lost.messages_before + lost.device.validation_messages();
-    fresh.original = lost.original;
-    if (fresh.original) fresh.use_level(0);
-}
-
 [[noreturn]] void give_up(const std::string& device) {
     throw DeviceLost(
         fmt::format("Vulkan: the device{} was lost (ErrorDeviceLost), and again after it was opened anew; its driver "
@@ -28,10 +16,10 @@ void take_over(RendererState& fresh, const RendererState& lost) {
 
 }  // namespace
 
-std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attempts) {
+std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attempts, std::uint64_t messages_before) {
     for (;;) {
         try {
-            return std::make_unique<RendererState>(choice);
+            return std::make_unique<RendererState>(choice, messages_before);
         } catch (const vk::DeviceLostError&) {
             if (--attempts <= 0) give_up(choice.device);
         } catch (const vk::SystemError& error) {
@@ -51,14 +39,17 @@ RenderResult Renderer::draw_again_if_lost(const std::function<RenderResult()>& d
             return draw();
         } catch (const vk::DeviceLostError&) {
             // Of a picture in parts the others have gone on.
-            if (again || state_->exchange != nullptr) give_up(device().name);
+            if (again || state_->orders.exchange != nullptr) give_up(device().name);
         } catch (const vk::SystemError& error) {
             fail("Vulkan: {}", error.what());
         }
         fmt::print(stderr, "edgesplat: warning: the device {} was lost; it is opened anew and the picture made again\n",
                    device().name);
-        auto fresh = open_state(state_->opened_as, 1);
-        take_over(*fresh, *state_);
+        // What was asked of it is asked of the new one.
+        auto fresh = open_state(state_->session.choice(), 1, validation_messages());
+        fresh->orders = state_->orders;
+        fresh->session.commands().count_draws(fresh->orders.counting);
+        fresh->splats.set_volume(state_->splats.original());
         state_ = std::move(fresh);
     }
 }

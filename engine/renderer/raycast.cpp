@@ -1,6 +1,5 @@
 // Renderer::raycast: the other way to look at the same scene.
-#include <chrono>
-
+#include "engine/clock.h"
 #include "engine/error.h"
 #include "engine/overlays/overlays.h"
 #include "engine/renderer/state.h"
@@ -15,7 +14,7 @@ void validate(const RaycastSettings& settings) {
 
 RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const Settings& wanted,
                                const RaycastSettings& raycast, int width, int height) {
-    if (!state_->original) fail("raycast: no volume has been set");
+    if (!state_->splats.original()) fail("raycast: no volume has been set");
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     validate(scene);
@@ -28,40 +27,38 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
 
 RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, const Settings& wanted,
                                     const RaycastSettings& raycast, int width, int height) {
-    auto& self = *state_;
+    RendererState& self = *state_;
+    gpu::Commands& commands = self.session.commands();
+    const gpu::Device& device = self.session.device();
     const Settings settings = drawn_as(wanted);
     RenderResult result;
     auto& stats = result.stats;
-    const std::uint64_t submissions_before = self.commands.submissions();
-    self.show_whole();
-    self.provide_volume();
-    const auto add_times = [&](const std::vector<PassTime>& times) {
-        stats.passes.insert(stats.passes.end(), times.begin(), times.end());
-    };
+    const std::uint64_t submissions_before = commands.submissions();
     auto start = Clock::now();
-    if (raycast.filter == RaycastFilter::Cubic && self.provide_coefficients())
+    if (self.splats.provide_volume(raycast.filter == RaycastFilter::Cubic))
         stats.setup_milliseconds += milliseconds_since(start);
+    const VolumeStore& store = self.splats.level().volume;
+    const Volume& volume = *store.volume();
     start = Clock::now();
-    if (!self.raycast) self.raycast.emplace(self.device, self.pipelines, self.commands);
-    auto& rays = *self.raycast;
-    const auto plan = plan_raycast(*self.volume, scene, camera, settings, raycast,
-                                   plan_collection(*self.volume, scene, settings, true), {width, height});
-    rays.prepare(self.device, plan, self.volume_resources);
-    if (rays.classify(self.device, self.commands, plan)) {
+    if (!self.rays) self.rays.emplace(device, self.session.pipelines(), commands);
+    const auto plan = plan_raycast(volume, scene, camera, settings, raycast,
+                                   plan_collection(volume, scene, settings, true), {width, height});
+    self.rays->prepare(device, plan, store.images());
+    if (self.rays->classify(device, commands, plan)) {
         stats.setup_milliseconds += milliseconds_since(start);
-        add_times(self.commands.span_times());
+        add_times(stats.passes, commands.span_times());
     }
     start = Clock::now();
-    rays.cast(self.commands, plan);
+    self.rays->cast(commands, plan);
     stats.frame_milliseconds = milliseconds_since(start);
-    add_times(self.commands.span_times());
+    add_times(stats.passes, commands.span_times());
     result.color = Image(width, height, 4);
-    std::ranges::copy(self.raycast->pixels(), result.color.pixels.begin());
-    if (scene.effects.overlays.any()) draw_overlays(result.color, *self.volume, scene, camera);
-    stats.submissions = self.commands.submissions() - submissions_before;
-    stats.device = self.device.info();
-    stats.voxels = self.volume->geometry.voxel_count();
-    stats.device_bytes = self.device.allocated_bytes();
+    std::ranges::copy(self.rays->pixels(), result.color.pixels.begin());
+    if (scene.effects.overlays.any()) draw_overlays(result.color, volume, scene, camera);
+    stats.submissions = commands.submissions() - submissions_before;
+    stats.device = device.info();
+    stats.voxels = volume.geometry.voxel_count();
+    stats.device_bytes = device.allocated_bytes();
     stats.validation_messages = validation_messages();
     return result;
 }

@@ -1,7 +1,7 @@
 // Volumes block by block: which blocks can hold splats, and which of them a picture needs.
 #pragma once
 
-#include "engine/store/collection.h"
+#include "engine/store/volume_store.h"
 #include "engine/volume/sample_source.h"
 
 namespace edgesplat {

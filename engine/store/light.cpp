@@ -4,10 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "engine/error.h"
-#include "engine/passes/2b_occlude_ambient.h"
-#include "engine/plan/resource_table.h"
-
 namespace edgesplat {
 namespace {
 
@@ -139,14 +135,14 @@ std::vector<Camera> light_views(const Light& light, const VolumeGeometry& geomet
 }
 
 FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const ShadowPlan& shadows, const Camera& view,
-                           const VolumeResources& resources, double reach) {
+                           const SplatExtent& splats, double reach) {
     const auto& geometry = volume.geometry;
     const CameraFrame frame = camera_frame(view);
     const glm::dmat3& axes = geometry.index_to_world_axes;
     const double voxel = 1.0 / glm::length(glm::inverse(axes) * frame.forward);
     const double around = reach * glm::length(glm::transpose(axes) * frame.forward);
     double nearest = INFINITY, farthest = 0;
-    for (const glm::dvec3& corner : corners_of(geometry, resources.box_low, resources.box_high, 0)) {
+    for (const glm::dvec3& corner : corners_of(geometry, splats.low, splats.high, 0)) {
         const double z = glm::dot(frame.forward, corner - frame.eye);
         nearest = std::min(nearest, z - around);
         farthest = std::max(farthest, z + around);
@@ -157,8 +153,7 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
     settings.sheet_spacing = std::max(settings.sheet_spacing, thickness / voxel);
 
     FramePlan plan = plan_frame(volume, only_matter(scene), view, settings, glm::ivec2(shadows.quality.resolution),
-                                shader::PAYLOAD_COLOR, resources.splat_count, resources.box_low, resources.box_high,
-                                reach, resources.crease_splat_count > 0);
+                                shader::PAYLOAD_COLOR, splats, reach);
     plan.variant.payload = shader::PAYLOAD_TAU;
     plan.variant.nodes = kNodes;
     plan.params.saturation = kDark;
@@ -168,33 +163,6 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
 std::uint64_t light_layer_bytes(const FramePlan& plan) {
     const auto side = static_cast<std::uint64_t>(plan.params.size.x);
     return side * side * plan.params.sheet_count * sizeof(float);
-}
-
-std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
-                                    const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources) {
-    resources.occlusion =
-        gpu::Buffer(device, resources.splat_count * kLightBytes, gpu::Buffer::Place::Device, "splat occlusion");
-    const gpu::Buffer block(device, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host, kOcclusionBlock.name);
-    auto& params = block.mapped<shader::OcclusionParams>(1)[0];
-    params = {};
-    params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(volume.geometry.index_to_world_axes)));
-    params.radius = static_cast<float>(plan.radius);
-    std::ranges::transform(plan.matter.extinction, std::begin(params.extinction),
-                           [](double extinction) { return static_cast<float>(extinction); });
-    const passes::ClipCount clip =
-        place_clip(plan.matter.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
-    params.splat_count = static_cast<std::uint32_t>(resources.splat_count);
-    params.reach = resources.occlusion.address();
-    bindings.set().put_block(shader::BIND_OCCLUSION, block);
-    commands.run([&] {
-        commands.span("2b_occlude_ambient", [&] {
-            passes::occlude_ambient(commands, {.splat_count = resources.splat_count,
-                                               .iso_count = resources.scene.mapped<shader::SceneParams>(1)[0].iso_count,
-                                               .clip = clip,
-                                               .transfer = !plan.matter.transfer.empty()});
-        });
-    });
-    return commands.span_times();
 }
 
 }  // namespace edgesplat

@@ -1,10 +1,9 @@
-// What of the light reaches each splat: ambient occlusion and shadows. View-independent, between collection and frame.
+// What of the light reaches each splat, ambient occlusion and shadows, as it is planned.
 #pragma once
 
 #include <vector>
 
 #include "engine/plan/plan.h"
-#include "engine/plan/resources.h"
 
 namespace edgesplat {
 
@@ -43,13 +42,9 @@ std::vector<Camera> light_views(const Light& light, const VolumeGeometry& geomet
 
 /// One of these pictures: optical depth, in sheets as thick as the number of layers asks for.
 FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const ShadowPlan& shadows, const Camera& view,
-                           const VolumeResources& resources, double reach);
+                           const SplatExtent& splats, double reach);
 
 /// Device memory that a light's picture takes for its layers while it is swept, bytes.
 std::uint64_t light_layer_bytes(const FramePlan& plan);
-
-/// Pass 2b: allocates and fills VolumeResources::occlusion. The bindings must hold the volume.
-std::vector<PassTime> run_occlusion(const gpu::Device& device, gpu::Commands& commands, Bindings& bindings,
-                                    const Volume& volume, const OcclusionPlan& plan, VolumeResources& resources);
 
 }  // namespace edgesplat

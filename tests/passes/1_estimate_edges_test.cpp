@@ -11,11 +11,11 @@ TEST(EstimateEdges, TaylorAgreesWithTheReference) {
         SCOPED_TRACE(s.name);
         s.settings = papers_own(s.settings);
         s.settings.cull_buried = false;  // the reference estimates buried voxels too
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto field_values = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, field_values, {}};
         const auto expected = reference::estimate_edges(field, s.scaled(), s.settings, true);
-        const auto words = download<glm::uvec2>(state, state.volume_resources.edges);
+        const auto words = download<glm::uvec2>(state, state.lists().edges);
         ASSERT_EQ(words.size(), expected.size());
 
         std::size_t edges = 0, differ = 0;
@@ -32,7 +32,7 @@ TEST(EstimateEdges, TaylorAgreesWithTheReference) {
 TEST(EstimateEdgesOff, LeavesNormalsForLightAndNoEdge) {
     PassScene s = pass_scenes()[0];
     s.settings.edges = EdgeEstimator::Off;
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     std::size_t normals = 0;
     for (const auto& record : device_records(state)) {
         EXPECT_FALSE(record.edge.has_edge);
@@ -45,9 +45,9 @@ TEST(EstimateEdgesOff, WithoutLightThereIsNoPassAndNoField) {
     PassScene s = pass_scenes()[0];
     s.settings.edges = EdgeEstimator::Off;
     s.scene.lights.clear();
-    RendererState& state = prepared(s);
-    EXPECT_FALSE(static_cast<bool>(state.volume_resources.edges));
-    for (const auto& time : state.collection_times)
+    DeviceUnderTest& state = prepared(s);
+    EXPECT_FALSE(static_cast<bool>(state.lists().edges));
+    for (const auto& time : state.cost.times)
         EXPECT_NE(time.name, "1_estimate_edges");
 }
 

@@ -48,9 +48,9 @@ TEST(CollectSplats, BuriedVoxelsAreDroppedAndOnlyThey) {
 }
 
 /// What pass 1 left for every voxel.
-std::vector<reference::VoxelEdge> device_field(RendererState& state) {
+std::vector<reference::VoxelEdge> device_field(DeviceUnderTest& state) {
     std::vector<reference::VoxelEdge> edges;
-    for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges))
+    for (const auto& words : download<glm::uvec2>(state, state.lists().edges))
         edges.push_back(decode_edge(words.x, words.y));
     return edges;
 }
@@ -59,7 +59,7 @@ TEST(CollectSplats, RecordsHoldThePapersPlanesAsTheyWereFound) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         s.settings.warp = WarpFamily::Paper;
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const std::vector<reference::VoxelEdge> field_edges = device_field(state);
         std::size_t edges = 0;
         for (const auto& record : device_records(state)) {
@@ -90,11 +90,11 @@ TEST(CollectSplats, EdgesOnBothSidesAreFoundForFacesAndOnlyThen) {
 TEST(CollectSplats, AVolumeWithoutVisibleVoxelsGivesAnEmptyListAndTheBackground) {
     PassScene s = pass_scenes()[0];
     s.scene.iso_values = {2.0};
-    RendererState& state = prepared(s);
-    EXPECT_EQ(state.volume_resources.splat_count, 0U);
+    DeviceUnderTest& state = prepared(s);
+    EXPECT_EQ(state.lists().splat_count, 0U);
     s.scene.background = {0.25, 0.5, 0.125};
     state.draw(s.scene, s.camera, s.settings, {16, 8}, shader::PAYLOAD_COLOR);
-    for (const auto& pixel : state.targets.output.mapped<glm::vec4>(128))
+    for (const auto& pixel : state.targets().output.mapped<glm::vec4>(128))
         EXPECT_EQ(pixel, glm::vec4(0.25F, 0.5F, 0.125F, 0.0F));
 }
 

@@ -11,7 +11,7 @@ namespace {
 
 /// First and second: the face that the normal looks out of, and the other.
 Reaches device_reaches(const PassScene& s) {
-    return reaches_of(s, &VolumeResources::occlusion);
+    return reaches_of(s, &SplatLists::occlusion);
 }
 
 double band(const Settings& settings) {
@@ -209,20 +209,20 @@ TEST(OccludeAmbient, WhatIsCutAwayIsInNoOnesWay) {
 
 TEST(OccludeAmbient, NothingIsThereWithoutIt) {
     PassScene s = pass_scenes()[0];
-    RendererState& state = prepared(s);
-    EXPECT_FALSE(state.volume_resources.occlusion);
-    for (const PassTime& time : state.collection_times)
+    DeviceUnderTest& state = prepared(s);
+    EXPECT_FALSE(state.lists().occlusion);
+    for (const PassTime& time : state.cost.times)
         EXPECT_NE(time.name, "2b_occlude_ambient");
     s.scene.effects.occlusion = AmbientOcclusion{};
     state.collect(s.scene, s.settings, false);
-    EXPECT_EQ(state.volume_resources.occlusion.bytes(), 4 * state.volume_resources.splat_count);
+    EXPECT_EQ(state.lists().occlusion.bytes(), 4 * state.lists().splat_count);
     s.scene.effects.occlusion->strength = 0.25;
     EXPECT_EQ(state.collect(s.scene, s.settings, false), 0) << "only colour depends on the strength";
     s.scene.effects.occlusion->radius = 3;
     EXPECT_GT(state.collect(s.scene, s.settings, false), 0);
     s.scene.lights.clear();
     state.collect(s.scene, s.settings, false);
-    EXPECT_FALSE(state.volume_resources.occlusion) << "colours are shown as they are";
+    EXPECT_FALSE(state.lists().occlusion) << "colours are shown as they are";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ class SweepLight : public NeedsLayers<> {};
 
 /// First and second: the lights with shadows.
 Reaches device_reaches(const PassScene& s) {
-    return reaches_of(s, &VolumeResources::shadows);
+    return reaches_of(s, &SplatLists::shadows);
 }
 
 Light sun(const glm::dvec3& towards) {
@@ -228,7 +228,7 @@ TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
     EXPECT_EQ(both.first, first);
     EXPECT_EQ(both.second, second);
     EXPECT_NE(first, second);
-    RendererState& state = device_under_test();
+    DeviceUnderTest& state = device_under_test();
     s.scene.lights[1].color = {1, 0.5, 0.25};
     s.scene.lights[2].intensity = 0.3;
     s.scene.lights.erase(s.scene.lights.begin());
@@ -239,17 +239,17 @@ TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
 
 TEST_F(SweepLight, NothingIsThereWithoutIt) {
     PassScene s = pass_scenes()[0];
-    RendererState& state = prepared(s);
-    EXPECT_FALSE(state.volume_resources.shadows);
+    DeviceUnderTest& state = prepared(s);
+    EXPECT_FALSE(state.lists().shadows);
     s.scene.lights = {sun({0, 0, 1})};
     state.collect(s.scene, s.settings, false);
-    EXPECT_EQ(state.volume_resources.shadows.bytes(), 4 * state.volume_resources.splat_count);
-    ASSERT_EQ(state.collection_times.size(), 2U);
-    EXPECT_EQ(state.collection_times[0].name, "2c_sweep_light");
-    EXPECT_EQ(state.collection_times[1].name, "2d_shadow_splats");
+    EXPECT_EQ(state.lists().shadows.bytes(), 4 * state.lists().splat_count);
+    ASSERT_EQ(state.cost.times.size(), 2U);
+    EXPECT_EQ(state.cost.times[0].name, "2c_sweep_light");
+    EXPECT_EQ(state.cost.times[1].name, "2d_shadow_splats");
     s.scene.lights[0].shadows = false;
     state.collect(s.scene, s.settings, false);
-    EXPECT_FALSE(state.volume_resources.shadows);
+    EXPECT_FALSE(state.lists().shadows);
 }
 
 TEST_F(SweepLight, LightsAnywhereGiveFiniteShares) {

@@ -73,21 +73,21 @@ struct Frame {
     std::uint64_t culled = 0;
 };
 
-Frame frame(RendererState& state, const PassScene& s, const Camera& camera, std::uint32_t payload, bool culls,
+Frame frame(DeviceUnderTest& state, const PassScene& s, const Camera& camera, std::uint32_t payload, bool culls,
             const glm::dvec2& offset = {0, 0}) {
-    state.culls = culls;
+    state.drawer.set_culling({.bricks = culls});
     state.draw(s.scene, camera, drawn_as(s.settings, s.scene), kSize, payload, offset);
-    state.culls = false;
-    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    state.drawer.set_culling({.bricks = false});
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
     return {{pixels.begin(), pixels.end()},
-            state.targets.drawn.mapped<std::uint32_t>(1)[0],
-            state.plan.params.splat_count - state.plan.looked_at};
+            state.targets().drawn.mapped<std::uint32_t>(1)[0],
+            state.plan().params.splat_count - state.plan().looked_at};
 }
 
 /// Of every camera, that leaving out bricks changes nothing. How many splats were left out, of how many.
 glm::u64vec2 expect_nothing_lost(const PassScene& s, const std::vector<Camera>& cameras,
                                  std::uint32_t payload = shader::PAYLOAD_COLOR, const glm::dvec2& offset = {0, 0}) {
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     glm::u64vec2 sums(0);
     int number = 0;
     for (const Camera& camera : cameras) {
@@ -100,8 +100,8 @@ glm::u64vec2 expect_nothing_lost(const PassScene& s, const std::vector<Camera>& 
             EXPECT_EQ(all.drawn, culled.drawn);
         }
         EXPECT_EQ(all.culled, 0U);
-        EXPECT_LE(culled.drawn + culled.culled, state.volume_resources.splat_count * state.plan.sheets_per_splat);
-        sums += glm::u64vec2(culled.culled, state.volume_resources.splat_count);
+        EXPECT_LE(culled.drawn + culled.culled, state.lists().splat_count * state.plan().sheets_per_splat);
+        sums += glm::u64vec2(culled.culled, state.lists().splat_count);
     }
     return sums;
 }
@@ -152,16 +152,15 @@ PassScene cavities() {
 
 TEST(HiddenBricks, AreNotMissed) {
     PassScene s = cavities();
-    RendererState& state = prepared(s);
-    if (!state.device.profile().front_first) GTEST_SKIP() << "frames are not drawn in two parts with this profile";
-    ASSERT_TRUE(state.collected->buried);
+    DeviceUnderTest& state = prepared(s);
+    if (!state.device().profile().front_first) GTEST_SKIP() << "frames are not drawn in two parts with this profile";
+    ASSERT_TRUE(state.level.splats.collected()->buried);
     const glm::ivec2 size(150, 110);
     const auto pixels = [&](const Camera& camera, std::uint32_t payload, std::uint64_t least) {
-        state.culls = true;
-        state.least_hiding = least;
+        state.drawer.set_culling({.bricks = true, .least_hiding = least});
         state.draw(s.scene, camera, drawn_as(s.settings, s.scene), size, payload);
-        state.culls = false;
-        const auto mapped = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+        state.drawer.set_culling({.bricks = false});
+        const auto mapped = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
         return std::vector<glm::vec4>(mapped.begin(), mapped.end());
     };
     std::uint64_t all = 0, looked_at = 0;
@@ -172,40 +171,39 @@ TEST(HiddenBricks, AreNotMissed) {
         look_at(s, glm::dvec3(22 + 4 * (i % 5), 60 + side * (140 + 5 * i), 18 - 3 * (i % 4)), {22, 60, 18}, 17 + i);
         for (const std::uint32_t payload : {shader::PAYLOAD_COLOR, shader::PAYLOAD_DEPTH_DISTANCE}) {
             const auto want = pixels(s.camera, payload, ~std::uint64_t{0});
-            all += state.plan.looked_at;
-            const std::uint32_t drawn = state.targets.drawn.mapped<std::uint32_t>(1)[0];
+            all += state.plan().looked_at;
+            const std::uint32_t drawn = state.targets().drawn.mapped<std::uint32_t>(1)[0];
             EXPECT_TRUE(pixels(s.camera, payload, 100) == want);
-            looked_at += state.plan.looked_at;
-            EXPECT_LE(state.targets.drawn.mapped<std::uint32_t>(1)[0], drawn);
+            looked_at += state.plan().looked_at;
+            EXPECT_LE(state.targets().drawn.mapped<std::uint32_t>(1)[0], drawn);
         }
         // Of optical depth nothing is hidden, and nothing is divided.
         const auto tau = pixels(s.camera, shader::PAYLOAD_TAU, ~std::uint64_t{0});
-        const std::uint64_t once = state.plan.looked_at;
+        const std::uint64_t once = state.plan().looked_at;
         EXPECT_TRUE(pixels(s.camera, shader::PAYLOAD_TAU, 100) == tau);
-        EXPECT_EQ(state.plan.looked_at, once);
+        EXPECT_EQ(state.plan().looked_at, once);
     }
-    state.least_hiding = std::uint64_t{1} << 16U;
     std::printf("%.3f of the splats in view looked at\n", static_cast<double>(looked_at) / static_cast<double>(all));
     EXPECT_LT(static_cast<double>(looked_at), 0.9 * static_cast<double>(all));
 }
 
 TEST(CullBricks, OfNothingInViewNothingIsGoneThrough) {
     PassScene s = waves();
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     look_at(s, {25, -30, 20}, {25, -60, 20}, 40);
     const Frame away = frame(state, s, s.camera, shader::PAYLOAD_COLOR, true);
-    EXPECT_EQ(away.culled, state.volume_resources.splat_count);
+    EXPECT_EQ(away.culled, state.lists().splat_count);
     EXPECT_EQ(away.drawn, 0U);
     EXPECT_TRUE(away.pixels == frame(state, s, s.camera, shader::PAYLOAD_COLOR, false).pixels);
 }
 
 TEST(CullBricks, AreThoseOfTheList) {
     const PassScene s = waves();
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto records = device_records(state);
     const glm::ivec3 dims = s.volume.geometry.dims;
     std::size_t next = 0;
-    for (const SplatBrick& brick : state.volume_resources.bricks.bricks()) {
+    for (const SplatBrick& brick : state.lists().bricks.bricks()) {
         ASSERT_EQ(brick.first, next);
         EXPECT_GT(brick.count, 0U);
         for (std::uint32_t i = 0; i < brick.count; ++i, ++next) {

@@ -23,17 +23,18 @@ struct Drawn {
     std::vector<shader::SheetGroup> groups;
 };
 
-Drawn drawn(RendererState& state, const PassScene& s) {
+Drawn drawn(DeviceUnderTest& state, const PassScene& s) {
     state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
     Drawn result;
     for (const std::uint32_t code :
-         download<std::uint32_t>(state, state.targets.sheet_of, state.volume_resources.splat_count)) {
+         download<std::uint32_t>(state, state.targets().sheet_of, state.lists().splat_count)) {
         const auto first = static_cast<int>(code & ((1U << shader::SHEET_BITS) - 1U));
         result.ranges.push_back(
             {code != shader::SHEET_NONE, first, first + static_cast<int>(code >> shader::SHEET_BITS)});
     }
-    result.order = download<std::uint32_t>(state, state.targets.order, state.targets.drawn.mapped<std::uint32_t>(1)[0]);
-    const auto groups = state.targets.groups.mapped<shader::SheetGroup>(state.plan.params.group_count);
+    result.order =
+        download<std::uint32_t>(state, state.targets().order, state.targets().drawn.mapped<std::uint32_t>(1)[0]);
+    const auto groups = state.targets().groups.mapped<shader::SheetGroup>(state.plan().params.group_count);
     result.groups.assign(groups.begin(), groups.end());
     return result;
 }
@@ -61,12 +62,12 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with(plain);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto records = device_records(state);
         const Drawn got = drawn(state, s);
         const Oracle oracle(s, records, kSize);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
-        const int base = state.plan.params.sheet_base, count = static_cast<int>(state.plan.params.sheet_count);
+        const int base = state.plan().params.sheet_base, count = static_cast<int>(state.plan().params.sheet_count);
         // The device's box of splats holds whole rows: it may begin earlier.
         EXPECT_LE(base, reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints));
 
@@ -90,7 +91,7 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             ASSERT_LE(range.first, range.last);
             ASSERT_GE(range.first, 0);
             ASSERT_LT(range.last, count);
-            ASSERT_LE(range.last - range.first + 1, static_cast<int>(state.plan.sheets_per_splat));
+            ASSERT_LE(range.last - range.first + 1, static_cast<int>(state.plan().sheets_per_splat));
             const auto [least, most] = extents(records[i].edge);
             const double middle =
                 oracle.view.depth(glm::dvec3(oracle.field.voxel(records[i].voxel))) / thickness - base;
@@ -128,11 +129,11 @@ TEST_P(SlicedSheets, AreSortedStableAndComplete) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with(plain);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const Drawn got = drawn(state, s);
         std::vector<std::uint32_t> want;
         std::vector<std::size_t> ends;  // of each sheet, in the order
-        for (int sheet = 0; sheet < static_cast<int>(state.plan.params.sheet_count); ++sheet) {
+        for (int sheet = 0; sheet < static_cast<int>(state.plan().params.sheet_count); ++sheet) {
             for (std::uint32_t i = 0; i < got.ranges.size(); ++i) {
                 const SheetRange& range = got.ranges[i];
                 if (range.drawn && range.first <= sheet && sheet <= range.last) want.push_back(i);
@@ -141,7 +142,7 @@ TEST_P(SlicedSheets, AreSortedStableAndComplete) {
         }
         ASSERT_EQ(got.order.size(), want.size());
         EXPECT_EQ(got.order, want);
-        const std::size_t per_group = state.plan.params.sheets_per_group;
+        const std::size_t per_group = state.plan().params.sheets_per_group;
         std::size_t first = 0;
         for (std::size_t g = 0; g < got.groups.size(); ++g) {
             const std::size_t end = ends[std::min((g + 1) * per_group, ends.size()) - 1];

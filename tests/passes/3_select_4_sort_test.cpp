@@ -18,20 +18,20 @@ struct Drawn {
     std::vector<shader::SheetGroup> groups;
 };
 
-Drawn drawn(RendererState& state, const PassScene& s) {
+Drawn drawn(DeviceUnderTest& state, const PassScene& s) {
     state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
-    const auto n = state.volume_resources.splat_count;
-    const std::size_t count = state.targets.drawn.mapped<std::uint32_t>(1)[0];
-    const auto groups = state.targets.groups.mapped<shader::SheetGroup>(state.plan.params.group_count);
-    return {download<std::uint32_t>(state, state.targets.sheet_of, n),
-            download<std::uint32_t>(state, state.targets.order, count),
+    const auto n = state.lists().splat_count;
+    const std::size_t count = state.targets().drawn.mapped<std::uint32_t>(1)[0];
+    const auto groups = state.targets().groups.mapped<shader::SheetGroup>(state.plan().params.group_count);
+    return {download<std::uint32_t>(state, state.targets().sheet_of, n),
+            download<std::uint32_t>(state, state.targets().order, count),
             {groups.begin(), groups.end()}};
 }
 
 TEST_F(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto records = device_records(state);
         const auto got = drawn(state, s);
         const Oracle oracle(s, records, kSize);
@@ -52,7 +52,7 @@ TEST_F(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
                 continue;
             }
             ++kept;
-            const int sheet = static_cast<int>(got.sheets[i]) + state.plan.params.sheet_base;
+            const int sheet = static_cast<int>(got.sheets[i]) + state.plan().params.sheet_base;
             const double exact = std::max(want[i].z / thickness, 0.0);
             // Within rounding of a sheet boundary either side is right.
             EXPECT_LE(static_cast<double>(sheet), exact + 1e-4);
@@ -66,9 +66,9 @@ TEST_F(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
 
 TEST_F(SelectFootprints, GroupRectanglesHoldEveryPixelThatIsTouched) {
     const PassScene s = pass_scenes()[0];
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto got = drawn(state, s);
-    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
     glm::ivec4 all(kSize, 0, 0);
     for (const auto& group : got.groups) {
         if (group.count == 0) continue;
@@ -94,7 +94,7 @@ TEST(SortSheets, IsAStablePermutationOfWhatIsDrawn) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto got = drawn(state, s);
         std::vector<std::uint32_t> want;
         for (std::uint32_t i = 0; i < got.sheets.size(); ++i) {
@@ -115,10 +115,10 @@ TEST(SortSheets, IsAStablePermutationOfWhatIsDrawn) {
 TEST(SortSheets, ThinSheetsByTheThousand) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     PassScene s = pass_scenes()[0];
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     s.settings.sheet_spacing = 0.05;  // the smallest there is
     const auto got = drawn(state, s);
-    EXPECT_GT(state.plan.params.sheet_count, 400U);
+    EXPECT_GT(state.plan().params.sheet_count, 400U);
     for (std::size_t i = 1; i < got.order.size(); ++i)
         EXPECT_LE(got.sheets[got.order[i - 1]], got.sheets[got.order[i]]);
 }

@@ -19,18 +19,18 @@ struct Marked {
 };
 
 /// Of the last chunk that was drawn. `cell`: pixels that one mark is for.
-Marked count_marks(RendererState& state, const PassScene& s, const glm::ivec2& size, const glm::uvec2& cell) {
+Marked count_marks(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size, const glm::uvec2& cell) {
     const auto records = device_records(state);
     const Oracle oracle(s, records, size);
-    const glm::uvec2 tiles(state.plan.params.tiles), cells = kTile / cell;
-    const auto ranges = download<glm::uvec2>(state, state.targets.tile_ranges, std::size_t{tiles.x} * tiles.y);
+    const glm::uvec2 tiles(state.plan().params.tiles), cells = kTile / cell;
+    const auto ranges = download<glm::uvec2>(state, state.targets().tile_ranges, std::size_t{tiles.x} * tiles.y);
     const std::size_t entries = ranges.back().y;
-    const auto list = download<glm::uvec2>(state, state.targets.tile_entries, entries);
+    const auto list = download<glm::uvec2>(state, state.targets().tile_entries, entries);
     const auto order =
-        download<std::uint32_t>(state, state.targets.order, state.targets.drawn.mapped<std::uint32_t>(1)[0]);
+        download<std::uint32_t>(state, state.targets().order, state.targets().drawn.mapped<std::uint32_t>(1)[0]);
     const std::size_t words = std::size_t{cells.x} * cells.y;
     const auto marks =
-        download<std::uint32_t>(state, state.targets.tile_marks, (entries / shader::MARKED_AT_ONCE + 1) * words);
+        download<std::uint32_t>(state, state.targets().tile_marks, (entries / shader::MARKED_AT_ONCE + 1) * words);
     Marked out;
     for (std::uint32_t tile = 0; tile < ranges.size(); ++tile) {
         for (std::uint32_t i = ranges[tile].x; i < ranges[tile].y; ++i) {
@@ -72,7 +72,7 @@ TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
             s.settings.pixels = PixelChoice::Every;
             s.settings.saturation = 1;  // no tile closes
             s.settings = drawn_as(s.settings);
-            RendererState& state = prepared(s);
+            DeviceUnderTest& state = prepared(s);
             state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
             const Marked marks = count_marks(state, s, size, {1, 1});
             touched += marks.touched;
@@ -93,14 +93,14 @@ TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
 }
 
 TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
-    if (!device_under_test().device.profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const glm::ivec2 size(150, 121);
         s.settings.saturation = 1;
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
-        ASSERT_TRUE(state.plan.refined);
+        ASSERT_TRUE(state.plan().refined);
         const Marked marks = count_marks(state, s, size, {4, 2});
         EXPECT_GT(marks.touched, 10000U);
         EXPECT_EQ(marks.missed, 0U);
@@ -114,16 +114,17 @@ TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
         const glm::ivec2 size(70, 45);
         s.settings.saturation = 1;
         s.settings.pixels = PixelChoice::Every;
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto pixels = [&] {
-            const auto mapped = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+            const auto mapped = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
             return std::vector<glm::vec4>(mapped.begin(), mapped.end());
         };
         state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
         const auto want = pixels();
-        ASSERT_FALSE(state.plan.wide_marks);
-        state.plan.wide_marks = true;
-        state.draw_planned();
+        ASSERT_FALSE(state.plan().wide_marks);
+        FramePlan plan = state.plan();
+        plan.wide_marks = true;
+        state.drawer.draw(state.level, plan);
         EXPECT_EQ(count_marks(state, s, size, {4, 2}).missed, 0U);
         // Outside a support, rounding leaves a footprint something like 1e-8 at most.
         const auto got = pixels();
@@ -131,7 +132,7 @@ TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
             ASSERT_LT(glm::length(got[i] - want[i]), 1e-6F) << i;
     }
     EXPECT_TRUE(plan_frame(pass_scenes()[0].volume, pass_scenes()[0].scene, pass_scenes()[0].camera, {}, {8192, 4096},
-                           shader::PAYLOAD_COLOR, 1000, glm::ivec3(0), glm::ivec3(9), 2.5)
+                           shader::PAYLOAD_COLOR, {1000, glm::ivec3(0), glm::ivec3(9)}, 2.5)
                     .wide_marks);
 }
 
@@ -142,7 +143,7 @@ TEST(MarkPixels, SplatsAroundTheEyeAreForAll) {
     s.settings.pixels = PixelChoice::Every;
     s.settings.saturation = 1;
     const glm::ivec2 size(48, 33);
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
     const Marked marks = count_marks(state, s, size, {1, 1});
     EXPECT_GT(marks.touched, 10000U);

@@ -14,22 +14,24 @@ namespace {
 constexpr int kTile = static_cast<int>(shader::TILE);
 const glm::ivec2 kSize(70, 45);  // neither side is a multiple of a tile's
 
-std::vector<glm::vec4> picture(RendererState& state, const PassScene& s, const Settings& settings,
+std::vector<glm::vec4> picture(DeviceUnderTest& state, const PassScene& s, const Settings& settings,
                                std::uint32_t payload) {
     state.draw(s.scene, s.camera, settings, kSize, payload);
-    const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
     return {pixels.begin(), pixels.end()};
 }
 
 /// Draws the last picture again, in chunks of so many pairs. How many there were.
-std::size_t in_chunks(RendererState& state, std::uint64_t limit) {
-    sort_frame(state.commands, state.plan, state.targets);
-    const std::uint32_t sheets = state.plan.params.sheet_count;
-    const Chunks chunks = plan_chunks(state.targets.sheet_pairs.mapped<std::uint32_t>(sheets),
-                                      state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
-    state.provide_chunks(chunks);
-    draw_tiles(state.commands, state.plan, state.targets, static_cast<std::uint32_t>(chunks.parts.size()),
-               {.profile = &state.device.profile()});
+std::size_t in_chunks(DeviceUnderTest& state, std::uint64_t limit) {
+    FramePlan plan = state.plan();
+    sort_frame(state.commands(), plan, state.targets());
+    const std::uint32_t sheets = plan.params.sheet_count;
+    const Chunks chunks =
+        plan_chunks(state.targets().sheet_pairs.mapped<std::uint32_t>(sheets),
+                    state.targets().sheet_starts.mapped<std::uint32_t>(std::size_t{sheets} + 1), limit);
+    state.drawer.targets().provide_chunks(plan, chunks);
+    draw_tiles(state.commands(), plan, state.targets(), static_cast<std::uint32_t>(chunks.parts.size()),
+               {.profile = &state.device().profile()});
     return chunks.parts.size();
 }
 
@@ -39,12 +41,12 @@ struct Lists {
     std::vector<std::uint32_t> sheet_of;
 };
 
-Lists lists_of(RendererState& state) {
-    const auto& p = state.plan.params;
+Lists lists_of(DeviceUnderTest& state) {
+    const auto& p = state.plan().params;
     const auto tiles = static_cast<std::size_t>(p.tiles.x) * static_cast<std::size_t>(p.tiles.y);
     Lists lists;
-    lists.ranges = download<glm::uvec2>(state, state.targets.tile_ranges, tiles);
-    lists.entries = download<glm::uvec2>(state, state.targets.tile_entries, lists.ranges.back().y);
+    lists.ranges = download<glm::uvec2>(state, state.targets().tile_ranges, tiles);
+    lists.entries = download<glm::uvec2>(state, state.targets().tile_entries, lists.ranges.back().y);
     // Each list begins at a multiple of what a word of marks is for.
     std::vector<glm::uvec2> packed;
     for (glm::uvec2& range : lists.ranges) {
@@ -55,11 +57,11 @@ Lists lists_of(RendererState& state) {
     }
     lists.entries = std::move(packed);
     const std::uint32_t most = std::ranges::max(lists.entries, {}, &glm::uvec2::x).x + 1;
-    const auto order = download<std::uint32_t>(state, state.targets.order, most);
+    const auto order = download<std::uint32_t>(state, state.targets().order, most);
     for (glm::uvec2& entry : lists.entries)
         entry.x = order[entry.x];
-    lists.rects = download<glm::uvec2>(state, state.targets.tile_rects, p.splat_count);
-    lists.sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, p.splat_count);
+    lists.rects = download<glm::uvec2>(state, state.targets().tile_rects, p.splat_count);
+    lists.sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, p.splat_count);
     return lists;
 }
 
@@ -67,14 +69,14 @@ TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         for (const PassScene& s : pass_scenes()) {
             SCOPED_TRACE(s.name);
-            RendererState& state = prepared(s);
+            DeviceUnderTest& state = prepared(s);
             Settings settings = s.settings;
             settings.sheets = sheets;
             settings.sheet_spacing = 1;
             picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
             in_chunks(state, ~std::uint64_t{0});
             const Lists lists = lists_of(state);
-            const auto tiles_x = static_cast<std::size_t>(state.plan.params.tiles.x);
+            const auto tiles_x = static_cast<std::size_t>(state.plan().params.tiles.x);
             std::vector<std::vector<glm::uvec2>> want(lists.ranges.size());
             for (std::uint32_t i = 0; i < lists.rects.size(); ++i) {
                 const std::uint32_t code = lists.sheet_of[i];
@@ -100,7 +102,7 @@ TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
                 pairs += want[tile].size();
             }
             EXPECT_GT(pairs, 0U);
-            const auto counted = state.targets.sheet_pairs.mapped<std::uint32_t>(state.plan.params.sheet_count);
+            const auto counted = state.targets().sheet_pairs.mapped<std::uint32_t>(state.plan().params.sheet_count);
             EXPECT_EQ(std::accumulate(counted.begin(), counted.end(), std::size_t{0}), pairs);
         }
     }
@@ -117,14 +119,14 @@ TEST(SortTiles, AListIsWholeHoweverUnevenTheSplatsAre) {
     s.scene.iso_values = {0.5};
     s.scene.materials = {{}, {{1, 1, 1}, 2}};
     look_at(s, {2, 2, 4.5}, {80, 80, 2.5}, 130);
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     state.draw(s.scene, s.camera, drawn_as(s.settings), {1024, 1024}, shader::PAYLOAD_COLOR);
     ASSERT_EQ(in_chunks(state, ~std::uint64_t{0}), 1U);
-    const auto& p = state.plan.params;
-    const auto pairs = state.targets.sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
+    const auto& p = state.plan().params;
+    const auto pairs = state.targets().sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
     const auto all = std::accumulate(pairs.begin(), pairs.end(), std::uint64_t{0});
     // More in a column than one invocation could go through at once.
-    const auto starts = state.targets.sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
+    const auto starts = state.targets().sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
     EXPECT_GT(most_column_pairs({0, starts.back()}, p.tile_blocks, pairs, starts), 2 * shader::PAIR_STEPS);
     const Lists lists = lists_of(state);
     EXPECT_EQ(lists.ranges.back().y, all);
@@ -152,10 +154,10 @@ TEST(DrawTiles, PicturesAreThoseOfLayers) {
             // Layers close pixels group by group, tiles sheet by sheet; layers draw every pixel.
             s.settings.saturation = 1;
             s.settings.pixels = PixelChoice::Every;
-            RendererState& state = prepared(s);
+            DeviceUnderTest& state = prepared(s);
             const auto layers = picture(state, s, layered(s.settings), payload);
             const auto tiles = picture(state, s, s.settings, payload);
-            ASSERT_TRUE(state.plan.variant.tiles);
+            ASSERT_TRUE(state.plan().variant.tiles);
             float peak = 0, worst = 0;
             // Means are weighed by how opaque they are: at the rim of a footprint one of the two may have nothing.
             const bool means = payload == shader::PAYLOAD_DEPTH_DISTANCE || payload == shader::PAYLOAD_NORMAL;
@@ -179,7 +181,7 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
     PassScene s = pass_scenes()[0];
     for (Material& material : s.scene.materials)
         material.extinction *= 40;
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto whole = picture(
         state, s,
         [&] {
@@ -192,14 +194,14 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
     closing.saturation = 0.9;
     const auto pixels = picture(state, s, closing, shader::PAYLOAD_COLOR);
     const auto closed = download<std::uint32_t>(
-        state, state.targets.tile_closed,
-        static_cast<std::size_t>(state.plan.params.tiles.x) * static_cast<std::size_t>(state.plan.params.tiles.y));
+        state, state.targets().tile_closed,
+        static_cast<std::size_t>(state.plan().params.tiles.x) * static_cast<std::size_t>(state.plan().params.tiles.y));
     std::vector<std::uint32_t> want(closed.size(), 0);
     for (int y = 0; y < kSize.y; ++y) {
         for (int x = 0; x < kSize.x; ++x) {
             const auto i = static_cast<std::size_t>(y * kSize.x + x);
             const bool full = pixels[i].a >= 0.9F;
-            want[static_cast<std::size_t>(y / kTile * state.plan.params.tiles.x + x / kTile)] += full ? 1 : 0;
+            want[static_cast<std::size_t>(y / kTile * state.plan().params.tiles.x + x / kTile)] += full ? 1 : 0;
             if (full) {
                 EXPECT_LE(pixels[i].a, whole[i].a + 1e-5F);
             } else {
@@ -214,20 +216,22 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
 TEST(SortSheets, InSegmentsIsTheSameOrder) {
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         const PassScene s = pass_scenes()[1];
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         Settings settings = s.settings;
         settings.sheets = sheets;
         picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
-        const std::size_t entries = state.targets.drawn.mapped<std::uint32_t>(4)[0];
-        const auto at_once = download<std::uint32_t>(state, state.targets.order, entries);
-        const std::uint32_t per_block = (state.plan.params.splat_count + shader::SORT_BLOCKS - 1) / shader::SORT_BLOCKS;
+        const std::size_t entries = state.targets().drawn.mapped<std::uint32_t>(4)[0];
+        const auto at_once = download<std::uint32_t>(state, state.targets().order, entries);
+        const std::uint32_t per_block =
+            (state.plan().params.splat_count + shader::SORT_BLOCKS - 1) / shader::SORT_BLOCKS;
         ASSERT_GT(per_block, 1U);
-        EXPECT_GE(state.plan.sort_segments * state.plan.params.sort_segment, per_block);
-        state.plan.sort_segments = per_block;
-        state.targets.frame.mapped<shader::FrameParams>(1)[0].sort_segment = 1;
-        sort_frame(state.commands, state.plan, state.targets);
-        EXPECT_EQ(state.targets.drawn.mapped<std::uint32_t>(4)[0], entries);
-        EXPECT_EQ(download<std::uint32_t>(state, state.targets.order, entries), at_once);
+        EXPECT_GE(state.plan().sort_segments * state.plan().params.sort_segment, per_block);
+        FramePlan plan = state.plan();
+        plan.sort_segments = per_block;
+        state.targets().frame.mapped<shader::FrameParams>(1)[0].sort_segment = 1;
+        sort_frame(state.commands(), plan, state.targets());
+        EXPECT_EQ(state.targets().drawn.mapped<std::uint32_t>(4)[0], entries);
+        EXPECT_EQ(download<std::uint32_t>(state, state.targets().order, entries), at_once);
     }
 }
 
@@ -238,8 +242,8 @@ TEST(SortSheets, SegmentsCoverEveryList) {
         settings.sheets = sheets;
         for (const std::uint64_t splats : {1ULL, 1000ULL, 586473ULL, 20000000ULL, 300000000ULL}) {
             const FramePlan plan =
-                plan_frame(s.volume, s.scene, s.camera, drawn_as(settings), kSize, shader::PAYLOAD_COLOR, splats,
-                           glm::ivec3(0), s.volume.geometry.dims - 1, 2.5);
+                plan_frame(s.volume, s.scene, s.camera, drawn_as(settings), kSize, shader::PAYLOAD_COLOR,
+                           {splats, glm::ivec3(0), s.volume.geometry.dims - 1}, 2.5);
             const std::uint64_t covered = std::uint64_t{plan.sort_segments} * plan.params.sort_segment;
             EXPECT_GE(covered * shader::SORT_BLOCKS, splats);
             EXPECT_LE(std::uint64_t{plan.params.sort_segment} * (plan.sheets_per_splat + 1), shader::MOST_ITERATIONS);
@@ -258,11 +262,11 @@ TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
     s.scene.materials = {{}, {{1, 0.5, 0.2}, 0.4}};
     look_at(s, {199.5, 180, 400}, {199.5, 199.5, 2}, 60);
     s.settings.sheet_spacing = 8;
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto want = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
     in_chunks(state, ~std::uint64_t{0});
-    const auto parts = state.targets.chunks.mapped<glm::uvec2>(1);
-    ASSERT_GT(parts[0].y - parts[0].x, state.plan.params.prepared_mask + 1);
+    const auto parts = state.targets().chunks.mapped<glm::uvec2>(1);
+    ASSERT_GT(parts[0].y - parts[0].x, state.plan().params.prepared_mask + 1);
     // The same splats, few enough at a time.
     Settings thin = s.settings;
     thin.sheet_spacing = 0.02;
@@ -291,24 +295,24 @@ TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
 
 TEST(DrawTiles, ManyChunksMakeTheSamePicture) {
     const PassScene s = pass_scenes()[1];
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto once = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
     EXPECT_GT(in_chunks(state, 1), 3U);
-    const auto pixels = state.targets.output.mapped<glm::vec4>(once.size());
+    const auto pixels = state.targets().output.mapped<glm::vec4>(once.size());
     EXPECT_TRUE(std::ranges::equal(pixels, once));
 }
 
 TEST(RefinePixels, ManyChunksMakeTheSamePicture) {
-    if (!device_under_test().device.profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
     // Seen through and not, so that tiles close or stay open behind chunks whose lists are kept, or have to make room.
     for (const double extinction : {0.05, 3.0}) {
         PassScene s = pass_scenes()[2];
         s.scene.materials[1].extinction = extinction;
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const glm::ivec2 size(150, 121);
         state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
-        ASSERT_TRUE(state.plan.refined);
-        const auto pixels = state.targets.output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
+        ASSERT_TRUE(state.plan().refined);
+        const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
         const std::vector<glm::vec4> once(pixels.begin(), pixels.end());
         for (const std::uint64_t limit : {1U, 500U, 20000U}) {
             EXPECT_GT(in_chunks(state, limit), limit > 500 ? 0U : 3U);

@@ -33,14 +33,14 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
     for (PassScene s : pass_scenes()) {
         s = in_one_group(s, GetParam().mode, GetParam().warp);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
-        ASSERT_EQ(state.plan.params.group_count, 1U);
-        const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
+        ASSERT_EQ(state.plan().params.group_count, 1U);
+        const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
 
         const Oracle oracle(s, records, kSize);
         double peak = 0, worst = 0;
-        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+        for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
                 if (sheet_of[i] == sheet) splats.push_back(i);
@@ -83,26 +83,26 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
         s.settings.sheets = SheetCut::Sliced;
         s.settings = drawn_as(s.settings);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
-        ASSERT_EQ(state.plan.params.group_count, 1U);
-        const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
+        ASSERT_EQ(state.plan().params.group_count, 1U);
+        const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
 
         const Oracle oracle(s, records, kSize);
         const int reference_base =
             reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
-        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+        for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
                 // The reference says itself what belongs here: the device may have left some out.
-                const int place = static_cast<int>(sheet) + state.plan.params.sheet_base - reference_base;
+                const int place = static_cast<int>(sheet) + state.plan().params.sheet_base - reference_base;
                 const bool touches = oracle.selected[i].sheet <= place && place <= oracle.selected[i].last_sheet;
                 if (touches && sheet_of[i] != shader::SHEET_NONE) splats.push_back(i);
             }
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
-            const double first = state.plan.params.sheet_base + static_cast<double>(sheet);
+            const double first = state.plan().params.sheet_base + static_cast<double>(sheet);
             const reference::DepthRange cut{thickness * first, thickness * (first + 1)};
             oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
             for (std::size_t i = 0; i < kPixels; ++i) {
@@ -130,13 +130,13 @@ TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
     for (PassScene s : pass_scenes()) {
         s = in_one_group(s, FootprintMode::Procedural, WarpFamily::Face);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
-        const auto sheets = download<glm::vec4>(state, state.targets.sheets);
-        const auto got = download<glm::vec4>(state, state.targets.accumulated);
-        const auto rect = state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect;
+        const auto sheets = download<glm::vec4>(state, state.targets().sheets);
+        const auto got = download<glm::vec4>(state, state.targets().accumulated);
+        const auto rect = state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect;
         std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
-        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
+        for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<glm::dvec4> layer(kPixels, glm::dvec4(0));
             for (int y = rect.y; y < rect.w; ++y) {  // outside the rectangle the layers are never cleared
                 for (int x = rect.x; x < rect.z; ++x) {
@@ -157,11 +157,11 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     PassScene s = in_one_group(pass_scenes()[1], FootprintMode::Procedural, WarpFamily::Face);
     s.scene.background = {0.1, 0.3, 0.7};
-    RendererState& state = prepared(s);
-    const auto output = [&] { return state.targets.output.mapped<glm::vec4>(kPixels); };
+    DeviceUnderTest& state = prepared(s);
+    const auto output = [&] { return state.targets().output.mapped<glm::vec4>(kPixels); };
     const auto accumulated = [&] {
         std::vector<glm::dvec4> frame;
-        for (const auto& pixel : download<glm::vec4>(state, state.targets.accumulated))
+        for (const auto& pixel : download<glm::vec4>(state, state.targets().accumulated))
             frame.emplace_back(pixel);
         return frame;
     };
@@ -169,10 +169,10 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
     const Image color = reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
         ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], color.pixels[i], 1e-6F);
-    EXPECT_FALSE(state.plan.gradient);
+    EXPECT_FALSE(state.plan().gradient);
     s.scene.effects.background_top = glm::dvec3(0.9, 0, 0.25);
     state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
-    EXPECT_TRUE(state.plan.gradient);
+    EXPECT_TRUE(state.plan().gradient);
     const Image two =
         reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background, s.scene.effects.background_top);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
@@ -188,7 +188,7 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
         }
     EXPECT_GT(seen, kSize.x);
     state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_DEPTH_DISTANCE);
-    EXPECT_FALSE(state.plan.gradient);
+    EXPECT_FALSE(state.plan().gradient);
     const Image depth = reference::resolve_mean(accumulated(), kSize.x, kSize.y);
     for (std::size_t i = 0; i < kPixels; ++i)
         ASSERT_NEAR(output()[i].x, depth.pixels[i], 1e-4F);
@@ -205,13 +205,13 @@ TEST(Frame, RepeatsBitForBit) {
         if (format == SheetFormat::Layers && !layers_obstacle().empty()) continue;
         PassScene s = pass_scenes()[1];
         s.settings.sheets = sheets;
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto render = [&, format = format] {
-            state.collected.reset();
+            state.level.splats.drop();
             state.collect(s.scene, s.settings, false);
             state.draw(s.scene, s.camera, format == SheetFormat::Tiles ? s.settings : layered(s.settings), kSize,
                        shader::PAYLOAD_COLOR);
-            const auto pixels = state.targets.output.mapped<glm::vec4>(kPixels);
+            const auto pixels = state.targets().output.mapped<glm::vec4>(kPixels);
             return std::vector<glm::vec4>(pixels.begin(), pixels.end());
         };
         const auto first = render();

@@ -8,29 +8,58 @@
 #include <string>
 #include <string_view>
 
-#include "engine/renderer/state.h"
+#include "engine/frame/picture.h"
+#include "engine/frame/setup.h"
 
 namespace edgesplat::test {
 
-inline std::unique_ptr<RendererState>& held_device() {
-    static std::unique_ptr<RendererState> state;
-    return state;
+/// The owners of what a renderer holds, without what decides which splats it holds.
+struct DeviceUnderTest {
+    explicit DeviceUnderTest(const DeviceChoice& choice) : session(choice) {}
+
+    /// Passes 1 to 2d, as far as they are to run. Milliseconds.
+    double collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
+        cost = {};
+        return set_up(session, level, drawer.targets(), scene, settings, keep_buried, cost);
+    }
+    void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
+              std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {
+        FramePlan planned = drawer.plan(level, scene, camera, settings, size, payload);
+        if (offset != glm::dvec2(0)) shift_rays(planned, offset);
+        drawer.draw(level, std::move(planned));
+    }
+    const gpu::Device& device() const { return session.device(); }
+    gpu::Commands& commands() { return session.commands(); }
+    const SplatLists& lists() const { return level.splats.lists(); }
+    const TargetResources& targets() { return drawer.targets().resources(); }
+    const FramePlan& plan() const { return drawer.drawn(); }
+
+    Orders orders;
+    DeviceSession session;
+    LevelStore level{session};
+    PictureDrawer drawer{session, orders};
+    SetupCost cost;  ///< of the last collect()
+};
+
+inline std::unique_ptr<DeviceUnderTest>& held_device() {
+    static std::unique_ptr<DeviceUnderTest> device;
+    return device;
 }
 
 /// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one ("gpu"). Opened when first asked for.
-inline RendererState& device_under_test() {
+inline DeviceUnderTest& device_under_test() {
     auto& state = held_device();
     if (state == nullptr) {
         const char* device = std::getenv("EDGESPLAT_TEST_DEVICE");
         const bool first = device == nullptr || std::string_view(device) == "gpu";
-        state = std::make_unique<RendererState>(DeviceChoice{.device = first ? "" : device, .validation = true});
+        state = std::make_unique<DeviceUnderTest>(DeviceChoice{.device = first ? "" : device, .validation = true});
     }
     return *state;
 }
 
 /// Why the device under test draws no sheets in layers, and so no shadows either; empty where it does.
 inline const std::string& layers_obstacle() {
-    return device_under_test().device.layers_obstacle();
+    return device_under_test().device().layers_obstacle();
 }
 
 /// Tests of sheets in layers: skipped, with the reason, on a device that has none.
@@ -52,7 +81,7 @@ inline const testing::Environment* const kDeviceCloses = testing::AddGlobalTestE
 /// Fails any test during which validation spoke.
 class ValidationIsSilent : public testing::EmptyTestEventListener {
     void OnTestEnd(const testing::TestInfo&) override {
-        const auto now = device_under_test().device.validation_messages();
+        const auto now = device_under_test().device().validation_messages();
         EXPECT_EQ(now, seen_) << "validation messages";
         seen_ = now;
     }

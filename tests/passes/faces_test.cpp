@@ -19,9 +19,9 @@ PassScene with_faces(PassScene s, EdgeEstimator edges = EdgeEstimator::Cubic) {
     return s;
 }
 
-std::vector<reference::VoxelEdge> device_surfels(RendererState& state) {
+std::vector<reference::VoxelEdge> device_surfels(DeviceUnderTest& state) {
     std::vector<reference::VoxelEdge> edges;
-    for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges)) {
+    for (const auto& words : download<glm::uvec2>(state, state.lists().edges)) {
         edges.push_back(decode_edge(words.x, words.y));
         edges.back().border = (words.y & shader::EDGE_BORDER) != 0;
     }
@@ -35,7 +35,7 @@ TEST_P(Surfels, AgreeWithTheReference) {
         PassScene s = with_faces(plain, GetParam());
         s.settings.cull_buried = false;
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto values = scaled_field(s.volume);
         const auto coefficients = bspline_coefficients(values, s.volume.geometry.dims);
         const reference::Field field{s.volume.geometry.dims, values, coefficients};
@@ -62,7 +62,7 @@ TEST(Faces, RecordsHoldTheQuadricsThatFit) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with_faces(plain);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto values = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, values, {}};
         const auto surfels = device_surfels(state);
@@ -101,7 +101,7 @@ TEST(Faces, ASphereIsFoundExactly) {
     PassScene s = with_faces(pass_scenes()[0]);
     const glm::dvec3 center(13.3, 12.6, 9.4);
     s.volume = sample(sphere_scene({28, 26, 20}, center, 6.3));
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     double worst = 0, sum2 = 0, bent = 0;
     int count = 0;
     for (const auto& record : device_records(state)) {
@@ -129,7 +129,7 @@ TEST(Faces, ABoxHasItsEdges) {
     s.volume = sample(box);
     s.scene.iso_values = {0.5};
     s.settings.cull_buried = false;
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const glm::ivec3 dims = s.volume.geometry.dims;
     std::vector<double> off;
     for (const auto& record : device_records(state)) {
@@ -168,18 +168,18 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
         s.scene.effects.clip.keep = {{middle, {0.3, -1, 0.4}}};
     }
     s.settings = drawn_as(s.settings, s.scene);
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
-    ASSERT_EQ(state.plan.params.group_count, 1U);
+    ASSERT_EQ(state.plan().params.group_count, 1U);
     const Oracle oracle(s, records, kSize);
-    const auto sheet_of = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
+    const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
     const double thickness = reference::sheet_thickness(oracle.view, s.settings);
     const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
     const bool sliced = s.settings.sheets == SheetCut::Sliced;
     double peak = 0;
     std::size_t compared = 0, differ = 0;
-    for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
-        const int place = static_cast<int>(sheet) + state.plan.params.sheet_base;
+    for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
+        const int place = static_cast<int>(sheet) + state.plan().params.sheet_base;
         std::vector<std::uint32_t> splats;
         for (std::uint32_t i = 0; i < records.size(); ++i) {
             const reference::Selected& selected = oracle.selected[i];

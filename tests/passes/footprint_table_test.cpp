@@ -32,17 +32,17 @@ TEST(SelectLayers, AsTheReferenceDoesForBothWaysOfDrawing) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with_table(plain);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto records = device_records(state);
         const Oracle oracle(s, records, kSize);
         for (const Settings& settings : {layered(s.settings), tiled(s.settings)}) {
             if (settings.sheet_format == SheetFormat::Layers && !layers_obstacle().empty()) continue;
             state.draw(s.scene, s.camera, settings, kSize, shader::PAYLOAD_COLOR);
-            const auto sheets = download<std::uint32_t>(state, state.targets.sheet_of, records.size());
-            const auto got = download<glm::uvec2>(state, state.targets.footprints, records.size());
+            const auto sheets = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
+            const auto got = download<glm::uvec2>(state, state.targets().footprints, records.size());
             std::size_t plain_ones = 0, cut = 0, other = 0;
             // Bricks out of view leave slots that are no splats' numbers.
-            if (state.plan.variant.culled) continue;
+            if (state.plan().variant.culled) continue;
             for (std::size_t i = 0; i < records.size(); ++i) {
                 if (sheets[i] == shader::SHEET_NONE) continue;
                 const FootprintLayer& want = oracle.selected[i].layer;
@@ -68,18 +68,18 @@ TEST(SelectLayers, AsTheReferenceDoesForBothWaysOfDrawing) {
 
 TEST(FootprintTableOnTheDevice, IsThereWhereItIsCalledForAndGoneAfterwards) {
     PassScene s = pass_scenes()[0];
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     const auto draw = [&](FootprintMode mode) {
         s.settings.footprints = mode;
         state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
     };
     draw(FootprintMode::Procedural);
-    EXPECT_FALSE(state.targets.footprint_table);
-    EXPECT_FALSE(state.targets.footprints);
+    EXPECT_FALSE(state.targets().footprint_table);
+    EXPECT_FALSE(state.targets().footprints);
     draw(FootprintMode::Table);
-    ASSERT_TRUE(state.targets.footprint_table);
-    EXPECT_GE(state.targets.footprints.bytes(), state.volume_resources.splat_count * sizeof(glm::uvec2));
-    const auto got = download<std::uint16_t>(state, state.targets.footprint_table);
+    ASSERT_TRUE(state.targets().footprint_table);
+    EXPECT_GE(state.targets().footprints.bytes(), state.lists().splat_count * sizeof(glm::uvec2));
+    const auto got = download<std::uint16_t>(state, state.targets().footprint_table);
     const double depth = face_depth(s.scene, s.volume.geometry);
     EXPECT_TRUE(std::ranges::equal(got, kept_footprint_table(depth).texels()));
     // Another scene's faces may be sampled deeper.
@@ -87,11 +87,11 @@ TEST(FootprintTableOnTheDevice, IsThereWhereItIsCalledForAndGoneAfterwards) {
     draw(FootprintMode::Table);
     const double other = face_depth(s.scene, s.volume.geometry);
     ASSERT_NE(other, depth);
-    EXPECT_TRUE(std::ranges::equal(download<std::uint16_t>(state, state.targets.footprint_table),
+    EXPECT_TRUE(std::ranges::equal(download<std::uint16_t>(state, state.targets().footprint_table),
                                    kept_footprint_table(other).texels()));
     draw(FootprintMode::Isotropic);
-    EXPECT_FALSE(state.targets.footprint_table);
-    EXPECT_FALSE(state.targets.footprints);
+    EXPECT_FALSE(state.targets().footprint_table);
+    EXPECT_FALSE(state.targets().footprints);
 }
 
 }  // namespace

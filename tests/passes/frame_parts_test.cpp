@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "engine/image/image_compare.h"
+#include "engine/renderer.h"
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {
@@ -350,7 +351,7 @@ bool is_refined(const RenderResult& result) {
 }
 
 TEST(DividedSheets, RefinedPicturesToo) {
-    if (!device_under_test().device.profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
     const glm::ivec2 size(203, 154);
     std::vector<Renderer> renderers;
     for (int i = 0; i < 3; ++i)

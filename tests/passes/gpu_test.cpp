@@ -9,16 +9,16 @@ namespace edgesplat::test {
 namespace {
 
 TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
-    RendererState& state = device_under_test();
-    const gpu::Buffer filled(state.device, std::size_t{1} << 28U, gpu::Buffer::Place::Host, "filled");
-    const std::uint64_t before = state.device.validation_messages();
-    state.commands.set_timeout(0);
-    const auto fill = [&](std::uint32_t value) { state.commands.run([&] { state.commands.fill(filled, value); }); };
+    DeviceUnderTest& state = device_under_test();
+    const gpu::Buffer filled(state.device(), std::size_t{1} << 28U, gpu::Buffer::Place::Host, "filled");
+    const std::uint64_t before = state.device().validation_messages();
+    state.commands().set_timeout(0);
+    const auto fill = [&](std::uint32_t value) { state.commands().run([&] { state.commands().fill(filled, value); }); };
     EXPECT_THROW(fill(1), Error);
-    state.commands.set_timeout(gpu::Commands::kTimeout);
+    state.commands().set_timeout(gpu::Commands::kTimeout);
     fill(2);
     EXPECT_EQ(filled.mapped<std::uint32_t>(1)[0], 2U);
-    EXPECT_EQ(state.device.validation_messages(), before);
+    EXPECT_EQ(state.device().validation_messages(), before);
 }
 
 TEST(DeviceProfiles, CanBeForcedAndSayWhy) {
@@ -34,7 +34,7 @@ TEST(DeviceProfiles, CanBeForcedAndSayWhy) {
 }
 
 TEST(Devices, AreRefusedForWhatTheShadersNeed) {
-    vk::PhysicalDeviceLimits limits = device_under_test().device.physical().getProperties().limits;
+    vk::PhysicalDeviceLimits limits = device_under_test().device().physical().getProperties().limits;
     vk::PhysicalDeviceSubgroupProperties subgroups;
     subgroups.supportedStages = vk::ShaderStageFlagBits::eCompute;
     subgroups.supportedOperations = vk::SubgroupFeatureFlagBits::eBasic | vk::SubgroupFeatureFlagBits::eArithmetic |
@@ -48,7 +48,7 @@ TEST(Devices, AreRefusedForWhatTheShadersNeed) {
 }
 
 TEST(Texels, AreCountedByTheirFormat) {
-    const gpu::Device& device = device_under_test().device;
+    const gpu::Device& device = device_under_test().device();
     if (!device.loads_texels()) GTEST_SKIP() << "buffers are loaded through their addresses here";
     const std::size_t most = device.physical().getProperties().limits.maxTexelBufferElements;
     for (const auto& [format, bytes] : {std::pair{vk::Format::eR32Uint, std::size_t{4}},
@@ -60,7 +60,7 @@ TEST(Texels, AreCountedByTheirFormat) {
 }
 
 TEST(Texels, ThatAreTooManyDoNotFit) {
-    const gpu::Device& device = device_under_test().device;
+    const gpu::Device& device = device_under_test().device();
     if (!device.loads_texels()) GTEST_SKIP() << "buffers are loaded through their addresses here";
     FrameForecast forecast;
     PlannedResource& pixels = forecast.resources.emplace_back();

@@ -11,7 +11,6 @@
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/5_draw_splats.h"
-#include "engine/renderer/state.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
@@ -20,19 +19,19 @@
 namespace edgesplat::test {
 
 template <typename T>
-std::vector<T> download(RendererState& state, const gpu::Buffer& buffer, std::size_t count) {
-    return gpu::read_back<T>(state.device, state.commands, buffer, 0, count);
+std::vector<T> download(DeviceUnderTest& state, const gpu::Buffer& buffer, std::size_t count) {
+    return gpu::read_back<T>(state.device(), state.commands(), buffer, 0, count);
 }
 
 template <typename T>
-std::vector<T> download(RendererState& state, const gpu::GpuImage& image) {
+std::vector<T> download(DeviceUnderTest& state, const gpu::GpuImage& image) {
     const auto& shape = image.shape();
     const glm::uvec3 size(shape.size);
     const auto layers = static_cast<std::uint32_t>(shape.layers);
     const std::size_t count = std::size_t{size.x} * size.y * size.z * layers;
-    const gpu::Buffer host(state.device, count * sizeof(T), gpu::Buffer::Place::Host, "readback");
+    const gpu::Buffer host(state.device(), count * sizeof(T), gpu::Buffer::Place::Host, "readback");
     const vk::BufferImageCopy copy(0, 0, 0, {image.aspect(), 0, 0, layers}, {}, {size.x, size.y, size.z});
-    state.commands.run([&] { state.commands.copy(image, host, copy); });
+    state.commands().run([&] { state.commands().copy(image, host, copy); });
     const auto mapped = host.mapped<T>(count);
     return {mapped.begin(), mapped.end()};
 }
@@ -126,15 +125,12 @@ inline std::vector<PassScene> pass_scenes() {
 }
 
 /// Device and volume ready, passes 1 and 2 run.
-inline RendererState& prepared(const PassScene& s) {
-    RendererState& state = device_under_test();
-    state.culls = false;  // a splat's number is its slot's
-    state.collected.reset();
-    state.volume_resources = {};
-    state.volume = std::make_shared<Volume>(s.volume);
-    upload_volume(state);
-    state.release_unused(s.settings);
-    state.collect(s.scene, s.settings, false);
+inline DeviceUnderTest& prepared(const PassScene& s) {
+    DeviceUnderTest& state = device_under_test();
+    state.drawer.set_culling({.bricks = false});  // a splat's number is its slot's
+    state.level = LevelStore(state.session);
+    state.level.volume.hold(std::make_shared<Volume>(s.volume), 0);
+    state.collect(s.scene, s.settings);
     return state;
 }
 
@@ -151,24 +147,23 @@ inline glm::dmat3 decode_bending(const glm::uvec2& code) {
 }
 
 /// The device's splat list as the reference writes it, with bendings and classification where the device has them.
-inline std::vector<reference::SplatRecord> device_records(RendererState& state) {
+inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state) {
     std::vector<reference::SplatRecord> records;
-    for (const auto& splat :
-         download<shader::Splat>(state, state.volume_resources.splats, state.volume_resources.splat_count)) {
+    for (const auto& splat : download<shader::Splat>(state, state.lists().splats, state.lists().splat_count)) {
         records.push_back({splat.voxel, splat.edge >> 28U, decode_edge(splat.normal, splat.edge)});
     }
-    if (state.volume_resources.values) {
+    if (state.lists().values) {
         std::vector<TransferPoint> points;
-        for (const shader::TransferRow& row : state.collected->transfer) {
+        for (const shader::TransferRow& row : state.level.splats.collected()->transfer) {
             const glm::dvec4 matter(row.matter);
             if (row.value < 3e38F) points.push_back({static_cast<double>(row.value), glm::dvec3(matter), matter.a});
         }
-        const auto values = download<float>(state, state.volume_resources.values, records.size());
+        const auto values = download<float>(state, state.lists().values, records.size());
         for (std::size_t i = 0; i < records.size(); ++i)
             records[i].classified = transfer_at(points, static_cast<double>(values[i]));
     }
-    if (!state.volume_resources.traits) return records;
-    const auto traits = download<glm::uvec2>(state, state.volume_resources.traits, records.size());
+    if (!state.lists().traits) return records;
+    const auto traits = download<glm::uvec2>(state, state.lists().traits, records.size());
     for (std::size_t i = 0; i < records.size(); ++i) {
         reference::VoxelEdge& edge = records[i].edge;
         if (traits[i].x >> 31U != 0) {
@@ -197,11 +192,10 @@ struct Reaches {
     std::vector<double> first, second;
 };
 
-inline Reaches reaches_of(const PassScene& s, gpu::Buffer VolumeResources::*buffer) {
-    RendererState& state = prepared(s);
+inline Reaches reaches_of(const PassScene& s, gpu::Buffer SplatLists::*buffer) {
+    DeviceUnderTest& state = prepared(s);
     Reaches out{device_records(state), {}, {}};
-    for (const std::uint32_t word :
-         download<std::uint32_t>(state, state.volume_resources.*buffer, out.records.size())) {
+    for (const std::uint32_t word : download<std::uint32_t>(state, state.lists().*buffer, out.records.size())) {
         out.first.push_back((word & 0xffffU) / 65535.0);
         out.second.push_back((word >> 16U) / 65535.0);
     }
@@ -221,10 +215,10 @@ struct DrawnSheets {
     glm::ivec4 rect;                ///< what the group touches; elsewhere pixels mean nothing
 };
 
-inline DrawnSheets drawn_sheets(RendererState& state, const PassScene& s, const glm::ivec2& size) {
+inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size) {
     state.draw(s.scene, s.camera, layered(s.settings), size, shader::PAYLOAD_COLOR);
-    return {device_records(state), download<glm::vec4>(state, state.targets.sheets),
-            state.targets.groups.mapped<shader::SheetGroup>(1)[0].rect};
+    return {device_records(state), download<glm::vec4>(state, state.targets().sheets),
+            state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
 /// The reference's passes 3 and 5 on a splat list of the device. Its members refer to one another.

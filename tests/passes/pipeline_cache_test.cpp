@@ -23,7 +23,7 @@ struct Folder {
 
 /// Starts anew with what the folder holds, compiles a pipeline: bytes that were read.
 std::size_t start(const fs::path& folder) {
-    gpu::Pipelines pipelines(device_under_test().device, folder);
+    gpu::Pipelines pipelines(device_under_test().device(), folder);
     EXPECT_TRUE(pipelines.compute("7_resolve.comp", {}));
     EXPECT_EQ(pipelines.creation().count, 1U);
     return pipelines.cache().loaded_bytes();

@@ -169,16 +169,16 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
     for (const std::size_t number : GetParam().scenes) {
         const PassScene s = changed(GetParam(), number);
         SCOPED_TRACE(s.name);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
-        ASSERT_EQ(state.plan.params.group_count, 1U);
+        ASSERT_EQ(state.plan().params.group_count, 1U);
 
         const Oracle oracle(s, records, kSize);
         const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
-        for (std::uint32_t sheet = 0; sheet < state.plan.params.sheet_count; ++sheet) {
-            const int place = static_cast<int>(sheet) + state.plan.params.sheet_base - base;
+        for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
+            const int place = static_cast<int>(sheet) + state.plan().params.sheet_base - base;
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
                 if (oracle.selected[i].kept && oracle.selected[i].sheet <= place &&
@@ -209,9 +209,9 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
 TEST_P(Shading, ChangesThePicture) {
     const std::size_t number = GetParam().scenes.front();
     const auto picture = [](const PassScene& s) {
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
-        const auto pixels = state.targets.output.mapped<glm::vec4>(kPixels);
+        const auto pixels = state.targets().output.mapped<glm::vec4>(kPixels);
         return std::vector<glm::vec4>(pixels.begin(), pixels.end());
     };
     const auto usual = picture(changed({"usual", GetParam().usual}, number));
@@ -238,10 +238,10 @@ TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
         SCOPED_TRACE(iso_count);
         PassScene s = pass_scenes()[1];
         ramp(s, iso_count);
-        RendererState& state = prepared(s);
+        DeviceUnderTest& state = prepared(s);
         const auto got = device_records(state);
         std::vector<reference::VoxelEdge> edges;
-        for (const auto& words : download<glm::uvec2>(state, state.volume_resources.edges))
+        for (const auto& words : download<glm::uvec2>(state, state.lists().edges))
             edges.push_back(decode_edge(words.x, words.y));
         const auto samples = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, samples, {}};
@@ -266,27 +266,27 @@ TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
 
 TEST(TransferFunction, WithoutOneNothingIsThereForIt) {
     PassScene s = pass_scenes()[1];
-    RendererState& state = prepared(s);
-    EXPECT_FALSE(state.volume_resources.values);
-    EXPECT_FALSE(state.volume_resources.transfer);
+    DeviceUnderTest& state = prepared(s);
+    EXPECT_FALSE(state.lists().values);
+    EXPECT_FALSE(state.lists().transfer);
     ramp(s, 2);
     prepared(s);
-    EXPECT_TRUE(state.volume_resources.values);
+    EXPECT_TRUE(state.lists().values);
     s.scene.transfer.clear();
     s.scene.materials.back().extinction = 1;
     state.collect(s.scene, s.settings, false);
-    EXPECT_FALSE(state.volume_resources.values);
-    EXPECT_FALSE(state.volume_resources.transfer);
+    EXPECT_FALSE(state.lists().values);
+    EXPECT_FALSE(state.lists().transfer);
 }
 
 TEST(TransferFunction, AChangedPointIsSeen) {
     PassScene s = pass_scenes()[1];
     ramp(s, 1);
-    RendererState& state = prepared(s);
-    const auto before = state.volume_resources.splat_count;
+    DeviceUnderTest& state = prepared(s);
+    const auto before = state.lists().splat_count;
     s.scene.transfer[0].value *= 2;
     EXPECT_GT(state.collect(s.scene, s.settings, false), 0.0);
-    EXPECT_LT(state.volume_resources.splat_count, before);
+    EXPECT_LT(state.lists().splat_count, before);
     EXPECT_EQ(state.collect(s.scene, s.settings, false), 0.0);
 }
 

@@ -12,13 +12,13 @@ static const bool kListening = [] {
 
 TEST(Device, ListensToValidation) {
     EXPECT_TRUE(kListening);
-    EXPECT_EQ(device_under_test().device.validation_messages(), 0U);
-    EXPECT_FALSE(device_under_test().device.info().name.empty());
+    EXPECT_EQ(device_under_test().device().validation_messages(), 0U);
+    EXPECT_FALSE(device_under_test().device().info().name.empty());
 }
 
 TEST(Device, RejectsWhatDoesNotExistWithEveryReason) {
     try {
-        RendererState state({.device = "no such device"});
+        DeviceUnderTest state({.device = "no such device"});
         FAIL() << "a device that does not exist was opened";
     } catch (const std::exception& error) {
         EXPECT_NE(std::string(error.what()).find("no such device"), std::string::npos) << error.what();

@@ -7,6 +7,7 @@
 #include <iterator>
 #include <numeric>
 
+#include "engine/forecast/forecast.h"
 #include "engine/gpu/shader.h"
 #include "tests/passes/pass_fixture.h"
 #include "tests/passes/spirv_module.h"
@@ -35,29 +36,26 @@ FrameRequest request_for_rows() {
 
 /// The picture and its extra outputs, in a renderer that holds nothing of others.
 Frame draw(const FrameRequest& request) {
-    RendererState& state = device_under_test();
-    state.collected.reset();
-    state.volume_resources = {};
-    state.drop_targets();
-    state.device.forget_peaks();
-    state.pipelines.forget_used();
-    state.volume = request.volume;
-    upload_volume(state);
+    DeviceUnderTest& state = device_under_test();
+    state.drawer.targets().drop();
+    state.level = LevelStore(state.session);
+    state.device().forget_peaks();
+    state.session.pipelines().forget_used();
+    state.level.volume.hold(request.volume, 0);
     const Settings settings = drawn_settings(request);
-    state.release_unused(settings);
     state.collect(request.scene, settings, keeps_buried(request));
     Frame frame;
-    for (const PassTime& pass : state.collection_times)
+    for (const PassTime& pass : state.cost.times)
         frame.passes.insert(pass.name);
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         state.draw(request.scene, request.camera, settings, request.size, payload);
-        for (const PassTime& pass : state.draw_times)
+        for (const PassTime& pass : state.drawer.times())
             frame.passes.insert(pass.name);
     }
-    frame.variants = state.pipelines.used();
-    for (const auto& [name, allocation] : state.device.allocations())
+    frame.variants = state.session.pipelines().used();
+    for (const auto& [name, allocation] : state.device().allocations())
         if (!name.empty() && allocation.bytes > 0) frame.memory[name] = allocation.bytes;
-    frame.splats = state.volume_resources.splat_count;
+    frame.splats = state.lists().splat_count;
     return frame;
 }
 
@@ -99,10 +97,10 @@ Code code_of(const Frame& frame) {
 class ZeroCost : public testing::TestWithParam<std::size_t> {
   protected:
     void SetUp() override {
-        if (effect().name == "refined pixels" && !device_under_test().device.profile().refines)
+        if (effect().name == "refined pixels" && !device_under_test().device().profile().refines)
             GTEST_SKIP() << "every pixel is drawn on such a device";
         try {
-            device_under_test().need_layers(with().scene, with().settings);
+            need_layers(device_under_test().device(), with().scene, with().settings);
         } catch (const Error& error) {
             GTEST_SKIP() << error.what();
         }

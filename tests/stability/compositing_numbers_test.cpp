@@ -20,15 +20,15 @@ PassScene one_of_its_own() {
 }
 
 std::string said_of(const PassScene& s) {
-    RendererState& state = prepared(s);
-    state.opened_as.check_numbers = true;
+    DeviceUnderTest& state = prepared(s);
+    state.orders.check_numbers = true;
     std::string said;
     try {
         state.draw(s.scene, s.camera, s.settings, {40, 40}, shader::PAYLOAD_COLOR);
     } catch (const Error& error) {
         said = error.what();
     }
-    state.opened_as.check_numbers = false;
+    state.orders.check_numbers = false;
     return said;
 }
 
@@ -62,27 +62,27 @@ TEST(CompositingNumbers, ASplatClassifiedByNoneIsNamed) {
     s.scene.iso_values.clear();
     s.scene.materials = {{}};
     s.scene.transfer = {{0.2, {1, 0, 0}, 0}, {0.6, {1, 1, 1}, 3}};
-    RendererState& state = prepared(s);
-    const gpu::Buffer bad(state.device, sizeof(float), gpu::Buffer::Place::Host, "no number");
+    DeviceUnderTest& state = prepared(s);
+    const gpu::Buffer bad(state.device(), sizeof(float), gpu::Buffer::Place::Host, "no number");
     bad.mapped<float>(1)[0] = std::numeric_limits<float>::quiet_NaN();
-    state.commands.run([&] {
-        state.commands.copy(bad, state.volume_resources.values, {{0, 17 * sizeof(float), sizeof(float)}});
+    state.commands().run([&] {
+        state.commands().copy(bad, state.lists().values, {{0, 17 * sizeof(float), sizeof(float)}});
     });
     try {
-        state.check_splats();
+        check_splats(state.session, state.level);
         ADD_FAILURE() << "not seen";
     } catch (const Error& error) {
         EXPECT_TRUE(std::string(error.what()).starts_with("2_collect_splats: splat 17 of ")) << error.what();
     }
-    state.collected.reset();
+    state.level.splats.drop();
 }
 
 TEST(CompositingNumbers, NotAskedForNothingIsReadBack) {
     const PassScene s = one_of_its_own();
-    RendererState& state = prepared(s);
-    state.device.forget_peaks();
+    DeviceUnderTest& state = prepared(s);
+    state.device().forget_peaks();
     state.draw(s.scene, s.camera, s.settings, {40, 40}, shader::PAYLOAD_COLOR);
-    for (const auto& [name, allocation] : state.device.allocations())
+    for (const auto& [name, allocation] : state.device().allocations())
         EXPECT_NE(name, "read back");
 }
 

@@ -84,7 +84,7 @@ Estimate estimate(const VolumePointer& volume, const std::vector<double>& iso_va
         s.scene.materials[m].extinction = static_cast<double>(m + 1);  // edges are estimated of what is seen: of all
     s.settings.edges = estimator;
     s.settings.cull_buried = false;
-    RendererState& state = prepared(s);
+    DeviceUnderTest& state = prepared(s);
     Estimate result;
     result.dims = volume->geometry.dims;
     result.off_surface.assign(volume->values.size(), 1e9);
@@ -95,11 +95,11 @@ Estimate estimate(const VolumePointer& volume, const std::vector<double>& iso_va
     result.expected = reference::estimate_edges(field, s.scaled(), s.settings, true);
     result.lowest = static_cast<double>(*std::ranges::min_element(values));
     result.highest = static_cast<double>(*std::ranges::max_element(values));
-    if (!state.volume_resources.edges) {
+    if (!state.lists().edges) {
         result.device.resize(values.size());
         return result;
     }
-    for (const glm::uvec2& words : download<glm::uvec2>(state, state.volume_resources.edges)) {
+    for (const glm::uvec2& words : download<glm::uvec2>(state, state.lists().edges)) {
         result.device.push_back(decode_edge(words.x, words.y));
         result.device.back().border = (words.y & shader::EDGE_BORDER) != 0;
     }

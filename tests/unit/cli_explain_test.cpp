@@ -52,6 +52,9 @@ TEST_F(CliExplain, SaysWhichProfileAFrameIsMadeWith) {
     EXPECT_THAT(forced.out, HasSubstr("device profile generic: asked for by --device-profile"));
     EXPECT_THAT(forced.out, HasSubstr(" GROUP=32"));
     EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "a.json"))["plan"]["device_profile"], "generic");
+    const ProgramRun discrete = run("render builtin:sphere:16 --size 40x30 --explain --device-profile discrete");
+    EXPECT_THAT(discrete.out, HasSubstr("device profile discrete does without")) << "its pixels are not refined";
+    EXPECT_THAT(discrete.out, Not(HasSubstr("refined pixels: ")));
     const ProgramRun wrong = run("render builtin:sphere:16 -o a.png --device-profile fast");
     EXPECT_EQ(wrong.status, 1);
     EXPECT_THAT(wrong.err, HasSubstr("device profile `fast`: expected lavapipe, generic or discrete"));

@@ -3,18 +3,19 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/frame/picture.h"
 #include "engine/gpu/read_back.h"
-#include "engine/renderer/state.h"
 
 namespace edgesplat {
 namespace {
 
 /// "splat 17 of 230 (voxel 3, 4, 5; material 1)".
-std::string named(RendererState& state, std::uint32_t number) {
+std::string named(DeviceSession& session, const LevelStore& level, std::uint32_t number) {
+    const SplatLists& lists = level.splats.lists();
     const auto splat =
-        gpu::read_back<shader::Splat>(state.device, state.commands, state.volume_resources.splats, number, 1).front();
-    const glm::uvec3 dims(state.volume->geometry.dims);
-    return fmt::format("splat {} of {} (voxel {}, {}, {}; material {})", number, state.volume_resources.splat_count,
+        gpu::read_back<shader::Splat>(session.device(), session.commands(), lists.splats, number, 1).front();
+    const glm::uvec3 dims(level.volume.volume()->geometry.dims);
+    return fmt::format("splat {} of {} (voxel {}, {}, {}; material {})", number, lists.splat_count,
                        splat.voxel % dims.x, splat.voxel / dims.x % dims.y, splat.voxel / dims.x / dims.y,
                        splat.edge >> 28U);
 }
@@ -27,32 +28,33 @@ std::size_t first_bad(std::span<const float> pixels) {
 
 }  // namespace
 
-void RendererState::check_splats() {
-    const std::size_t count = volume_resources.splat_count;
-    if (!volume_resources.values || count == 0) return;
-    const auto values = gpu::read_back<float>(device, commands, volume_resources.values, 0, count);
+void check_splats(DeviceSession& session, const LevelStore& level) {
+    const SplatLists& lists = level.splats.lists();
+    const std::size_t count = lists.splat_count;
+    if (!lists.values || count == 0) return;
+    const auto values = gpu::read_back<float>(session.device(), session.commands(), lists.values, 0, count);
     const std::size_t bad = first_bad(values);
     if (bad == values.size()) return;
     fail("2_collect_splats: {}: it is classified by {}, expected a finite number",
-         named(*this, static_cast<std::uint32_t>(bad)), values[bad]);
+         named(session, level, static_cast<std::uint32_t>(bad)), values[bad]);
 }
 
-void RendererState::check_picture() {
+void PictureDrawer::check_picture(const LevelStore& level) {
     const auto pixels = [&] {
-        return std::span<const float>(targets.output.mapped<float>(static_cast<std::size_t>(plan.params.size.x) *
-                                                                   static_cast<std::size_t>(plan.params.size.y) * 4));
+        const std::span<const glm::vec4> all = targets_.pixels(plan_);
+        return std::span<const float>(&all.front().x, 4 * all.size());
     };
     const std::size_t bad = first_bad(pixels());
     if (bad == pixels().size()) return;
-    const std::size_t pixel = bad / 4, width = static_cast<std::size_t>(plan.params.size.x);
+    const std::size_t pixel = bad / 4, width = static_cast<std::size_t>(plan_.params.size.x);
     const std::string where = fmt::format("pixel {}, {}, channel {} is {}, expected a finite number", pixel % width,
                                           pixel / width, bad % 4, pixels()[bad]);
 
     // The picture of the first n splats is sound and that of one more is not: by halves.
-    const std::uint32_t all = plan.params.splat_count;
+    const std::uint32_t all = plan_.params.splat_count;
     const auto sound = [&](std::uint32_t splats) {
-        draw_first(plan, splats);
-        draw_planned();
+        draw_first(plan_, splats);
+        draw_planned(level);
         return first_bad(pixels()) == pixels().size();
     };
     if (!sound(0)) fail("7_resolve: {}, without any splat", where);
@@ -61,8 +63,8 @@ void RendererState::check_picture() {
         const std::uint32_t middle = good + (not_good - good) / 2;
         (sound(middle) ? good : not_good) = middle;
     }
-    draw_first(plan, all);
-    fail("{}: {}: {}", plan.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*this, good), where);
+    draw_first(plan_, all);
+    fail("{}: {}: {}", plan_.variant.tiles ? "5_draw_tiles" : "5_draw_splats", named(*session_, level, good), where);
 }
 
 }  // namespace edgesplat

@@ -1,18 +1,16 @@
-// Renderer::divide_sheets: a picture of which this renderer draws some of the sheets.
-#include "engine/distribute/part_exchange.h"
-
+// PictureDrawer: a picture of which others draw the other sheets.
 #include <algorithm>
 #include <bit>
 #include <chrono>
 #include <ctime>
 #include <functional>
 
+#include "engine/clock.h"
 #include "engine/distribute/parts.h"
-#include "engine/error.h"
+#include "engine/frame/picture.h"
 #include "engine/gpu/read_back.h"
 #include "engine/passes/5_refine_pixels.h"
 #include "engine/passes/7_resolve.h"
-#include "engine/renderer/state.h"
 
 namespace edgesplat {
 namespace {
@@ -59,35 +57,36 @@ void mark_reached(const FramePlan& plan, std::span<const float> in_front, std::v
 
 }  // namespace
 
-void Renderer::divide_sheets(PartExchange* exchange) {
-    state_->exchange = exchange;
-}
-
-bool RendererState::parts_refine(const Chunks& own) {
-    if (!plan.refined) return false;
+bool PictureDrawer::parts_refine(const Chunks& own) {
+    if (!plan_.refined) return false;
+    PartExchange& exchange = *orders_->exchange;
     std::vector<glm::vec4> sum{{static_cast<float>(own.pairs), static_cast<float>(own.entries), 0, 0}};
-    exchange->add(sum);
+    exchange.add(sum);
     std::vector<std::uint32_t> said{0};
-    if (exchange->part().index == 0) {
+    if (exchange.part().index == 0) {
         Chunks all;
         all.pairs = static_cast<std::uint64_t>(sum[0].x);
         all.entries = static_cast<std::uint64_t>(sum[0].y);
         said[0] = worth_refining(all) ? 1 : 0;
     }
-    exchange->share(said);
+    exchange.share(said);
     return said[0] == 1;
 }
 
-void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole) {
-    const std::size_t tiles = tile_count(plan), of_tile = std::size_t{shader::TILE} * shader::TILE;
+void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole) {
+    PartExchange& exchange = *orders_->exchange;
+    gpu::Commands& commands = session_->commands();
+    const gpu::Device& device = session_->device();
+    const TargetResources& targets = targets_.resources();
+    const std::size_t tiles = tile_count(plan_), of_tile = std::size_t{shader::TILE} * shader::TILE;
     const auto todo = targets.tile_todo.mapped<std::uint32_t>(tiles);
-    const bool first = exchange->part().index == 0;
+    const bool first = exchange.part().index == 0;
     std::vector<std::uint32_t> lists(tiles * of_tile), counts(tiles);
     const auto finest = gpu::read_back<std::uint32_t>(device, commands, targets.tile_finest, 0, tiles);
     std::vector<glm::vec4> too_fine(tiles);
     for (std::size_t tile = 0; tile < tiles; ++tile)
         too_fine[tile].x = reached[tile] && std::bit_cast<float>(finest[tile]) < static_cast<float>(step) ? 1 : 0;
-    exchange->add(too_fine);
+    exchange.add(too_fine);
     if (first) {
         std::vector<std::uint32_t> of_all = finest;
         for (std::size_t tile = 0; tile < tiles; ++tile)
@@ -97,18 +96,18 @@ void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& re
         std::ranges::copy(whole, pixels.begin());
         commands.run([&] {
             commands.to_device(targets.output);
-            commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan), step); });
+            commands.span("5_refine_pixels", [&] { passes::refine_pixels(commands, tile_count(plan_), step); });
             for (const gpu::Buffer* seen : {&targets.output, &targets.tile_todo})
                 commands.to_host(*seen);
         });
-        add_times(draw_times, commands.span_times());
+        add_times(times_, commands.span_times());
         std::ranges::copy(pixels, whole.begin());
         lists = gpu::read_back<std::uint32_t>(device, commands, targets.tile_pixels, 0, lists.size());
         std::ranges::copy(todo, counts.begin());
         write(commands, targets.tile_finest, finest);
     }
-    exchange->share(counts);
-    exchange->share(lists);
+    exchange.share(counts);
+    exchange.share(lists);
     if (!first) {
         std::ranges::copy(counts, todo.begin());
         write(commands, targets.tile_pixels, lists);
@@ -118,77 +117,84 @@ void RendererState::share_pixels(std::uint32_t step, const std::vector<bool>& re
     commands.run([&] { commands.to_device(targets.output); });
 }
 
-void RendererState::draw_part(passes::TileDraw how) {
+void PictureDrawer::draw_part(passes::TileDraw how) {
+    PartExchange& exchange = *orders_->exchange;
+    gpu::Commands& commands = session_->commands();
+    const TargetResources& targets = targets_.resources();
     std::uint32_t chunks = 0;
     {
-        const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
-        const Chunks planned = sort_frame(commands, plan, targets, {exchange->part(), slab});
-        draw_times = commands.span_times();
-        share.first_sheet = planned.sheets.x;
-        share.end_sheet = planned.sheets.y;
-        share.splats = plan.params.splat_count;
-        share.pairs += planned.pairs;
-        provide_chunks(planned);
+        const AddedTime time(share_.draw_milliseconds, &share_.processor_milliseconds);
+        const Chunks planned = sort_frame(commands, plan_, targets, {exchange.part(), slab_});
+        times_ = commands.span_times();
+        share_.first_sheet = planned.sheets.x;
+        share_.end_sheet = planned.sheets.y;
+        share_.splats = plan_.params.splat_count;
+        share_.pairs += planned.pairs;
+        targets_.provide_chunks(plan_, planned);
         chunks = static_cast<std::uint32_t>(planned.parts.size());
-        plan.refined = parts_refine(planned);
+        plan_.refined = parts_refine(planned);
     }
-    std::vector<glm::vec4> whole(static_cast<std::size_t>(plan.params.size.x) *
-                                 static_cast<std::size_t>(plan.params.size.y));
-    std::vector<bool> reached(tile_count(plan), exchange->part().index == 0);
-    for (std::uint32_t step = first_step(plan); step > 0; step /= 2) {
+    std::vector<glm::vec4> whole(static_cast<std::size_t>(plan_.params.size.x) *
+                                 static_cast<std::size_t>(plan_.params.size.y));
+    std::vector<bool> reached(tile_count(plan_), exchange.part().index == 0);
+    for (std::uint32_t step = first_step(plan_); step > 0; step /= 2) {
         const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step, reached);
         std::ranges::transform(whole, drawn, whole.begin(), std::plus{});
         if (step > 1) share_pixels(step, reached, whole);
     }
-    if (exchange->part().index > 0) return;
+    if (exchange.part().index > 0) return;
     std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
     commands.run([&] {
         commands.to_device(targets.output);
-        commands.span("7_resolve", [&] { passes::resolve(commands, plan.variant, plan.params.size, plan.gradient); });
+        commands.span("7_resolve",
+                      [&] { passes::resolve(commands, plan_.variant, plan_.params.size, plan_.gradient); });
         commands.to_host(targets.output);
     });
-    add_times(draw_times, commands.span_times());
+    add_times(times_, commands.span_times());
 }
 
-std::vector<glm::vec4> RendererState::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
+std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
                                                      std::vector<bool>& reached) {
-    const bool sums = plan.variant.payload == shader::PAYLOAD_TAU;
-    const auto& size = plan.params.size;
+    PartExchange& exchange = *orders_->exchange;
+    gpu::Commands& commands = session_->commands();
+    const TargetResources& targets = targets_.resources();
+    const bool sums = plan_.variant.payload == shader::PAYLOAD_TAU;
+    const auto& size = plan_.params.size;
     const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
     const auto pixels = targets.output.mapped<glm::vec4>(count);
     {
-        const AddedTime time(share.draw_milliseconds, &share.processor_milliseconds);
-        add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
+        const AddedTime time(share_.draw_milliseconds, &share_.processor_milliseconds);
+        add_times(times_, draw_step(commands, plan_, targets, chunks, how, step));
     }
     const auto wait = [&] {
-        const AddedTime time(share.wait_milliseconds);
-        exchange->wait();
+        const AddedTime time(share_.wait_milliseconds);
+        exchange.wait();
     };
     wait();
     std::vector<glm::vec4> part(pixels.begin(), pixels.end());
     if (!sums) {
         std::vector<float> in_front(count);
         {
-            const AddedTime time(share.composite_milliseconds);
+            const AddedTime time(share_.composite_milliseconds);
             std::ranges::transform(part, in_front.begin(), [](const glm::vec4& p) { return 1.0F - p.a; });
-            exchange->pass_back(in_front);
+            exchange.pass_back(in_front);
         }
-        if (exchange->part().index > 0) {
-            const AddedTime time(share.redraw_milliseconds, &share.processor_milliseconds);
-            if (step == shader::REFINE_STEP) mark_reached(plan, in_front, reached);
-            const PixelsBehind behind(in_front, plan.params.saturation, part, pixels);
+        if (exchange.part().index > 0) {
+            const AddedTime time(share_.redraw_milliseconds, &share_.processor_milliseconds);
+            if (step == shader::REFINE_STEP) mark_reached(plan_, in_front, reached);
+            const PixelsBehind behind(in_front, plan_.params.saturation, part, pixels);
             if (behind.any()) {
-                const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan));
-                write(commands, targets.tile_closed, behind.closed_pixels(size, plan.params.tiles, todo));
+                const auto todo = targets.tile_todo.mapped<std::uint32_t>(tile_count(plan_));
+                write(commands, targets.tile_closed, behind.closed_pixels(size, plan_.params.tiles, todo));
                 commands.run([&] { commands.to_device(targets.output); });
-                add_times(draw_times, draw_step(commands, plan, targets, chunks, how, step));
+                add_times(times_, draw_step(commands, plan_, targets, chunks, how, step));
                 behind.take(in_front, pixels, part);
             }
         }
         wait();
     }
-    const AddedTime time(share.composite_milliseconds);
-    sums ? exchange->add(part) : exchange->fold(part);
+    const AddedTime time(share_.composite_milliseconds);
+    sums ? exchange.add(part) : exchange.fold(part);
     return part;
 }
 

@@ -1,0 +1,26 @@
+// What a renderer's user asked of the pictures to come (engine/renderer.h).
+#pragma once
+
+#include <functional>
+#include <limits>
+
+#include "engine/distribute/part_exchange.h"
+#include "engine/error.h"
+
+namespace edgesplat {
+
+struct Orders {
+    double patience = std::numeric_limits<double>::infinity();  ///< milliseconds: Renderer::set_patience
+    std::function<bool()> interruption;                         ///< Renderer::set_interruption
+    std::uint64_t memory_budget = 0;                            ///< bytes; 0: what the device has
+    bool counting = false;                                      ///< Renderer::count_fragments
+    bool check_numbers = false;                                 ///< DeviceChoice::check_numbers
+    PartExchange* exchange = nullptr;                           ///< Renderer::divide_sheets
+
+    /// Throws Interrupted if that is wanted.
+    void heed_interruption() const {
+        if (interruption && interruption()) throw Interrupted();
+    }
+};
+
+}  // namespace edgesplat

@@ -1,0 +1,116 @@
+#include "engine/frame/picture.h"
+
+#include <algorithm>
+
+#include "engine/error.h"
+#include "engine/gpu/read_back.h"
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+
+void need_layers(const gpu::Device& device, const Scene& scene, const Settings& settings) {
+    const std::string& obstacle = device.layers_obstacle();
+    if (obstacle.empty()) return;
+    if (drawn_as(settings, scene).sheet_format != SheetFormat::Tiles)
+        fail("sheet_format: {} has {}, expected `tiles` there", device.info().name, obstacle);
+    if (!shadow_lights(scene).empty())
+        fail("shadows: {} has {}, expected lights without shadows there", device.info().name, obstacle);
+}
+
+FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const Camera& camera,
+                              const Settings& settings, const glm::ivec2& size, std::uint32_t payload) const {
+    const Volume& volume = *level.volume.volume();
+    // Parts of a picture that several devices draw agree.
+    const bool refines = session_->profile().refines || orders_->exchange != nullptr;
+    FramePlan out = plan_frame(volume, scene, camera, settings, size, payload, level.splats.lists().extent(),
+                               kernel_reach(settings), refines);
+    if (culling_.bricks)
+        cull_bricks(out, level.splats.lists().bricks, {volume.geometry, camera, size, out.variant.antialias});
+    return out;
+}
+
+void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
+    plan_ = std::move(plan);
+    session_->bindings().write_volume(level.volume.images());
+    session_->bindings().write_splats(level.splats.lists());
+    if (orders_->check_numbers) check_splats(*session_, level);
+    draw_planned(level);
+    if (orders_->check_numbers) check_picture(level);
+}
+
+void PictureDrawer::draw_planned(const LevelStore& level) {
+    targets_.provide(plan_, level.splats.lists());
+    gpu::Commands& commands = session_->commands();
+    if (!plan_.variant.tiles) {
+        times_ = draw_sheets(commands, plan_, targets_.resources());
+        return;
+    }
+    const passes::TileDraw how{
+        .profile = &session_->profile(), .count = orders_->counting, .part = orders_->exchange != nullptr};
+    if (orders_->exchange) return draw_part(how);
+    times_.clear();
+    if (draw_front_first(level, how)) return;
+    const Chunks chunks = sort_frame(commands, plan_, targets_.resources());
+    add_times(times_, commands.span_times());
+    plan_.refined = plan_.refined && worth_refining(chunks);
+    draw_chunks(chunks, how);
+}
+
+void PictureDrawer::draw_chunks(const Chunks& chunks, const passes::TileDraw& how) {
+    targets_.provide_chunks(plan_, chunks);
+    std::function<void()> between;
+    if (orders_->interruption) between = [this] { orders_->heed_interruption(); };
+    add_times(times_, draw_tiles(session_->commands(), plan_, targets_.resources(),
+                                 static_cast<std::uint32_t>(chunks.parts.size()), how, between));
+}
+
+OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest& request, int sheet) {
+    gpu::Commands& commands = session_->commands();
+    plan_ = plan(level, request.scene, request.camera, drawn_as(request.settings, request.scene), request.size,
+                 shader::PAYLOAD_COLOR);
+    // A little more than a pixel needs to be closed, for what the box of the splats does to rounding.
+    plan_.params.saturation += 0.2F * (1 - plan_.params.saturation);
+    plan_.refined = plan_.may_refine = false;
+    targets_.provide(plan_, level.splats.lists());
+    const TargetResources& targets = targets_.resources();
+    const Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, sheet)});
+    targets_.provide_chunks(plan_, chunks);
+    draw_tiles(commands, plan_, targets, static_cast<std::uint32_t>(chunks.parts.size()),
+               {.profile = &session_->profile(), .part = true});
+    const auto closed =
+        gpu::read_back<std::uint32_t>(session_->device(), commands, targets.tile_closed, 0, tile_count(plan_));
+    targets_.drop();
+    return {plan_, closed};
+}
+
+namespace {
+
+/// Of the picture's pixels, those in tiles that a sheet's splats touch; on average over the sheets. Tiles that several
+/// splats of a sheet touch count for each, up to all of the picture.
+double dirty_share_of_tiles(const FramePlan& plan, const TargetResources& targets) {
+    const auto tiles = static_cast<double>(tile_count(plan));
+    double sum = 0;
+    for (const std::uint32_t pairs : sheet_pairs(plan, targets))
+        sum += std::min(pairs / tiles, 1.0);
+    return sum / plan.params.sheet_count;
+}
+
+}  // namespace
+
+PictureCounts PictureDrawer::counts() const {
+    const TargetResources& targets = targets_.resources();
+    if (plan_.variant.tiles) {
+        const auto counts = targets.drawn.mapped<std::uint32_t>(3);
+        return {DrawCounts{.vertices = 0, .fragments = counts[1], .shaded = counts[2]},
+                dirty_share_of_tiles(plan_, targets)};
+    }
+    const auto groups = targets.groups.mapped<shader::SheetGroup>(plan_.params.group_count);
+    double covered = 0;
+    for (const shader::SheetGroup& group : groups)
+        covered += static_cast<double>(std::max(group.rect.z - group.rect.x, 0)) *
+                   static_cast<double>(std::max(group.rect.w - group.rect.y, 0));
+    const double pixels = static_cast<double>(plan_.params.size.x) * static_cast<double>(plan_.params.size.y);
+    return {session_->commands().draw_counts(), covered / pixels / static_cast<double>(groups.size())};
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,182 @@
+// SplatProvider: the splats of a picture block by block, but for blocks that it does not show.
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+
+#include "engine/clock.h"
+#include "engine/distribute/parts.h"
+#include "engine/error.h"
+#include "engine/renderer/splat_provider.h"
+#include "footprints/kernel.h"
+
+namespace edgesplat {
+namespace {
+
+/// Whether what lies outside the picture counts in it.
+bool needs_everything(const Scene& scene) {
+    return !shadow_lights(scene).empty();
+}
+
+}  // namespace
+
+std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameRequest& request) const {
+    const Settings drawn = drawn_settings(request);
+    const double reach = kernel_reach(drawn);
+    CollectionPlan wanted = plan_collection(*request.volume, request.scene, drawn, true);
+    // A mask of what is buried may be needed or not.
+    wanted.buried = drawn.cull_buried;
+    wanted.blocks = true;
+    const auto fits = [&](std::uint64_t splats) {
+        const SplatCount count{SplatCount::From::Voxels, splats, glm::ivec3(0), request.volume->geometry.dims - 1};
+        return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
+                           orders_->memory_budget)
+            .fits();
+    };
+    if (!fits(0)) return std::nullopt;
+    std::uint64_t fitting = 0, beyond = std::uint64_t{1} << 29U;
+    while (beyond - fitting > 4096) {
+        const std::uint64_t middle = (fitting + beyond) / 2;
+        (fits(middle) ? fitting : beyond) = middle;
+    }
+    return fitting;
+}
+
+SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& request, double patience,
+                                                         double& milliseconds) {
+    const Volume& original = *levels_.original();
+    if (occludes_ambient(request.scene)) {
+        fail("occlusion: {} is held on the device block by block, expected a volume that fits as a whole",
+             original.name);
+    }
+    const auto start = Clock::now();
+    const auto most = most_splats_in_blocks(request);
+    if (!most) return Gathered::TooMany;
+    const Settings settings = drawn_settings(request);
+    const bool keep_buried = request.outputs.tau || eye_in_opaque(original, request.scene, request.camera);
+    CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
+    wanted.blocks = true;
+    const Gathered gathered = collect_blocks(request, wanted, *most, patience);
+    if (gathered == Gathered::All) cast_shadows(*session_, shown_, drawer_->targets(), request.scene, settings, cost_);
+    if (!cost_.times.empty()) milliseconds += milliseconds_since(start);
+    return gathered;
+}
+
+SplatProvider::Gathered SplatProvider::collect_blocks(const FrameRequest& request, const CollectionPlan& wanted,
+                                                      std::uint64_t most_splats, double patience) {
+    SplatStore& splats = shown_.splats;
+    if (splats.collected() != wanted || !splats.has_blocks()) {
+        const auto& level = shown_.volume.volume();
+        drawer_->targets().drop();
+        splats.begin_blocks(shown_.volume,
+                            source_of(level->values.empty() ? levels_.original() : level, shown_.volume.level()),
+                            wanted);
+    }
+    const std::vector<std::size_t> needed = blocks_shown(request);
+    // Room for more than may come is given back.
+    if (splats.room() > most_splats) splats.drop_blocks(needed, true);
+    if (splats.lists().splat_count > most_splats) return Gathered::TooMany;
+    std::vector<std::size_t> missing;
+    std::ranges::copy_if(needed, std::back_inserter(missing), [&](std::size_t i) { return !splats.holds(i); });
+    if (missing.empty()) return Gathered::All;
+    // Whatever ends this early has added blocks, and the next picture may show no other.
+    try {
+        const Gathered gathered = collect_missing(request, needed, std::move(missing), most_splats, patience);
+        splats.bound_blocks(shown_.volume);
+        return gathered;
+    } catch (...) {
+        splats.bound_blocks(shown_.volume);
+        throw;
+    }
+}
+
+SplatProvider::Gathered SplatProvider::collect_missing(const FrameRequest& request,
+                                                       const std::vector<std::size_t>& needed,
+                                                       std::vector<std::size_t> missing, std::uint64_t most_splats,
+                                                       double patience) {
+    const auto start = Clock::now();
+    drawer_->targets().drop();
+    session_->bindings().write_volume(shown_.volume.images());
+    session_->bindings().write_splats(shown_.splats.lists());
+    shown_.splats.forget_light();
+    const bool hides = may_hide_blocks(request);
+    if (hides) sort_by_depth(request, missing);
+    double looking = 0;
+    for (std::size_t number = 0; number < missing.size(); ++number) {
+        orders_->heed_interruption();
+        // The nearest may hide all else, so the first looks come soon; together they take a fifth of the time at most.
+        if (hides && 4 * looking <= milliseconds_since(start) - looking) {
+            const auto look = Clock::now();
+            leave_hidden_blocks(request, missing, number);
+            looking += milliseconds_since(look);
+            if (number == missing.size()) break;
+        }
+        if (number > 0 && milliseconds_since(start) > patience) return Gathered::Unfinished;
+        const auto after = number + 1 < missing.size() ? std::optional(missing[number + 1]) : std::nullopt;
+        if (!shown_.splats.add_block(shown_.volume, missing[number], after, needed, most_splats, cost_))
+            return Gathered::TooMany;
+    }
+    return Gathered::All;
+}
+
+std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request) {
+    const auto& geometry = shown_.volume.volume()->geometry;
+    const auto blocks = shown_.splats.blocks();
+    const ViewVolume view(geometry, request.camera, request.size, request.scene.effects.antialias);
+    const double reach = kernel_reach(drawn_settings(request));
+    std::vector<std::size_t> shown;
+    for (std::size_t i = 0; i < blocks.size(); ++i) {
+        const CollectionBlock& block = blocks[i];
+        if (needs_everything(request.scene) || view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
+    }
+    // Light comes from all splats.
+    if (!divides_blocks_ || needs_everything(request.scene)) return shown;
+    const double thickness = sheet_thickness(geometry, request.camera, drawn_settings(request));
+    std::vector<CollectionBlock> cores;
+    for (const std::size_t i : shown)
+        cores.push_back(blocks[i]);
+    const glm::ivec2 slab = slab_of_part(geometry, request.camera, thickness, cores, orders_->exchange->part());
+    drawer_->set_slab(slab);
+    std::erase_if(shown, [&](std::size_t i) {
+        const glm::ivec2 sheets = sheets_of_block(geometry, request.camera, thickness, reach, blocks[i]);
+        return sheets.y <= slab.x || sheets.x >= slab.y;
+    });
+    return shown;
+}
+
+bool SplatProvider::may_hide_blocks(const FrameRequest& request) const {
+    const Settings drawn = drawn_settings(request);
+    // Parts, lights and optical depth need what cannot be seen; several samples are as many pictures.
+    return orders_->exchange == nullptr && shadow_lights(request.scene).empty() && !request.outputs.tau &&
+           request.scene.effects.samples == 1 && drawn.saturation < 1 && drawn.sheet_format == SheetFormat::Tiles;
+}
+
+void SplatProvider::sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const {
+    const Settings drawn = drawn_settings(request);
+    const auto& geometry = shown_.volume.volume()->geometry;
+    const double thickness = sheet_thickness(geometry, request.camera, drawn), reach = kernel_reach(drawn);
+    std::ranges::stable_sort(blocks, {}, [&](std::size_t i) {
+        return sheets_of_block(geometry, request.camera, thickness, reach, shown_.splats.blocks()[i]).x;
+    });
+}
+
+void SplatProvider::leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing,
+                                        std::size_t first) {
+    if (shown_.splats.lists().splat_count == 0 || first + 1 >= missing.size()) return;
+    const Settings drawn = drawn_settings(request);
+    const auto& geometry = shown_.volume.volume()->geometry;
+    const auto blocks = shown_.splats.blocks();
+    // Whatever is missing lies behind these sheets, so that pixels which they close are closed in the whole picture.
+    const glm::ivec2 sheets =
+        sheets_of_block(geometry, request.camera, sheet_thickness(geometry, request.camera, drawn), kernel_reach(drawn),
+                        blocks[missing[first]]);
+    shown_.splats.bound_blocks(shown_.volume);
+    const OpenTiles open = drawer_->open_tiles(shown_, request, sheets.x);
+    const auto is_hidden = [&](std::size_t i) {
+        const CollectionBlock& block = blocks[i];
+        return !open.may_show({block.core_low, block.core_low + block.core_size - 1});
+    };
+    const auto behind = missing.begin() + static_cast<std::ptrdiff_t>(first);
+    missing.erase(std::remove_if(behind, missing.end(), is_hidden), missing.end());
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,198 @@
+#include "engine/renderer/splat_provider.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/clock.h"
+#include "engine/error.h"
+
+namespace edgesplat {
+
+SplatProvider::SplatProvider(DeviceSession& session, const Orders& orders, PictureDrawer& drawer,
+                             std::optional<RaycastResources>& rays)
+    : session_(&session), orders_(&orders), drawer_(&drawer), rays_(&rays), shown_(session), other_(session) {}
+
+void SplatProvider::set_volume(std::shared_ptr<const Volume> volume) {
+    if (take_changes(volume)) return;
+    // The same object's samples may have been written to: nothing of it stays.
+    drawer_->targets().drop();
+    rays_->reset();
+    checked_.clear();
+    shown_ = LevelStore(*session_);
+    other_ = LevelStore(*session_);
+    levels_.set(std::move(volume));
+    if (levels_.original()) use_level(0);
+}
+
+bool SplatProvider::take_changes(const std::shared_ptr<const Volume>& next) {
+    const auto& original = levels_.original();
+    if (!next || !original || next == original || shown_.volume.in_blocks() || shown_.volume.volume() != original ||
+        !shown_.volume.images().volume || !shown_.splats.collected())
+        return false;
+    const auto box = changed_box(*original, *next);
+    if (!box) return false;
+    other_ = LevelStore(*session_);
+    rays_->reset();
+    levels_.set(next);
+    shown_.volume.change(next, *box);
+    return true;
+}
+
+void SplatProvider::use_level(int level) {
+    if (!shown_.volume.hold(levels_.at(level), level)) return;
+    shown_.splats.drop();
+    rays_->reset();
+    checked_.clear();
+}
+
+void SplatProvider::hold_in_blocks(bool blocks) {
+    if (!shown_.volume.hold_in_blocks(blocks)) return;
+    shown_.splats.drop();
+    rays_->reset();
+}
+
+void SplatProvider::release_unused(const Settings& drawn) {
+    const bool estimates = draws_warped(drawn) && drawn.edges == EdgeEstimator::Cubic;
+    if (!estimates && !(*rays_ && (*rays_)->takes_coefficients())) shown_.volume.release_coefficients();
+}
+
+bool SplatProvider::provide_volume(bool coefficients) {
+    use_level(0);
+    hold_in_blocks(false);
+    const bool missing = shown_.volume.provide();
+    return (coefficients && shown_.volume.provide_coefficients()) || missing;
+}
+
+std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& wanted) const {
+    if (shown_.volume.changed() || shown_.splats.collected() != wanted) return std::nullopt;
+    const SplatExtent extent = shown_.splats.lists().extent();
+    return SplatCount{SplatCount::From::Frame, extent.count, extent.low, extent.high};
+}
+
+std::optional<MemoryNeed> SplatProvider::beyond_memory(const FrameRequest& request) {
+    const double reach = kernel_reach(drawn_settings(request));
+    const CollectionPlan wanted = planned_collection(request);
+    const auto known = collected_splats(wanted);
+    const SplatCount splats = known.value_or(most_splats(request.volume->geometry));
+    FrameForecast forecast = forecast_frame(request, wanted, splats, reach, session_->profile());
+    std::vector<std::pair<std::string, std::uint64_t>> asked;
+    for (const PlannedResource& resource : forecast.resources)
+        asked.emplace_back(resource.text.name, resource.bytes);
+    if (asked == checked_) return checked_need_;
+    MemoryNeed need = memory_need(session_->device(), forecast, orders_->memory_budget);
+    // The bound by the number of voxels is too high for most volumes; counting takes longer.
+    if (!need.fits() && !known) {
+        forecast = forecast_frame(request, wanted, count_splats(*request.volume, wanted), reach, session_->profile());
+        need = memory_need(session_->device(), forecast, orders_->memory_budget);
+    }
+    checked_ = std::move(asked);
+    checked_need_ = need.fits() ? std::nullopt : std::optional(std::move(need));
+    return checked_need_;
+}
+
+void SplatProvider::settle(FrameRequest& request, int finest) {
+    use_level(finest);
+    request.volume = shown_.volume.volume();
+    const Volume& volume = *request.volume;
+    const glm::ivec3 dims = volume.geometry.dims;
+    const bool many = std::max({dims.x, dims.y, dims.z}) > kBlockCore;
+    const bool wanted = std::isfinite(orders_->patience);
+    bool blocks = volume.values.empty() || (wanted && many && volume.geometry.voxel_count() > kCoarseVoxels);
+    if (!blocks) {
+        const auto need = beyond_memory(request);
+        blocks = need && many && most_splats_in_blocks(request).value_or(0) > 0;
+        if (need && !blocks) refuse_memory(session_->device(), request, *need, orders_->memory_budget);
+    }
+    hold_in_blocks(blocks);
+}
+
+SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int finest, double patience,
+                                                     RenderStats& stats) {
+    const Settings settings = drawn_settings(request);
+    const Volume& original = *levels_.original();
+    const int count = levels_.count();
+    const int countable = countable_level(original.geometry, count, finest);
+    if (countable == count) {
+        const glm::ivec3 dims = level_geometry(original.geometry, count - 1).dims;
+        fail("{}: {} x {} x {} voxels at the coarsest of its {} resolutions, expected at most 2^32", original.name,
+             dims.x, dims.y, dims.z, count);
+    }
+    for (int at = countable;; ++at) {
+        settle(request, at);
+        while (!agree_on_level(at))
+            settle(request, at);
+        release_unused(settings);
+        Gathered gathered = Gathered::All;
+        cost_.times.clear();
+        if (shown_.volume.in_blocks())
+            gathered = collect_in_blocks(request, patience, stats.setup_milliseconds);
+        else
+            stats.setup_milliseconds +=
+                set_up(*session_, shown_, drawer_->targets(), request.scene, settings, keeps_buried(request), cost_);
+        if (!too_many_somewhere(gathered)) return gathered;
+        const auto need = request.volume->values.empty() ? std::nullopt : beyond_memory(request);
+        if (need) refuse_memory(session_->device(), request, *need, orders_->memory_budget);
+        if (at + 1 == count) {
+            fail("{}: the picture does not fit into the device's memory at any of its {} resolutions", original.name,
+                 count);
+        }
+    }
+}
+
+void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
+    cost_ = {};
+    if (other_.volume.volume()) std::swap(shown_, other_);  // go on with what was on its way
+    stats.wanted_level =
+        level_for(original()->geometry, levels_.count(), request.camera, request.size, drawn_settings(request).detail);
+    if (provide_level(request, stats.wanted_level, orders_->patience, stats) == Gathered::All) {
+        other_ = LevelStore(*session_);
+    } else {
+        std::swap(shown_, other_);
+        const int coarse = std::max(stats.wanted_level, levels_.coarse());
+        provide_level(request, coarse, std::numeric_limits<double>::infinity(), stats);
+        stats.complete = false;
+    }
+    stats.level = shown_.volume.level();
+    stats.in_blocks = shown_.volume.in_blocks();
+    stats.voxels_estimated = cost_.voxels_estimated;
+    if (stats.setup_milliseconds > 0) stats.passes = cost_.times;
+    if (!stats.in_blocks) return;
+    stats.blocks = shown_.splats.blocks().size();
+    stats.blocks_held = shown_.splats.blocks_held();
+}
+
+bool SplatProvider::agree_on_level(int& finest) {
+    drawer_->set_slab({});
+    PartExchange* const exchange = orders_->exchange;
+    const int level = shown_.volume.level();
+    divides_blocks_ = exchange && exchange->largest(shown_.volume.in_blocks() ? 0 : 1) == 0;
+    const int coarsest = exchange ? exchange->largest(level) : level;
+    if (!exchange || -exchange->largest(-level) == coarsest) return true;
+    finest = coarsest;
+    return false;
+}
+
+bool SplatProvider::too_many_somewhere(Gathered gathered) {
+    PartExchange* const exchange = orders_->exchange;
+    const bool here = gathered == Gathered::TooMany;
+    if (!exchange) return here;
+    if (exchange->largest(here ? 1 : 0) > 0) return true;
+    if (!divides_blocks_) return false;
+    // Sheets and what the device rounds are counted from the box of the splats.
+    const SplatExtent extent = shown_.splats.lists().extent();
+    glm::ivec3 low = extent.low, high = extent.high;
+    const bool none = extent.count == 0;
+    const glm::ivec3 last = shown_.volume.volume()->geometry.dims - 1;
+    for (int axis = 0; axis < 3; ++axis) {
+        low[axis] = -exchange->largest(none ? -last[axis] : -low[axis]);
+        high[axis] = exchange->largest(none ? 0 : high[axis]);
+    }
+    if (glm::any(glm::greaterThan(low, high))) {
+        low = glm::ivec3(0);
+        high = last;
+    }
+    shown_.splats.widen_box(low, high);
+    return false;
+}
+
+}  // namespace edgesplat

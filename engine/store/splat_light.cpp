@@ -1,0 +1,72 @@
+// SplatStore: what of the light reaches each splat.
+#include <algorithm>
+
+#include "engine/passes/2b_occlude_ambient.h"
+#include "engine/plan/resource_table.h"
+#include "engine/store/splat_store.h"
+#include "shaders/shared/occlusion_params.h"
+
+namespace edgesplat {
+namespace {
+
+gpu::Buffer light_list(const gpu::Device& device, gpu::Buffer SplatLists::*list, std::uint64_t splats) {
+    const auto row = std::ranges::find(light_list_rows(), list, &LightListRow::list);
+    return {device, splats * kLightBytes, gpu::Buffer::Place::Device, row->text.name};
+}
+
+}  // namespace
+
+bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
+    if (!occludes_ambient(scene)) {
+        lists_.occlusion = {};
+        occluded_.reset();
+        return false;
+    }
+    const OcclusionPlan plan = plan_occlusion(scene);
+    if (occluded_ == plan) return false;
+    occluded_.reset();
+    lists_.occlusion = {};
+    session_->bindings().write_volume(volume.images());
+    session_->bindings().write_splats(lists_);
+    lists_.occlusion = light_list(session_->device(), &SplatLists::occlusion, lists_.splat_count);
+    const gpu::Buffer block(session_->device(), sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host,
+                            kOcclusionBlock.name);
+    auto& params = block.mapped<shader::OcclusionParams>(1)[0];
+    params = {};
+    const VolumeGeometry& geometry = volume.volume()->geometry;
+    params.normal_to_world = glm::mat3(glm::transpose(glm::inverse(geometry.index_to_world_axes)));
+    params.radius = static_cast<float>(plan.radius);
+    std::ranges::transform(plan.matter.extinction, std::begin(params.extinction),
+                           [](double extinction) { return static_cast<float>(extinction); });
+    const passes::ClipCount clip =
+        place_clip(plan.matter.clip, geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
+    params.splat_count = static_cast<std::uint32_t>(lists_.splat_count);
+    params.reach = lists_.occlusion.address();
+    session_->bindings().set().put_block(shader::BIND_OCCLUSION, block);
+    gpu::Commands& commands = session_->commands();
+    commands.run([&] {
+        commands.span("2b_occlude_ambient", [&] {
+            passes::occlude_ambient(commands, {.splat_count = lists_.splat_count,
+                                               .iso_count = lists_.scene.mapped<shader::SceneParams>(1)[0].iso_count,
+                                               .clip = clip,
+                                               .transfer = !plan.matter.transfer.empty()});
+        });
+    });
+    add_times(cost.times, commands.span_times());
+    occluded_ = plan;
+    return true;
+}
+
+void SplatStore::drop_shadows() {
+    lists_.shadows = {};
+    shadowed_.reset();
+}
+
+void SplatStore::begin_shadows() {
+    drop_shadows();
+    lists_.shadows = light_list(session_->device(), &SplatLists::shadows, lists_.splat_count);
+    // What lies in no picture of the light is in nothing's shadow.
+    session_->commands().run([&] { session_->commands().fill(lists_.shadows, ~0U); });
+}
+
+}  // namespace edgesplat

@@ -1,0 +1,278 @@
+#include "engine/store/splat_store.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "engine/error.h"
+#include "engine/plan/resource_table.h"
+
+namespace edgesplat {
+namespace {
+
+using Place = gpu::Buffer::Place;
+
+// A splat's number is multiplied by its size in 32 bits.
+constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
+
+/// The planes of the scene, counted from a block's first voxel.
+void place_planes(glm::vec4 (&planes)[shader::MAX_CLIP_PLANES], const glm::ivec3& low) {
+    for (glm::vec4& plane : planes)
+        plane.w += glm::dot(glm::vec3(plane), glm::vec3(low));
+}
+
+}  // namespace
+
+passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
+    return {plan.estimator, plan.skip_buried, plan.params.iso_count};
+}
+
+passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
+    return {.core_size = plan.dims,
+            .iso_count = plan.params.iso_count,
+            .edges = plan.edge_field,
+            .buried = plan.buried,
+            .faces = plan.faces,
+            .clip = plan.clip,
+            .transfer = !plan.transfer.empty()};
+}
+
+void SplatStore::drop() {
+    lists_ = {};
+    collected_.reset();
+    residence_.reset();
+}
+
+void SplatStore::forget_light() {
+    occluded_.reset();
+    shadowed_.reset();
+}
+
+bool SplatStore::collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
+    if (!volume.changed() && collected_ == wanted) return false;
+    // The spline's coefficients depend on all samples.
+    if (volume.changed() && collected_ == wanted && !wanted.takes_coefficients())
+        collect_changes(volume, cost);
+    else
+        collect_anew(volume, wanted, cost);
+    volume.forget_changes();
+    return true;
+}
+
+void SplatStore::collect_anew(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
+    collected_.reset();
+    forget_light();
+    lists_.occlusion = {};
+    lists_.shadows = {};
+    if (wanted.takes_coefficients()) volume.provide_coefficients();
+    const CollectionBlock whole = whole_block(wanted.dims);
+    session_->bindings().write_volume(volume.images());
+    prepare(wanted, whole);
+    auto list = collect_block(wanted, whole, true, kMostSplats, cost);
+    hold_list(*list);
+    collected_ = wanted;
+}
+
+void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
+    // Nothing is known until it is found again.
+    const CollectionPlan plan = *std::exchange(collected_, std::nullopt);
+    const VoxelBox& changed = *volume.changed();
+    forget_light();
+    lists_.occlusion = {};
+    lists_.shadows = {};
+    const CollectionBlock whole = whole_block(plan.dims);
+    clear_counts();
+    session_->bindings().write_volume(volume.images());
+    session_->bindings().write_splats(lists_);
+    place_block(plan, whole);
+    auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
+    gpu::Commands& commands = session_->commands();
+    const auto run = [&](const auto& body) {
+        commands.run(body);
+        add_times(cost.times, commands.span_times());
+    };
+    run([&] { mark_block(plan, whole); });
+    if (plan.edge_field) {
+        // The pass goes as far beyond the core as it does in a block.
+        const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - shader::ESTIMATE_MARGIN);
+        params.core_low = core.low;
+        params.core_size = core.size();
+        const passes::EdgeRegion region{plan.dims, params.core_low, params.core_size};
+        run([&] {
+            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
+        });
+        cost.voxels_estimated += voxels_that_depend_on(changed, plan.dims);
+    }
+    place_block(plan, whole);
+    run([&] { count_block(collect_inputs(plan)); });
+    auto list = list_block(plan, whole, true, kMostSplats, cost);
+    hold_list(*list);
+    collected_ = plan;
+}
+
+void SplatStore::clear_counts() {
+    lists_.splat_count = lists_.edge_splat_count = lists_.crease_splat_count = 0;
+    lists_.bricks.clear();
+}
+
+void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& largest) {
+    // What a change of the scene replaces is not held next to its successor.
+    for (const SplatListRow& row : splat_list_rows())
+        lists_.*row.list = {};
+    for (const CollectionBufferRow& row : collection_buffer_rows())
+        lists_.*row.buffer = {};
+    for (const auto& row : field_image_rows())
+        lists_.*row.image = {};
+    clear_counts();
+    for (const auto& row : field_image_rows())
+        if (row.held(plan))
+            lists_.*row.image = gpu::GpuImage(session_->device(), row.shape(largest.size), row.text.name);
+    for (const CollectionBufferRow& row : collection_buffer_rows())
+        if (const std::uint64_t bytes = row.bytes(plan, largest.core_size); bytes > 0)
+            lists_.*row.buffer = gpu::Buffer(session_->device(), bytes, Place::Host, row.text.name);
+    lists_.scene.mapped<shader::SceneParams>(1)[0] = plan.params;
+    if (lists_.transfer)
+        std::ranges::copy(plan.transfer, lists_.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
+    session_->bindings().write_splats(lists_);
+    session_->commands().run([&] {
+        for (const auto& row : field_image_rows())
+            if (lists_.*row.image) session_->commands().prepare({&(lists_.*row.image)});
+    });
+}
+
+void SplatStore::reserve(const CollectionPlan& plan, std::uint64_t count) {
+    gpu::Commands& commands = session_->commands();
+    auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
+    for (const SplatListRow& row : splat_list_rows()) {
+        const std::uint64_t bytes = row.bytes(plan), used = lists_.splat_count * bytes;
+        if (bytes == 0) continue;
+        gpu::Buffer& list = lists_.*row.list;
+        gpu::Buffer longer(session_->device(), count * bytes, Place::Device, row.text.name);
+        if (used > 0) {
+            commands.run([&] {
+                commands.copy(list, longer, {{0, 0, used}});
+                commands.barrier();
+            });
+        }
+        list = std::move(longer);
+        params.*row.collected = list.address();
+    }
+}
+
+void SplatStore::place_block(const CollectionPlan& plan, const CollectionBlock& block) {
+    auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
+    const shader::SceneParams before = params;
+    params = plan.params;
+    params.dims = block.size;
+    params.core_low = block.core_low - block.low;
+    params.core_size = block.core_size;
+    params.block_origin = block.low;
+    params.volume_dims = plan.dims;
+    place_planes(params.clip_keep, block.low);
+    place_planes(params.clip_remove, block.low);
+    params.run_offsets = lists_.run_offsets.address();
+    for (const SplatListRow& row : splat_list_rows())
+        params.*row.collected = before.*row.collected;
+    if (lists_.transfer) params.transfer = lists_.transfer.address();
+}
+
+void SplatStore::mark_block(const CollectionPlan& plan, const CollectionBlock& block) {
+    if (!plan.buried) return;
+    gpu::Commands& commands = session_->commands();
+    commands.span("1a_mark_buried",
+                  [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
+}
+
+void SplatStore::count_block(const passes::CollectSplats& collect) {
+    gpu::Commands& commands = session_->commands();
+    commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
+}
+
+void SplatStore::scan_runs(const CollectionBlock& block, CollectedBlock& collected) {
+    const BrickRuns runs(block.core_size);
+    const auto offsets = lists_.run_offsets.mapped<std::uint32_t>(runs.count());
+    std::uint64_t total = lists_.splat_count;
+    collected.first = total;
+    VoxelBox box;
+    runs.each_brick([&](const VoxelBox& voxels, std::uint64_t run, std::uint64_t stride) {
+        SplatBrick brick{{}, static_cast<std::uint32_t>(total - collected.first), 0};
+        for (int z = voxels.low.z; z <= voxels.high.z; ++z, run += stride) {
+            const std::uint32_t count = std::exchange(offsets[run], static_cast<std::uint32_t>(total));
+            total += count;
+            brick.count += count;
+            if (count > 0) brick.box.add(voxels.slice(z));
+        }
+        if (brick.count == 0) return;
+        box.add(brick.box);
+        brick.box.low += block.core_low;
+        brick.box.high += block.core_low;
+        collected.bricks.push_back(brick);
+    });
+    collected.count = total - lists_.splat_count;
+    if (box.empty()) box = {glm::ivec3(0), block.core_size - 1};
+    collected.low = block.core_low + box.low;
+    collected.high = block.core_low + box.high;
+}
+
+std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan, const CollectionBlock& block,
+                                                     bool exact, std::uint64_t most_splats, SetupCost& cost) {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
+    CollectedBlock out;
+    scan_runs(block, out);
+    const std::uint64_t total = out.first + out.count;
+    if (total > most_splats) return std::nullopt;
+    if (total > kMostSplats) fail("{} voxels can be seen at once; the splat list holds {}", total, kMostSplats);
+    if (exact || total > room()) reserve(plan, exact ? total : std::min(std::max(total, 2 * room()), most_splats));
+    // Behind the runs' offsets two more words.
+    const std::uint64_t runs = passes::collect_runs(block.core_size);
+    const std::span<std::uint32_t> counts = lists_.run_offsets.mapped<std::uint32_t>(runs + 2).subspan(runs);
+    std::ranges::fill(counts, 0U);
+    auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
+    params.list_first = static_cast<std::uint32_t>(out.first);
+    params.list_count = static_cast<std::uint32_t>(out.count);
+    params.edge_count_at = static_cast<std::uint32_t>(runs);
+    gpu::Commands& commands = session_->commands();
+    commands.run(
+        [&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect, out.count); }); });
+    add_times(cost.times, commands.span_times());
+    out.with_edge = counts[0];
+    out.with_crease = counts[1];
+    lists_.splat_count = total;
+    lists_.edge_splat_count += out.with_edge;
+    lists_.crease_splat_count += out.with_crease;
+    return out;
+}
+
+void SplatStore::hold_list(CollectedBlock& collected) {
+    lists_.box_low = collected.low;
+    lists_.box_high = collected.high;
+    lists_.bricks.assign(std::move(collected.bricks));
+}
+
+std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& plan, const CollectionBlock& block,
+                                                        bool exact, std::uint64_t most_splats, SetupCost& cost) {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
+    place_block(plan, block);
+    gpu::Commands& commands = session_->commands();
+    commands.run([&] {
+        mark_block(plan, block);
+        if (plan.edge_field) {
+            const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
+            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
+        }
+        count_block(collect);
+    });
+    add_times(cost.times, commands.span_times());
+    auto out = list_block(plan, block, exact, most_splats, cost);
+    if (out && plan.edge_field) cost.voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
+    return out;
+}
+
+std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
+    const VoxelBox reached = changed.widened(shader::CHANGE_MARGIN);
+    return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
+}
+
+}  // namespace edgesplat
