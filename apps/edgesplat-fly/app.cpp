@@ -13,9 +13,7 @@
 #include "apps/edgesplat-fly/picture_view.h"
 #include "engine/error.h"
 #include "engine/image/image_file.h"
-#include "engine/image/srgb.h"
 #include "engine/overlays/font.h"
-#include "engine/scene/nearest_name.h"
 #include "engine/viewer/keeping.h"
 
 namespace {
@@ -30,15 +28,6 @@ constexpr double kSlicesShare = 0.34, kSlicesMost = 24;  // of the width beside 
 constexpr double kTextSize = 15;                         // pixels, on a screen of the usual density
 // Seconds that one waits for something to happen: while something moves, is drawn, and never mind.
 constexpr double kWaitMoving = 0.004, kWaitBusy = 0.03, kWaitIdle = 0.5;
-
-edgesplat::Image as_image(const viewer::ScreenPicture& picture) {
-    edgesplat::Image image(picture.width, picture.height, 3);
-    // encode_png turns linear light into sRGB; this undoes it beforehand, so that bytes stay what they are.
-    for (std::size_t i = 0; i < image.pixels.size() / 3; ++i)
-        for (std::size_t c = 0; c < 3; ++c)
-            image.pixels[3 * i + c] = static_cast<float>(edgesplat::to_linear(picture.pixels[4 * i + c] / 255.0));
-    return image;
-}
 
 bool usable(const std::vector<edgesplat::DeviceInfo>& devices, const std::string& name) {
     return std::ranges::any_of(
@@ -360,46 +349,4 @@ void App::run() {
     }
     const std::uint64_t messages = messages_ + device_->validation_messages() + state_.drawer->validation_messages();
     if (messages > 0) edgesplat::fail("{} validation messages", messages);
-}
-
-ScriptHost App::script_host() {
-    ScriptHost host;
-    host.open = [this](const std::string& path) {
-        begin_loading(path);
-        finish_loading();
-        if (!state_.error.empty()) edgesplat::fail("{}", state_.error);
-    };
-    host.settled = [this] { return !is_busy() && !state_.session.moving(); };
-    host.screenshot = [this](const std::string& path) { edgesplat::write_image(path, as_image(canvas_->read())); };
-    host.picture = [this](const std::string& path) {
-        edgesplat::write_image(path, as_image(part_of(canvas_->read(), state_.area)));
-    };
-    host.save = [this](const std::string& path) {
-        state_.wishes.save_scene = path;
-        grant_wishes();
-        if (!state_.error.empty()) edgesplat::fail("{}", state_.error);
-    };
-    host.report = [this](const std::string& path) {
-        times_.write(path, state_.target);
-        times_.clear();
-    };
-    host.fix_quality = [this](bool fixed) { state_.drawer->freeze_pace(fixed); };
-    host.widget = [this](const std::string& name) {
-        const auto found = state_.places.find(name);
-        if (found != state_.places.end()) return found->second;
-        std::vector<std::string> names;
-        for (const auto& [known, place] : state_.places)
-            names.push_back(known);
-        const std::string nearest = edgesplat::nearest_name(name, names);
-        edgesplat::fail("'{}' is no widget that can be seen now{}", name,
-                        nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
-    };
-    host.lose_device = [this](bool window) {
-        if (window)
-            lose_window_ = true;
-        else
-            state_.drawer->lose_device();
-    };
-    host.value = [this](const std::string& name) { return value(name); };
-    return host;
 }

@@ -9,7 +9,7 @@
 
 namespace {
 
-constexpr ImU32 kGround = IM_COL32(20, 20, 24, 255), kStrip = IM_COL32(44, 44, 52, 255);
+constexpr ImU32 kPlotGround = IM_COL32(20, 20, 24, 255), kStrip = IM_COL32(44, 44, 52, 255);
 constexpr ImU32 kBars = IM_COL32(120, 130, 150, 150), kTick = IM_COL32(255, 255, 255, 170);
 constexpr double kHeight = 9, kStripHeight = 0.9, kColumn = 2;  // em, em, pixels
 
@@ -81,7 +81,7 @@ ValuePlot value_plot(AppState& state, const char* name) {
     plot.twice = plot.hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left);
     plot.right = plot.hovered && ImGui::IsMouseClicked(ImGuiMouseButton_Right);
     const ImVec2 end = to_im(plot.corner + plot.size);
-    plot.list->AddRectFilled(corner, end, kGround);
+    plot.list->AddRectFilled(corner, end, kPlotGround);
     plot.list->AddRectFilled(at(plot.corner.x, plot.bottom()), end, kStrip);
     if (const auto* statistics = state.editing.counter.of(state.session.opened().volume, state.wait))
         paint_histogram(plot, *statistics);

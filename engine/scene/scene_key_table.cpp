@@ -2,10 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <type_traits>
 
+#include "engine/scene/aov.h"
 #include "engine/scene/ladder.h"
-#include "engine/scene/scene_keys.h"
+#include "engine/scene/scene_key_rows.h"
 #include "engine/scene/views.h"
 
 namespace edgesplat {
@@ -15,98 +15,10 @@ constexpr KeyRange kShare{0, 1};
 constexpr KeyRange kFromZero{.low = 0};
 constexpr KeyRange kAboveZero{.low = 0, .above_low = true};
 
-template <typename T>
-struct is_optional : std::false_type {};
-template <typename T>
-struct is_optional<std::optional<T>> : std::true_type {};
-
-/// How a member of the document is a value of a file, and back.
-template <typename T>
-KeyValue to_value(const T& v, const std::vector<std::string>& choices) {
-    if constexpr (std::is_enum_v<T>)
-        return choices[static_cast<std::size_t>(v)];
-    else if constexpr (std::is_same_v<T, int>)
-        return static_cast<double>(v);
-    else if constexpr (std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::ivec3>)
-        return std::vector<double>{static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-    else if constexpr (std::is_same_v<T, glm::ivec2>)
-        return std::vector<double>{static_cast<double>(v.x), static_cast<double>(v.y)};
-    else
-        return v;
-}
-
-template <typename T>
-T from_value(const KeyValue& value, const std::vector<std::string>& choices) {
-    if constexpr (std::is_enum_v<T>) {
-        const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(value));
-        return static_cast<T>(found - choices.begin());
-    } else if constexpr (std::is_same_v<T, int>) {
-        return static_cast<int>(std::get<double>(value));
-    } else if constexpr (std::is_same_v<T, glm::dvec3> || std::is_same_v<T, glm::ivec3>) {
-        const auto& v = std::get<std::vector<double>>(value);
-        return T(v[0], v[1], v[2]);
-    } else if constexpr (std::is_same_v<T, glm::ivec2>) {
-        const auto& v = std::get<std::vector<double>>(value);
-        return T(v[0], v[1]);
-    } else {
-        return std::get<T>(value);
-    }
-}
-
-template <typename T>
-void describe(SceneKey& key) {
-    if constexpr (std::is_same_v<T, bool>) key.type = KeyType::Flag;
-    if constexpr (std::is_same_v<T, double>) key.type = KeyType::Number;
-    if constexpr (std::is_same_v<T, int>) key.type = KeyType::Integer;
-    if constexpr (std::is_same_v<T, std::string> || std::is_enum_v<T>) key.type = KeyType::Text;
-    if constexpr (std::is_same_v<T, std::vector<std::string>>) key.type = KeyType::Texts;
-    if constexpr (std::is_same_v<T, std::vector<double>>) key.type = KeyType::Numbers;
-    if constexpr (std::is_same_v<T, glm::dvec3>) key.type = KeyType::Numbers, key.count = 3;
-    if constexpr (std::is_same_v<T, glm::ivec3>) key.type = KeyType::Integers, key.count = 3;
-    if constexpr (std::is_same_v<T, glm::ivec2>) key.type = KeyType::Integers, key.count = 2;
-}
-
-class Table {
-  public:
-    /// Adds a key whose member `access` names. What its row says beside path and type is in `facts`.
-    template <typename Access>
-    void add(const char* path, Access access, SceneKey facts) {
-        using Member = std::remove_reference_t<decltype(access(std::declval<SceneDocument&>(), std::size_t{}))>;
-        SceneKey key = std::move(facts);
-        key.path = path;
-        if constexpr (is_optional<Member>::value) {
-            using T = typename Member::value_type;
-            describe<T>(key);
-            key.get = [access, choices = key.choices](const SceneDocument& d, std::size_t i) {
-                const auto& member = access(d, i);
-                return member ? std::optional(to_value(*member, choices)) : std::nullopt;
-            };
-            key.set = [access, choices = key.choices](SceneDocument& d, std::size_t i, const KeyValue& v) {
-                access(d, i) = from_value<T>(v, choices);
-            };
-        } else {
-            describe<Member>(key);
-            key.get = [access, choices = key.choices](const SceneDocument& d, std::size_t i) {
-                std::optional<KeyValue> value = to_value(access(d, i), choices);
-                // An empty text or list is what "not given" is in a document.
-                if constexpr (requires(const Member& m) { m.empty(); })
-                    if (access(d, i).empty()) value.reset();
-                return value;
-            };
-            key.set = [access, choices = key.choices](SceneDocument& d, std::size_t i, const KeyValue& v) {
-                access(d, i) = from_value<Member>(v, choices);
-            };
-        }
-        keys.push_back(std::move(key));
-    }
-
-    std::vector<SceneKey> keys;
-};
-
 // One access function per member; works on a document that may be changed and on one that may not.
 #define MEMBER(expression) ([](auto& d, [[maybe_unused]] std::size_t i) -> auto& { return d.expression; })
 
-void add_top(Table& t) {
+void add_top(KeyTable& t) {
     t.add("about", MEMBER(about), {.help = "What is to be seen, in words", .absent = "nothing"});
     t.add("iso_values", MEMBER(iso_values),
           {.unit = "the volume's",
@@ -126,7 +38,7 @@ void add_top(Table& t) {
     t.add("background", MEMBER(background), {.unit = "linear light", .help = "Colour behind it all", .range = kShare});
 }
 
-void add_volume(Table& t) {
+void add_volume(KeyTable& t) {
     t.add("volume.path", MEMBER(volume.path),
           {.help = "File, folder, pattern of slices (slice_%03d.tif) or builtin:NAME; relative to the scene file, then "
                    "to the folders in EDGESPLAT_VOLUMES",
@@ -157,7 +69,7 @@ void add_volume(Table& t) {
           {.help = "Of the samples as drawn; any others are refused", .absent = "any"});
 }
 
-void add_lights(Table& t) {
+void add_lights(KeyTable& t) {
     t.add(
         "lights[].kind", MEMBER(lights[i].kind),
         {.help = "Where it is: at the eye, far away, or somewhere", .choices = {"headlight", "directional", "point"}});
@@ -170,7 +82,7 @@ void add_lights(Table& t) {
           {.help = "Whether what stands in its way darkens what lies behind; not for a headlight, at most 2 lights"});
 }
 
-void add_materials(Table& t) {
+void add_materials(KeyTable& t) {
     // The same rows for the material below all iso-values and for those from each iso-value up.
     const auto rows = [&t](const std::string& table, auto material, const char* color, const char* extinction) {
         const auto add = [&](const char* name, auto access, const SceneKey& facts) {
@@ -204,7 +116,7 @@ void add_materials(Table& t) {
           {.unit = "per mm", .help = "Extinction there", .range = kFromZero});
 }
 
-void add_effects(Table& t) {
+void add_effects(KeyTable& t) {
     t.add("effects.background_top", MEMBER(effects.background_top),
           {.unit = "linear light",
            .help = "Background at the top; `background` is at the bottom",
@@ -251,7 +163,7 @@ void add_effects(Table& t) {
     t.add("effects.overlays.legend", MEMBER(effects.overlays.legend), {.help = "Materials or transfer function"});
 }
 
-void add_camera(Table& t) {
+void add_camera(KeyTable& t) {
     std::vector<std::string> views(view_names().begin(), view_names().end());
     t.add("camera.view", MEMBER(camera.view),
           {.help = "A camera by name, which shows all that the scene shows of the volume; close: near a surface",
@@ -278,7 +190,7 @@ void add_camera(Table& t) {
           {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
 }
 
-void add_movie(Table& t) {
+void add_movie(KeyTable& t) {
     t.add("movie.fps", MEMBER(movie.fps), {.help = "Frames a second", .range = {0, 1000, true}});
     t.add("movie.voxel", MEMBER(movie.voxel),
           {.help = "Positions are voxel indices, directions run along the volume's axes"});
@@ -311,7 +223,7 @@ void add_movie(Table& t) {
           {.help = "What it is then; as many as times", .absent = "needed"});
 }
 
-void add_quality(Table& t) {
+void add_quality(KeyTable& t) {
     std::vector<std::string> names;
     for (const Preset& preset : presets())
         names.emplace_back(preset.name);
@@ -351,14 +263,13 @@ void add_quality(Table& t) {
           {.help = "Drop voxels that opaque ones hide from every side"});
 }
 
-void add_output(Table& t) {
+void add_output(KeyTable& t) {
     t.add(
         "output.file", MEMBER(output.file),
         {.help = "The picture: .png (8 bit sRGB) or .exr (float32 linear, with alpha); relative to the working folder",
          .absent = "said on the command line"});
     t.add("output.size", MEMBER(output.size), {.unit = "pixels", .help = "Width and height", .range = {1, 16384}});
-    t.add("output.aovs", MEMBER(output.aovs),
-          {.help = "Extra outputs", .choices = {"tau", "depth", "normal", "distance"}, .absent = "none"});
+    t.add("output.aovs", MEMBER(output.aovs), {.help = "Extra outputs", .choices = aov_names(), .absent = "none"});
     t.add("output.compare_plain", MEMBER(output.compare_plain), {.help = "Conventional splatting beside it"});
     t.add("output.compare_raycast", MEMBER(output.compare_raycast),
           {.help = "What the ray caster makes of it beside it"});
@@ -438,7 +349,7 @@ std::span<const SceneTable> scene_tables() {
 
 std::span<const SceneKey> scene_keys() {
     static const std::vector<SceneKey> keys = [] {
-        Table t;
+        KeyTable t;
         add_top(t);
         add_volume(t);
         add_materials(t);
