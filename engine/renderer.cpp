@@ -26,10 +26,6 @@ Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int
     return image;
 }
 
-std::span<const float> floats(std::span<const glm::vec4> pixels) {
-    return {&pixels.front().x, 4 * pixels.size()};
-}
-
 void add_counts(const PictureCounts& counts, RenderStats& stats) {
     stats.dirty_share = counts.dirty_share;
     if (!counts.draws) return;

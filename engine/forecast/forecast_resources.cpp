@@ -53,8 +53,7 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
 /// What of the light reaches each splat, and what that is found with.
 void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const auto add_list = [&](gpu::Buffer SplatLists::*list) {
-        const auto row = std::ranges::find(light_list_rows(), list, &LightListRow::list);
-        out.push_back(buffer(row->text, f.splats.splats * kLightBytes));
+        out.push_back(buffer(row_of(list).text, f.splats.splats * kLightBytes));
     };
     if (f.occluded) {
         add_list(&SplatLists::occlusion);

@@ -40,10 +40,7 @@ void check_splats(DeviceSession& session, const LevelStore& level) {
 }
 
 void PictureDrawer::check_picture(const LevelStore& level) {
-    const auto pixels = [&] {
-        const std::span<const glm::vec4> all = targets_.pixels(plan_);
-        return std::span<const float>(&all.front().x, 4 * all.size());
-    };
+    const auto pixels = [&] { return floats(targets_.pixels(plan_)); };
     const std::size_t bad = first_bad(pixels());
     if (bad == pixels().size()) return;
     const std::size_t pixel = bad / 4, width = static_cast<std::size_t>(plan_.params.size.x);

@@ -92,7 +92,7 @@ void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& re
         for (std::size_t tile = 0; tile < tiles; ++tile)
             if (too_fine[tile].x > 0) of_all[tile] = 0;
         write(commands, targets.tile_finest, of_all);
-        const auto pixels = targets.output.mapped<glm::vec4>(whole.size());
+        const std::span<glm::vec4> pixels = targets_.pixels(plan_);
         std::ranges::copy(whole, pixels.begin());
         commands.run([&] {
             commands.to_device(targets.output);
@@ -113,7 +113,7 @@ void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& re
         write(commands, targets.tile_pixels, lists);
     }
     write(commands, targets.tile_closed, std::vector<std::uint32_t>(tiles));
-    std::ranges::fill(targets.output.mapped<glm::vec4>(whole.size()), glm::vec4(0));
+    std::ranges::fill(targets_.pixels(plan_), glm::vec4(0));
     commands.run([&] { commands.to_device(targets.output); });
 }
 
@@ -134,8 +134,7 @@ void PictureDrawer::draw_part(passes::TileDraw how) {
         chunks = static_cast<std::uint32_t>(planned.parts.size());
         plan_.refined = parts_refine(planned);
     }
-    std::vector<glm::vec4> whole(static_cast<std::size_t>(plan_.params.size.x) *
-                                 static_cast<std::size_t>(plan_.params.size.y));
+    std::vector<glm::vec4> whole(targets_.pixels(plan_).size());
     std::vector<bool> reached(tile_count(plan_), exchange.part().index == 0);
     for (std::uint32_t step = first_step(plan_); step > 0; step /= 2) {
         const std::vector<glm::vec4> drawn = draw_part_step(how, chunks, step, reached);
@@ -143,7 +142,7 @@ void PictureDrawer::draw_part(passes::TileDraw how) {
         if (step > 1) share_pixels(step, reached, whole);
     }
     if (exchange.part().index > 0) return;
-    std::ranges::copy(whole, targets.output.mapped<glm::vec4>(whole.size()).begin());
+    std::ranges::copy(whole, targets_.pixels(plan_).begin());
     commands.run([&] {
         commands.to_device(targets.output);
         commands.span("7_resolve",
@@ -160,8 +159,7 @@ std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::
     const TargetResources& targets = targets_.resources();
     const bool sums = plan_.variant.payload == shader::PAYLOAD_TAU;
     const auto& size = plan_.params.size;
-    const auto count = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y);
-    const auto pixels = targets.output.mapped<glm::vec4>(count);
+    const std::span<glm::vec4> pixels = targets_.pixels(plan_);
     {
         const AddedTime time(share_.draw_milliseconds, &share_.processor_milliseconds);
         add_times(times_, draw_step(commands, plan_, targets, chunks, how, step));
@@ -173,7 +171,7 @@ std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::
     wait();
     std::vector<glm::vec4> part(pixels.begin(), pixels.end());
     if (!sums) {
-        std::vector<float> in_front(count);
+        std::vector<float> in_front(pixels.size());
         {
             const AddedTime time(share_.composite_milliseconds);
             std::ranges::transform(part, in_front.begin(), [](const glm::vec4& p) { return 1.0F - p.a; });

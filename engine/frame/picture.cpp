@@ -31,8 +31,7 @@ FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const
 
 void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
     plan_ = std::move(plan);
-    session_->bindings().write_volume(level.volume.images());
-    session_->bindings().write_splats(level.splats.lists());
+    level.splats.bind(level.volume);
     if (orders_->check_numbers) check_splats(*session_, level);
     draw_planned(level);
     if (orders_->check_numbers) check_picture(level);

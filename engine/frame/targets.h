@@ -7,6 +7,11 @@
 
 namespace edgesplat {
 
+/// Pixels as the numbers that they consist of.
+inline std::span<const float> floats(std::span<const glm::vec4> pixels) {
+    return {&pixels.front().x, 4 * pixels.size()};
+}
+
 class Targets {
   public:
     explicit Targets(DeviceSession& session);

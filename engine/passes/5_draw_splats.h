@@ -46,6 +46,7 @@ struct DrawSplats {
 
 /// Index list of shader::QUADS_PER_INSTANCE quads, two triangles each.
 std::vector<std::uint32_t> quad_indices();
+inline constexpr std::uint32_t kQuadIndices = 6 * shader::QUADS_PER_INSTANCE;
 
 /// Clears the group's pixels, closes the opaque ones, then adds the group's splats.
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group);

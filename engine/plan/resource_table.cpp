@@ -162,7 +162,7 @@ const std::array kTargetBuffers{
         [](const FramePlan&, const Profile&) { return 3 * kWord; }, true),
     row<TargetBufferRow>(
         text("quad indices", "(quads x 6) uint", "host", "5"), &T::indices, nullptr, Place::Host, kNoTexels, kUnbound,
-        [](const FramePlan&, const Profile&) { return passes::quad_indices().size() * kWord; }, true),
+        [](const FramePlan&, const Profile&) { return passes::kQuadIndices * kWord; }, true),
     row<TargetBufferRow>(text("selected footprints", "(splats) layers, rotation", "3", "4, 5"), &T::footprints,
                          &F::footprints, Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) {
@@ -305,6 +305,14 @@ gpu::ImageShape TargetImageRow::shape(const glm::ivec3& size_and_layers) const {
     shape.size = {size_and_layers.x, size_and_layers.y, 1};
     shape.layers = size_and_layers.z;
     return shape;
+}
+
+const VolumeImageRow<VolumeImages>& row_of(gpu::GpuImage VolumeImages::*image) {
+    return *std::ranges::find(kVolumeImages, image, &VolumeImageRow<VolumeImages>::image);
+}
+
+const LightListRow& row_of(gpu::Buffer SplatLists::*list) {
+    return *std::ranges::find(kLightLists, list, &LightListRow::list);
 }
 
 const TargetBufferRow& row_of(gpu::Buffer TargetResources::*buffer) {

@@ -31,6 +31,7 @@ struct VolumeImageRow {
     gpu::ImageShape shape(const glm::ivec3& size) const;
 };
 std::span<const VolumeImageRow<VolumeImages>> volume_image_rows();
+const VolumeImageRow<VolumeImages>& row_of(gpu::GpuImage VolumeImages::*image);
 /// What is known of each voxel before it becomes a splat.
 std::span<const VolumeImageRow<SplatLists>> field_image_rows();
 
@@ -60,6 +61,7 @@ struct LightListRow {
 };
 inline constexpr std::uint64_t kLightBytes = 4;
 std::span<const LightListRow> light_list_rows();
+const LightListRow& row_of(gpu::Buffer SplatLists::*list);
 
 /// How shaders read an image that they do not load.
 enum class Sampling { None, Nearest, Linear };

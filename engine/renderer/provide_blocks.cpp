@@ -95,8 +95,7 @@ SplatProvider::Gathered SplatProvider::collect_missing(const FrameRequest& reque
                                                        double patience) {
     const auto start = Clock::now();
     drawer_->targets().drop();
-    session_->bindings().write_volume(shown_.volume.images());
-    session_->bindings().write_splats(shown_.splats.lists());
+    shown_.splats.bind(shown_.volume);
     shown_.splats.forget_light();
     const bool hides = may_hide_blocks(request);
     if (hides) sort_by_depth(request, missing);

@@ -10,8 +10,7 @@ namespace edgesplat {
 namespace {
 
 gpu::Buffer light_list(const gpu::Device& device, gpu::Buffer SplatLists::*list, std::uint64_t splats) {
-    const auto row = std::ranges::find(light_list_rows(), list, &LightListRow::list);
-    return {device, splats * kLightBytes, gpu::Buffer::Place::Device, row->text.name};
+    return {device, splats * kLightBytes, gpu::Buffer::Place::Device, row_of(list).text.name};
 }
 
 }  // namespace
@@ -26,8 +25,7 @@ bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCos
     if (occluded_ == plan) return false;
     occluded_.reset();
     lists_.occlusion = {};
-    session_->bindings().write_volume(volume.images());
-    session_->bindings().write_splats(lists_);
+    bind(volume);
     lists_.occlusion = light_list(session_->device(), &SplatLists::occlusion, lists_.splat_count);
     const gpu::Buffer block(session_->device(), sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host,
                             kOcclusionBlock.name);

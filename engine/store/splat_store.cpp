@@ -21,6 +21,12 @@ void place_planes(glm::vec4 (&planes)[shader::MAX_CLIP_PLANES], const glm::ivec3
         plane.w += glm::dot(glm::vec3(plane), glm::vec3(low));
 }
 
+/// Voxels whose edges are found again where the samples in a box are others.
+std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
+    const VoxelBox reached = changed.widened(shader::CHANGE_MARGIN);
+    return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
+}
+
 }  // namespace
 
 passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
@@ -41,6 +47,11 @@ void SplatStore::drop() {
     lists_ = {};
     collected_.reset();
     residence_.reset();
+}
+
+void SplatStore::bind(const VolumeStore& volume) const {
+    session_->bindings().write_volume(volume.images());
+    session_->bindings().write_splats(lists_);
 }
 
 void SplatStore::forget_light() {
@@ -82,8 +93,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     lists_.shadows = {};
     const CollectionBlock whole = whole_block(plan.dims);
     clear_counts();
-    session_->bindings().write_volume(volume.images());
-    session_->bindings().write_splats(lists_);
+    bind(volume);
     place_block(plan, whole);
     auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
     gpu::Commands& commands = session_->commands();
@@ -268,11 +278,6 @@ std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& pl
     auto out = list_block(plan, block, exact, most_splats, cost);
     if (out && plan.edge_field) cost.voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
     return out;
-}
-
-std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
-    const VoxelBox reached = changed.widened(shader::CHANGE_MARGIN);
-    return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
 }
 
 }  // namespace edgesplat

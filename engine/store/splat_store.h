@@ -48,6 +48,8 @@ class SplatStore {
     const std::optional<ShadowPlan>& shadowed() const { return shadowed_; }
     /// Drops everything.
     void drop();
+    /// Passes find these lists and the volume's images from the next run on.
+    void bind(const VolumeStore& volume) const;
 
     /// Passes 1 and 2, if the plan differs from what the list was made with or samples do. Whether they ran.
     bool collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
@@ -116,9 +118,6 @@ class SplatStore {
     std::optional<ShadowPlan> shadowed_;
     std::optional<ResidentBlocks> residence_;  ///< while the volume is held in blocks
 };
-
-/// Voxels whose edges are found again where the samples in a box are others.
-std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims);
 
 /// One resolution of a volume, and the splats collected from it.
 struct LevelStore {

@@ -1,7 +1,5 @@
 #include "engine/store/volume_store.h"
 
-#include <algorithm>
-
 #include "engine/plan/resource_table.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
@@ -40,8 +38,8 @@ void VolumeStore::change(std::shared_ptr<const Volume> next, const VoxelBox& box
 }
 
 void VolumeStore::make(gpu::GpuImage VolumeImages::*image, const glm::ivec3& size) {
-    const auto row = std::ranges::find(volume_image_rows(), image, &VolumeImageRow<VolumeImages>::image);
-    images_.*image = gpu::GpuImage(session_->device(), row->shape(size), row->text.name);
+    const auto& row = row_of(image);
+    images_.*image = gpu::GpuImage(session_->device(), row.shape(size), row.text.name);
 }
 
 bool VolumeStore::provide() {
