@@ -153,7 +153,10 @@ void App::finish_loading() {
     const auto loading = std::move(state_.loading);
     try {
         const glm::ivec2 size = state_.picture_size();
-        state_.session.open(loading->take(), glm::max(size, glm::ivec2(64)));
+        viewer::Opened opened = loading->take();
+        // The cube's front has no hole.
+        if (options_.source.empty() && opened.path == kBuiltin) opened.document.camera.view = "oblique";
+        state_.session.open(std::move(opened), glm::max(size, glm::ivec2(64)));
         state_.session.motion().set_collisions(state_.preferences.collisions);
         state_.shown.reset();
         state_.boost = 1;

@@ -53,7 +53,7 @@ struct Preset {
 };
 
 /// draft, balanced, accurate: cheapest first. The default settings are whole kernels, as draft is: draft is found
-/// sooner and leaves out what is hardly seen through what is in front, balanced and accurate are slower than both.
+/// sooner, balanced and accurate are slower than both.
 std::span<const Preset> presets();
 
 /// The preset of that name; throws Error listing the names.

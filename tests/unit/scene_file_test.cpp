@@ -237,10 +237,10 @@ TEST(SceneFile, EveryProblemIsReportedWithItsLine) {
 
 TEST(SceneFile, KnobsChangeARowWhereverTheyStand) {
     const SceneDocument d =
-        parse("[volume]\npath = \"builtin:sphere\"\n[quality]\nedges = \"off\"\npreset = \"draft\"\n");
+        parse("[volume]\npath = \"builtin:sphere\"\n[quality]\nedges = \"off\"\npreset = \"accurate\"\n");
     EXPECT_EQ(d.quality.settings.edges, EdgeEstimator::Off);
-    EXPECT_EQ(d.quality.settings.saturation, 0.98);
-    EXPECT_EQ(d.quality.preset, "draft");
+    EXPECT_EQ(d.quality.settings.sheet_spacing, 0.5);
+    EXPECT_EQ(d.quality.preset, "accurate");
 }
 
 TEST(SceneFile, SetTakesWhatPeopleType) {
