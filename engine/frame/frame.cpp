@@ -47,26 +47,22 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
     return commands.span_times();
 }
 
-Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                  const Division& division) {
-    const auto& p = plan.params;
-    commands.run([&] {
-        if (plan.variant.culled) commands.to_device(targets.batches);
-        for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
+void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool goes_on) {
+    if (plan.variant.culled) commands.to_device(targets.batches);
+    for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
+        commands.fill(*zeroed, 0);
+    if (!goes_on)
+        for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
             commands.fill(*zeroed, 0);
-        if (!division.goes_on)
-            for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
-                commands.fill(*zeroed, 0);
-        if (!division.goes_on && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
-        if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
-        commands.barrier();
-        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
-        commands.span("4_sort_sheets",
-                      [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
-        for (const gpu::Buffer* seen : {&targets.sheet_pairs, &targets.sheet_starts})
-            commands.to_host(*seen);
-    });
-    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), p.sheet_base), commands.profile());
+    if (!goes_on && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
+    if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
+    commands.barrier();
+    commands.span("3_select_footprints",
+                  [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });
+    commands.span("4_sort_sheets",
+                  [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
+    for (const gpu::Buffer* seen : {&targets.sheet_pairs, &targets.sheet_starts})
+        commands.to_host(*seen);
 }
 
 TilePasses::TilePasses(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,

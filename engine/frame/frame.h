@@ -14,8 +14,11 @@ namespace edgesplat {
 std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                   std::optional<std::uint32_t> shadow_channel = {});
 
-/// Of a frame whose sheets are summed tile by tile, passes 3 and 4 up to the sheets' order; waits, and says what is to
-/// be drawn of the part. Milliseconds are left in `commands`.
+/// Of a frame whose sheets are summed tile by tile, passes 3 and 4 up to the sheets' order, recorded into the run that
+/// is being made. `goes_on`: behind what is drawn already.
+void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool goes_on);
+
+/// Runs that, waits, and says what is to be drawn of the part. Milliseconds are left in `commands`.
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                   const Division& division = {});
 
@@ -24,6 +27,12 @@ Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetRe
 /// throw). Of a part (`TileDraw::part`) pass 7 is left out.
 std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between = {});
+
+/// All of a tiled frame that is not refined, in one list: waits once, where the profile has no rounds. The device plans
+/// FrameParams::chunk_slots chunks. What it came to; nothing where that was too few, or a chunk is too large, and the
+/// picture is not whole.
+std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                   passes::TileDraw how);
 
 /// One step of `draw_tiles`, without what finishes it: of a refined picture the pixels of `step`, REFINE_STEP first,
 /// then those that pass 5_refine_pixels lists; of any other all, step 1.
@@ -52,7 +61,10 @@ class TilePasses {
     void finish(std::uint32_t step);
 
   private:
-    std::uint32_t entries(std::uint32_t chunk) const { return parts_[chunk].y - parts_[chunk].x; }
+    /// At most.
+    std::uint32_t entries(std::uint32_t chunk) const {
+        return how_.planned ? plan_.params.prepared_mask + 1 : parts_[chunk].y - parts_[chunk].x;
+    }
 
     gpu::Commands& commands_;
     const FramePlan& plan_;

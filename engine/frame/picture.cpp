@@ -24,6 +24,7 @@ FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const
     const bool refines = session_->profile().refines || orders_->exchange != nullptr;
     FramePlan out = plan_frame(volume, scene, camera, settings, size, payload, level.splats.lists().extent(),
                                kernel_reach(settings), refines);
+    out.params.chunk_slots = std::min(foreseen_, out.params.sheet_count);
     if (culling_.bricks)
         cull_bricks(out, level.splats.lists().bricks, {volume.geometry, camera, size, out.variant.antialias});
     return out;
@@ -49,10 +50,19 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
     if (orders_->exchange) return draw_part(how);
     times_.clear();
     if (draw_front_first(level, how)) return;
+    // As many chunks as the last picture had, and one for what has come into view.
+    const auto foresee = [&](const Chunks& chunks) { foreseen_ = static_cast<std::uint32_t>(chunks.parts.size()) + 1; };
+    const bool chunks_foreseen = plan_.params.chunk_slots > 0 && !how.profile->rounds && !plan_.refined;
+    if (chunks_foreseen) {
+        const std::optional<Chunks> chunks = draw_at_once(commands, plan_, targets_.resources(), how);
+        add_times(times_, commands.span_times());
+        if (chunks) return foresee(*chunks);
+    }
     const Chunks chunks = sort_frame(commands, plan_, targets_.resources());
     add_times(times_, commands.span_times());
     plan_.refined = plan_.refined && worth_refining(chunks);
     draw_chunks(chunks, how);
+    foresee(chunks);
 }
 
 void PictureDrawer::draw_chunks(const Chunks& chunks, const passes::TileDraw& how) {

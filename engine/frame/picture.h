@@ -87,6 +87,7 @@ class PictureDrawer {
     Culling culling_;
     std::optional<glm::ivec2> slab_;
     FramePlan plan_;
+    std::uint32_t foreseen_ = 0;  ///< chunks of the next picture; 0: nothing is known
     std::vector<PassTime> times_;
     SheetShare share_;
 };

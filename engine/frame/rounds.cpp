@@ -3,6 +3,7 @@
 
 #include "engine/compositors/tiles/lists.h"
 #include "engine/frame/frame.h"
+#include "engine/passes/4_sort_tiles.h"
 
 namespace edgesplat {
 namespace {
@@ -13,21 +14,25 @@ struct Steps {
     bool finish = true;  ///< what follows a step's pixels runs, too
 };
 
-std::vector<PassTime> at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                              TilePasses& frame, const Steps& steps) {
+void record_steps(const FramePlan& plan, TilePasses& frame, const Steps& steps) {
+    for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
+        const std::uint64_t tiles = tile_count(plan);
+        for (std::uint32_t chunk = 0; chunk < frame.chunk_count(); ++chunk) {
+            // The lists of a single chunk stand until the picture is there.
+            if (step == steps.first || frame.chunk_count() > 1) frame.sort(chunk);
+            frame.prepare(chunk);
+            frame.draw(chunk, step, tiles, tiles * tile_groups(frame.how(), step), 0);
+        }
+        if (steps.finish) frame.finish(step);
+    }
+}
+
+std::vector<PassTime> without_rounds(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                     TilePasses& frame, const Steps& steps) {
     commands.run([&] {
         for (const gpu::Buffer* written : {&targets.chunks, &targets.tile_todo})
             commands.to_device(*written);
-        for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
-            const std::uint64_t tiles = tile_count(plan);
-            for (std::uint32_t chunk = 0; chunk < frame.chunk_count(); ++chunk) {
-                // The lists of a single chunk stand until the picture is there.
-                if (step == steps.first || frame.chunk_count() > 1) frame.sort(chunk);
-                frame.prepare(chunk);
-                frame.draw(chunk, step, tiles, tiles * tile_groups(frame.how(), step), 0);
-            }
-            if (steps.finish) frame.finish(step);
-        }
+        record_steps(plan, frame, steps);
         if (!steps.finish) commands.to_host(targets.output);
     });
     return commands.span_times();
@@ -94,17 +99,45 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
     return times;
 }
 
+void begin_counts(const TargetResources& targets) {
+    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(3).last(2), 0U);
+}
+
 std::vector<PassTime> draw(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                            std::uint32_t chunks, passes::TileDraw how, const Steps& steps,
                            const std::function<void()>& between) {
-    std::ranges::fill(targets.drawn.mapped<std::uint32_t>(3).last(2), 0U);
     if (steps.first == first_step(plan)) fill_todo(plan, targets);
+    begin_counts(targets);
     TilePasses frame(commands, plan, targets, chunks, how);
     return how.profile->rounds ? in_rounds(commands, plan, targets, frame, steps, between)
-                               : at_once(commands, plan, targets, frame, steps);
+                               : without_rounds(commands, plan, targets, frame, steps);
 }
 
 }  // namespace
+
+Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                  const Division& division) {
+    commands.run([&] { sort_splats(commands, plan, targets, division.goes_on); });
+    return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), plan.params.sheet_base),
+                     commands.profile());
+}
+
+std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
+                                   passes::TileDraw how) {
+    how.planned = true;
+    fill_todo(plan, targets);
+    begin_counts(targets);
+    const auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
+    TilePasses frame(commands, plan, targets, p.chunk_slots, how);
+    commands.run([&] {
+        commands.to_device(targets.tile_todo);
+        sort_splats(commands, plan, targets, false);
+        commands.span("4_sort_tiles", [&] { passes::plan_chunks(commands); });
+        record_steps(plan, frame, {});
+    });
+    Chunks chunks = chunks_of(plan, targets, {0, p.sheet_count}, commands.profile());
+    return fit(chunks, p) ? std::optional(std::move(chunks)) : std::nullopt;
+}
 
 std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between) {

@@ -82,6 +82,7 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats) {
     provide_images(plan);
     if (resources_.footprint_table) fill_table(p.face_depth);
     p.tile_blocks = tile_blocks(p.tiles, profile);
+    p.chunk_pairs = static_cast<std::uint32_t>(chunk_pairs(p.tiles, profile));
     p.prepared_mask = passes::prepared_slots(std::uint64_t{p.splat_count} * plan.sheets_per_splat) - 1;
     for (const TargetBufferRow& row : target_buffer_rows()) {
         if (const std::uint64_t bytes = row.bytes(plan, profile); bytes > 0) grow(row, bytes);

@@ -27,6 +27,11 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
     go_through("4f_scatter_tiles.comp");
 }
 
+void plan_chunks(gpu::Commands& commands) {
+    commands.dispatch("4d_plan_chunks.comp", {}, 0, {1});
+    commands.barrier();
+}
+
 std::string sort_tiles_shaders(const gpu::DeviceProfile& profile) {
     return profile.side_by_side ? "4d_count_pairs.comp, 4e_sum_tiles.comp, 4e_place_lists.comp, 4f_scatter_pairs.comp"
                                 : "4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp";

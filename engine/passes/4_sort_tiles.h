@@ -13,6 +13,10 @@ namespace edgesplat::passes {
 void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shader::FrameParams& params,
                 std::uint32_t chunk, std::uint32_t steps);
 
+/// Reads `sheet_pairs` and `sheet_starts`, writes `chunk_slots` parts into `chunks`: those of plan_chunks() in the
+/// first ones; one of more than `chunk_pairs`, or of more splats than are prepared at once, is left empty.
+void plan_chunks(gpu::Commands& commands);
+
 /// The shaders that it runs.
 std::string sort_tiles_shaders(const gpu::DeviceProfile& profile);
 

@@ -13,6 +13,7 @@ struct TileDraw {
     bool count = false;    ///< FrameParams::drawn counts footprints
     bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
     bool part = false;     ///< some of the sheets: the picture is not finished with them
+    bool planned = false;  ///< by the device: the host does not know its chunks, but that they fit
     bool refined = false;  ///< only the pixels of `tile_pixels`, or every REFINE_STEP-th
     bool wide_marks =
         false;  ///< entries are marked for 4 x 2 pixels at once; of refined pixels, which lie apart, always

@@ -106,6 +106,8 @@ struct FrameParams {
     Address batches;        // (slot_count / SPLAT_BATCH) uvec2: first splat and how many; where bricks are culled
     uint slot_count;        // splats that may show: all, or SPLAT_BATCH for each batch
     float face_depth;       // no deeper under a face kernels are sampled, voxels
+    uint chunk_pairs;       // of a chunk that the device plans, at most; its splats are prepared, too
+    uint chunk_slots;       // chunks that it plans, at most
     Address footprints;     // (splat_count) uvec2: layer and rotation of each that is drawn (selected_footprint.glsl); with a table only
 };
 
@@ -117,7 +119,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1528);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1536);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

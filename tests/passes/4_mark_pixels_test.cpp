@@ -18,6 +18,13 @@ struct Marked {
     double most_missed = 0;   ///< of it where it is not marked
 };
 
+/// The last chunk is one that has splats.
+void draw(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size) {
+    FramePlan plan = state.drawer.plan(state.level, s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    plan.params.chunk_slots = 0;
+    state.drawer.draw(state.level, plan);
+}
+
 /// Of the last chunk that was drawn. `cell`: pixels that one mark is for.
 Marked count_marks(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size, const glm::uvec2& cell) {
     const auto records = device_records(state);
@@ -73,7 +80,7 @@ TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
             s.settings.saturation = 1;  // no tile closes
             s.settings = drawn_as(s.settings);
             DeviceUnderTest& state = prepared(s);
-            state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+            draw(state, s, size);
             const Marked marks = count_marks(state, s, size, {1, 1});
             touched += marks.touched;
             // What is warped in two dimensions leaves traces outside the kernel's own support.
@@ -99,7 +106,7 @@ TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
         const glm::ivec2 size(150, 121);
         s.settings.saturation = 1;
         DeviceUnderTest& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+        draw(state, s, size);
         ASSERT_TRUE(state.plan().refined);
         const Marked marks = count_marks(state, s, size, {4, 2});
         EXPECT_GT(marks.touched, 10000U);
@@ -119,7 +126,7 @@ TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
             const auto mapped = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
             return std::vector<glm::vec4>(mapped.begin(), mapped.end());
         };
-        state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+        draw(state, s, size);
         const auto want = pixels();
         ASSERT_FALSE(state.plan().wide_marks);
         FramePlan plan = state.plan();
@@ -144,7 +151,7 @@ TEST(MarkPixels, SplatsAroundTheEyeAreForAll) {
     s.settings.saturation = 1;
     const glm::ivec2 size(48, 33);
     DeviceUnderTest& state = prepared(s);
-    state.draw(s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
+    draw(state, s, size);
     const Marked marks = count_marks(state, s, size, {1, 1});
     EXPECT_GT(marks.touched, 10000U);
     EXPECT_EQ(marks.missed, 0U);

@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <numeric>
 
+#include "engine/passes/4_sort_tiles.h"
 #include "tests/passes/pass_fixture.h"
 
 namespace edgesplat::test {
@@ -291,6 +292,45 @@ TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
     EXPECT_TRUE(plan_chunks(std::vector<std::uint32_t>{0, 0}, std::vector<std::uint32_t>{0, 0, 0}, 10).parts.empty());
     EXPECT_EQ(plan_chunks(pairs, starts, 1000).parts, (std::vector<glm::uvec2>{{0, 12}}));
     EXPECT_EQ(plan_chunks(pairs, starts, 1000, 4).parts, (std::vector<glm::uvec2>{{0, 4}, {4, 6}, {6, 10}, {10, 12}}));
+}
+
+TEST(PlanChunks, TheDevicePlansAsTheHostDoes) {
+    PassScene s = pass_scenes()[1];
+    s.settings.sheet_spacing = 0.05;
+    DeviceUnderTest& state = prepared(s);
+    picture(state, s, s.settings, shader::PAYLOAD_COLOR);
+    auto& p = state.targets().frame.mapped<shader::FrameParams>(1)[0];
+    ASSERT_GT(p.sheet_count, 512U) << "more than a workgroup loads at once";
+    const std::uint32_t places = p.prepared_mask + 1;
+    for (const std::uint32_t limit : {1U, 100U, 3000U, 1U << 20U}) {
+        for (const std::uint32_t entries : {places, 64U}) {
+            for (const std::uint32_t slots : {1U, 3U, p.sheet_count}) {
+                p.chunk_pairs = limit;
+                p.chunk_slots = slots;
+                p.prepared_mask = entries - 1;
+                state.commands().run([&] {
+                    sort_splats(state.commands(), state.plan(), state.targets(), false);
+                    passes::plan_chunks(state.commands());
+                });
+                const auto pairs = sheet_pairs(state.plan(), state.targets());
+                const auto starts = sheet_starts(state.plan(), state.targets());
+                const Chunks chunks = plan_chunks(pairs, starts, limit, entries);
+                std::vector<glm::uvec2> want(slots);
+                for (std::size_t i = 0; i < std::min<std::size_t>(slots, chunks.parts.size()); ++i) {
+                    std::uint64_t sum = 0;
+                    for (std::size_t sheet = 0; sheet < pairs.size(); ++sheet)
+                        if (starts[sheet] >= chunks.parts[i].x && starts[sheet] < chunks.parts[i].y)
+                            sum += pairs[sheet];
+                    if (sum <= limit && chunks.parts[i].y - chunks.parts[i].x <= entries) want[i] = chunks.parts[i];
+                }
+                EXPECT_EQ(download<glm::uvec2>(state, state.targets().chunks, slots), want)
+                    << limit << " pairs, " << entries << " splats, " << slots << " chunks";
+                const auto kept = std::ranges::count_if(want, [](const glm::uvec2& part) { return part.y > 0; });
+                EXPECT_EQ(fit(chunks, p), static_cast<std::size_t>(kept) == chunks.parts.size());
+            }
+        }
+    }
+    p.prepared_mask = places - 1;
 }
 
 TEST(DrawTiles, ManyChunksMakeTheSamePicture) {

@@ -76,6 +76,34 @@ TEST_P(Repeat, AfterOthersOfOtherSizesItIsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Ways, Repeat, testing::ValuesIn(kWays),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
+TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
+    // Small chunks, so that there are some.
+    const auto opened = [](const Shot& shot) {
+        Renderer renderer({.device = test_renderer().device().name, .validation = true, .profile = "generic"});
+        renderer.set_volume(shot.volume);
+        return renderer;
+    };
+    Shot shot = torus_shot();
+    shot.settings.pixels = PixelChoice::Every;
+    Renderer renderer = opened(shot);
+    const RenderResult first = picture(renderer, shot), again = picture(renderer, shot);
+    EXPECT_TRUE(again.color.pixels == first.color.pixels);
+    EXPECT_EQ(again.stats.submissions, 1U);
+    // Many chunks, after a picture that had none.
+    Shot away = shot, many = shot;
+    away.camera.direction = -away.camera.direction;
+    many.width = many.height = 24;
+    Renderer fresh = opened(shot);
+    const RenderResult expected = picture(fresh, many);
+    picture(renderer, away);
+    const RenderResult unforeseen = picture(renderer, many);
+    EXPECT_TRUE(unforeseen.color.pixels == expected.color.pixels);
+    EXPECT_GT(unforeseen.stats.submissions, 1U);
+    const RenderResult foreseen = picture(renderer, many);
+    EXPECT_TRUE(foreseen.color.pixels == expected.color.pixels);
+    EXPECT_EQ(foreseen.stats.submissions, 1U);
+}
+
 TEST(RepeatOfRays, IsTheSame) {
     const Shot shot = torus_shot();
     Renderer renderer = renderer_of(shot);

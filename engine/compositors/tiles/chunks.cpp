@@ -76,6 +76,12 @@ Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const gl
     return chunks;
 }
 
+bool fit(const Chunks& chunks, const shader::FrameParams& params) {
+    const auto prepared = [&](const glm::uvec2& part) { return part.y - part.x <= params.prepared_mask + 1; };
+    return chunks.parts.size() <= params.chunk_slots && chunks.most_pairs <= params.chunk_pairs &&
+           std::ranges::all_of(chunks.parts, prepared);
+}
+
 bool worth_refining(const Chunks& chunks) {
     // Splats that are few pixels wide are as many for the eight pixels that are drawn together, wherever those lie.
     // Those of voxels as wide as the first step, 12.8 pixels across, touch 1.8 x 1.8 tiles.

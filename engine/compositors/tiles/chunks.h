@@ -37,6 +37,9 @@ std::span<const std::uint32_t> sheet_starts(const FramePlan& plan, const TargetR
 Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets,
                  const gpu::DeviceProfile& profile);
 
+/// Whether the chunks are those that the device plans (4d_plan_chunks.comp), with nothing left out.
+bool fit(const Chunks& chunks, const shader::FrameParams& params);
+
 /// Whether drawing some pixels first (FramePlan::refined) saves time: splats are some pixels wide.
 bool worth_refining(const Chunks& chunks);
 
