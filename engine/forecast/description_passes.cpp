@@ -82,7 +82,7 @@ class Passes {
     void add_setup(const FrameForecast& f) {
         const CollectionPlan& plan = f.collection;
         const glm::dvec3 dims(plan.dims);
-        const double voxels = dims.x * dims.y * dims.z, splats = static_cast<double>(f.splats.splats);
+        const double voxels = dims.x * dims.y * dims.z, splats = static_cast<double>(f.splats.extent.count);
         if (plan.buried) {
             std::vector<std::string> axes;
             for (std::uint32_t axis = 0; axis < 3; ++axis)
@@ -104,7 +104,7 @@ class Passes {
     }
 
     void add_reach(const FrameRequest& request, const FrameForecast& f) {
-        const double splats = static_cast<double>(f.splats.splats);
+        const double splats = static_cast<double>(f.splats.extent.count);
         const Clip& clip = request.scene.effects.clip;
         if (f.occluded) {
             add("setup", "2b_occlude_ambient", kRates.occlude_splat * splats,
@@ -132,13 +132,10 @@ class Passes {
     }
 
     std::vector<std::string> sort_sheets_shaders(const passes::DrawVariant& drawn) const {
-        if (passes::sorts_side_by_side(drawn, *profile_))
-            return {variant("4a_count_slots.comp", passes::count_constants(drawn)),
-                    "4b_sum_sheets.comp, 4b_place_sheets.comp",
-                    variant("4c_scatter_slots.comp", passes::scatter_constants(drawn))};
-        return {variant("4a_count_sheets.comp", passes::count_constants(drawn)),
-                variant("4b_scan_sheets.comp", passes::scan_constants(drawn)),
-                variant("4c_scatter_splats.comp", passes::scatter_constants(drawn))};
+        std::vector<std::string> shaders;
+        for (const passes::SortStep& step : passes::sort_sheets_steps(drawn, *profile_))
+            shaders.push_back(variant(step.shader, step.constants));
+        return shaders;
     }
 
     void add_draw(const FrameRequest& request, const ForecastDraw& draw) {
@@ -157,7 +154,8 @@ class Passes {
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
             sort_sheets_shaders(plan.variant));
         if (plan.variant.tiles) {
-            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries, {passes::sort_tiles_shaders(*profile_)});
+            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
+                {fmt::format("{}", fmt::join(passes::sort_tiles_shaders(*profile_), ", "))});
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "4_mark_pixels", kRates.draw_entry * entries,

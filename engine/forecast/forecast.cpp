@@ -52,7 +52,7 @@ bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& cli
 }  // namespace
 
 SplatCount most_splats(const VolumeGeometry& geometry) {
-    return {SplatCount::From::Voxels, geometry.voxel_count(), glm::ivec3(0), geometry.dims - 1};
+    return {SplatCount::From::Voxels, {geometry.voxel_count(), glm::ivec3(0), geometry.dims - 1}};
 }
 
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
@@ -78,7 +78,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
         for (std::uint64_t i = 0; i < voxels; ++i)
             visible[i] &= buried[i] == 0 ? 1U : 0U;
     }
-    SplatCount out{SplatCount::From::Materials};
+    SplatExtent out;
     VoxelBox box;
     BrickRuns(dims).each_brick([&](const VoxelBox& brick, std::uint64_t, std::uint64_t) {
         for (int z = brick.low.z; z <= brick.high.z; ++z) {
@@ -89,13 +89,13 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
                 count +=
                     static_cast<std::uint64_t>(std::count(at + brick.low.x, at + brick.high.x + 1, std::uint8_t{1}));
             }
-            out.splats += count;
+            out.count += count;
             if (count > 0) box.add(brick.slice(z));
         }
     });
-    out.box_low = box.empty() ? glm::ivec3(0) : box.low;
-    out.box_high = box.empty() ? dims - 1 : box.high;
-    return out;
+    out.low = box.empty() ? glm::ivec3(0) : box.low;
+    out.high = box.empty() ? dims - 1 : box.high;
+    return {SplatCount::From::Materials, out};
 }
 
 Settings drawn_settings(const FrameRequest& request) {
@@ -120,15 +120,15 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         out.draws.push_back(
             {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
-                                               request.size, payload, splats.extent(), reach, profile.refines)});
+                                               request.size, payload, splats.extent, reach, profile.refines)});
     }
     if (!shadow_lights(request.scene).empty()) {
         const ShadowPlan shadows = plan_shadows(request.scene, out.settings);
         for (const Light& light : shadows.lights)
-            for (const Camera& view : light_views(light, request.volume->geometry, splats.box_low, splats.box_high,
-                                                  reach, shadows.quality.resolution))
+            for (const Camera& view : light_views(light, request.volume->geometry, splats.extent.low,
+                                                  splats.extent.high, reach, shadows.quality.resolution))
                 out.light_frames.push_back(
-                    plan_light_frame(*request.volume, request.scene, shadows, view, splats.extent(), reach));
+                    plan_light_frame(*request.volume, request.scene, shadows, view, splats.extent, reach));
     }
     out.occluded = occludes_ambient(request.scene);
     out.resources = planned_resources(out);

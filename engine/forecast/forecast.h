@@ -15,9 +15,7 @@ namespace edgesplat {
 struct SplatCount {
     enum class From { Voxels, Materials, Frame };
     From from = From::Voxels;  ///< every voxel; those that can be seen, found on the host; as collected
-    std::uint64_t splats = 0;
-    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive, whole rows (SplatLists)
-    SplatExtent extent() const { return {splats, box_low, box_high}; }
+    SplatExtent extent;
 };
 
 /// As if every voxel were a splat.

@@ -47,13 +47,13 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
             out.push_back(buffer(row.text, bytes, gpu::Buffer::Place::Host));
     for (const SplatListRow& row : splat_list_rows())
         if (const std::uint64_t bytes = row.bytes(plan); bytes > 0)
-            out.push_back(buffer(row.text, f.splats.splats * bytes));
+            out.push_back(buffer(row.text, f.splats.extent.count * bytes));
 }
 
 /// What of the light reaches each splat, and what that is found with.
 void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const auto add_list = [&](gpu::Buffer SplatLists::*list) {
-        out.push_back(buffer(row_of(list).text, f.splats.splats * kLightBytes));
+        out.push_back(buffer(row_of(list).text, f.splats.extent.count * kLightBytes));
     };
     if (f.occluded) {
         add_list(&SplatLists::occlusion);

@@ -4,7 +4,7 @@
 #include <functional>
 #include <optional>
 
-#include "engine/compositors/tiles/chunks.h"
+#include "engine/compositors/tiles/lists.h"
 #include "engine/distribute/parts.h"
 
 namespace edgesplat {

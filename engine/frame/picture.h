@@ -42,6 +42,9 @@ class PictureDrawer {
 
     FramePlan plan(const LevelStore& level, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
+    /// Passes 2c and 2d for the level's splats, of a scene with lights that cast shadows, if what was found differs;
+    /// the targets are dropped then. Whether they ran.
+    bool cast_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     /// Draws what the plan says and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the
     /// splat where something is no finite number: in the list, in the picture.
     void draw(const LevelStore& level, FramePlan plan);

@@ -1,7 +1,6 @@
 // When the passes of a tiled frame run: all at once, or in rounds between which the host looks at the lists.
 #include <algorithm>
 
-#include "engine/compositors/tiles/lists.h"
 #include "engine/frame/frame.h"
 #include "engine/passes/4_sort_tiles.h"
 

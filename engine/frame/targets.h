@@ -1,7 +1,7 @@
 // What a picture is drawn into: images and buffers of its size, of its sheets and of its splats.
 #pragma once
 
-#include "engine/compositors/tiles/chunks.h"
+#include "engine/compositors/tiles/lists.h"
 #include "engine/plan/device_session.h"
 #include "engine/plan/resource_table.h"
 

@@ -19,6 +19,7 @@ constexpr std::array kProfiles{
                   .front_first = true,
                   .side_by_side = false,
                   .tile_blocks = 64,
+                  .loops = true,
                   .late_timestamps = true},
     DeviceProfile{.name = "generic", .list_group = 32, .texels = false},
     DeviceProfile{.name = "discrete",

@@ -40,6 +40,8 @@ struct DeviceProfile {
     /// What both host and device use lies in the device's own memory, and is copied: each read of the host's would be
     /// waited for.
     bool own_memory = false;
+    /// What few invocations need is entered by a loop, not by an if, whose sides a driver may run for all of them.
+    bool loops = false;
     /// Buffers are loaded as texels, not through their addresses, where the device has texels enough.
     bool texels = true;
     /// Timestamps are written when the device next rasterises, which may be after what was recorded later: barriers

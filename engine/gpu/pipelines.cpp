@@ -97,14 +97,18 @@ void Pipelines::count_creation(std::chrono::steady_clock::time_point start) {
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
+Specialization Pipelines::with_drivers(Specialization constants) const {
+    if (!device_->loads_texels()) constants.emplace_back(shader::SPEC_TEXELS, 0U);
+    if (!device_->profile().loops) constants.emplace_back(shader::SPEC_LOOPS, 0U);
+    return constants;
+}
+
 vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
     const std::string key = key_of(shader, constants);
     if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
     const auto start = std::chrono::steady_clock::now();
     const auto module = load(shader);
-    Specialization all = constants;
-    if (!device_->loads_texels()) all.emplace_back(shader::SPEC_TEXELS, 0U);
-    const SpecializationData data(all);
+    const SpecializationData data(with_drivers(constants));
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
     vk::raii::Pipeline made(device_->handle(), cache_.handle(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
     count_creation(start);
@@ -119,7 +123,7 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
 
     const auto start = std::chrono::steady_clock::now();
     const auto vertex = load(state.vertex), fragment = load(state.fragment);
-    const SpecializationData data(state.constants);
+    const SpecializationData data(with_drivers(state.constants));
     const std::array stages{
         vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eVertex, *vertex, "main", &data.info),
         vk::PipelineShaderStageCreateInfo({}, vk::ShaderStageFlagBits::eFragment, *fragment, "main", &data.info)};

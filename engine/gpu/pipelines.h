@@ -57,6 +57,8 @@ class Pipelines {
 
   private:
     vk::raii::ShaderModule load(const char* shader) const;
+    /// And what the device's profile chooses.
+    Specialization with_drivers(Specialization constants) const;
     const Device* device_;
     PipelineCache cache_;
     vk::raii::DescriptorSetLayout set_layout_ = nullptr;

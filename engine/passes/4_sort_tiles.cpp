@@ -1,6 +1,16 @@
 #include "engine/passes/4_sort_tiles.h"
 
+#include <array>
+
 namespace edgesplat::passes {
+namespace {
+
+// In the order in which they run; the first where the device plans the chunks.
+constexpr std::array kSideBySide{"4d_plan_chunks.comp", "4d_count_pairs.comp", "4e_sum_tiles.comp",
+                                 "4e_place_lists.comp", "4f_scatter_pairs.comp"};
+constexpr std::array kInColumns{"4d_count_tiles.comp", "4e_scan_tiles.comp", "4f_scatter_tiles.comp"};
+
+}  // namespace
 
 void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shader::FrameParams& params,
                 std::uint32_t chunk, std::uint32_t steps) {
@@ -12,29 +22,29 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
     };
     if (commands.profile().side_by_side) {
         const auto tiles = static_cast<std::uint64_t>(params.tiles.x) * static_cast<std::uint64_t>(params.tiles.y);
-        dispatch("4d_count_pairs.comp", {params.tile_blocks});
-        dispatch("4e_sum_tiles.comp", gpu::groups_for(tiles, 1));
-        dispatch("4e_place_lists.comp", {1});
-        dispatch("4f_scatter_pairs.comp", {params.tile_blocks});
+        dispatch(kSideBySide[1], {params.tile_blocks});
+        dispatch(kSideBySide[2], gpu::groups_for(tiles, 1));
+        dispatch(kSideBySide[3], {1});
+        dispatch(kSideBySide[4], {params.tile_blocks});
         return;
     }
     const auto go_through = [&](const char* shader) {
         for (std::uint32_t step = 0; step < steps; ++step)
             dispatch(shader, gpu::groups_for(params.tile_blocks, 16));
     };
-    go_through("4d_count_tiles.comp");
-    dispatch("4e_scan_tiles.comp", {1});
-    go_through("4f_scatter_tiles.comp");
+    go_through(kInColumns[0]);
+    dispatch(kInColumns[1], {1});
+    go_through(kInColumns[2]);
 }
 
 void plan_chunks(gpu::Commands& commands) {
-    commands.dispatch("4d_plan_chunks.comp", {}, 0, {1});
+    commands.dispatch(kSideBySide[0], {}, 0, {1});
     commands.barrier();
 }
 
-std::string sort_tiles_shaders(const gpu::DeviceProfile& profile) {
-    return profile.side_by_side ? "4d_count_pairs.comp, 4e_sum_tiles.comp, 4e_place_lists.comp, 4f_scatter_pairs.comp"
-                                : "4d_count_tiles.comp, 4e_scan_tiles.comp, 4f_scatter_tiles.comp";
+std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile) {
+    if (profile.side_by_side) return kSideBySide;
+    return kInColumns;
 }
 
 }  // namespace edgesplat::passes

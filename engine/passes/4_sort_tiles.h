@@ -2,6 +2,8 @@
 // counting sort.
 #pragma once
 
+#include <span>
+
 #include "engine/gpu/buffer.h"
 #include "engine/gpu/commands.h"
 
@@ -18,6 +20,6 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
 void plan_chunks(gpu::Commands& commands);
 
 /// The shaders that it runs.
-std::string sort_tiles_shaders(const gpu::DeviceProfile& profile);
+std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile);
 
 }  // namespace edgesplat::passes

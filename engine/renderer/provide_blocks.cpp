@@ -27,7 +27,7 @@ std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameReq
     wanted.buried = drawn.cull_buried;
     wanted.blocks = true;
     const auto fits = [&](std::uint64_t splats) {
-        const SplatCount count{SplatCount::From::Voxels, splats, glm::ivec3(0), request.volume->geometry.dims - 1};
+        const SplatCount count{SplatCount::From::Voxels, {splats, glm::ivec3(0), request.volume->geometry.dims - 1}};
         return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
                            orders_->memory_budget)
             .fits();
@@ -56,7 +56,7 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
     CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
     wanted.blocks = true;
     const Gathered gathered = collect_blocks(request, wanted, *most, patience);
-    if (gathered == Gathered::All) cast_shadows(*session_, shown_, drawer_->targets(), request.scene, settings, cost_);
+    if (gathered == Gathered::All) provide_shadows(request);
     if (!cost_.times.empty()) milliseconds += milliseconds_since(start);
     return gathered;
 }

@@ -65,8 +65,7 @@ bool SplatProvider::provide_volume(bool coefficients) {
 
 std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& wanted) const {
     if (shown_.volume.changed() || shown_.splats.collected() != wanted) return std::nullopt;
-    const SplatExtent extent = shown_.splats.lists().extent();
-    return SplatCount{SplatCount::From::Frame, extent.count, extent.low, extent.high};
+    return SplatCount{SplatCount::From::Frame, shown_.splats.lists().extent()};
 }
 
 std::optional<MemoryNeed> SplatProvider::beyond_memory(const FrameRequest& request) {
@@ -127,8 +126,7 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
         if (shown_.volume.in_blocks())
             gathered = collect_in_blocks(request, patience, stats.setup_milliseconds);
         else
-            stats.setup_milliseconds +=
-                set_up(*session_, shown_, drawer_->targets(), request.scene, settings, keeps_buried(request), cost_);
+            stats.setup_milliseconds += provide_whole(request);
         if (!too_many_somewhere(gathered)) return gathered;
         const auto need = request.volume->values.empty() ? std::nullopt : beyond_memory(request);
         if (need) refuse_memory(session_->device(), request, *need, orders_->memory_budget);
@@ -137,6 +135,20 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
                  count);
         }
     }
+}
+
+double SplatProvider::provide_whole(const FrameRequest& request) {
+    const auto start = Clock::now();
+    const bool found = shown_.provide(request.scene, drawn_settings(request), keeps_buried(request), cost_);
+    const bool shadowed = provide_shadows(request);
+    return found || shadowed ? milliseconds_since(start) : 0;
+}
+
+bool SplatProvider::provide_shadows(const FrameRequest& request) {
+    if (!shadow_lights(request.scene).empty())
+        return drawer_->cast_shadows(shown_, request.scene, drawn_settings(request), cost_);
+    shown_.splats.drop_shadows();
+    return false;
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {

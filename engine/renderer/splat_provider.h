@@ -4,7 +4,6 @@
 
 #include "engine/forecast/memory.h"
 #include "engine/frame/picture.h"
-#include "engine/frame/setup.h"
 #include "engine/raycast/raycast.h"
 #include "engine/renderer.h"
 #include "engine/store/blocks.h"
@@ -53,6 +52,10 @@ class SplatProvider {
     /// The most splats that fit if the volume is held block by block; nothing if not even none do.
     std::optional<std::uint64_t> most_splats_in_blocks(const FrameRequest& request) const;
 
+    /// Passes 1 to 2d, of the volume as a whole. Milliseconds, 0 where none ran.
+    double provide_whole(const FrameRequest& request);
+    /// Passes 2c and 2d where the scene calls for them. Whether they ran.
+    bool provide_shadows(const FrameRequest& request);
     /// Passes 1 to 2d block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
     /// Passes 1 and 2 for the blocks that a picture shows, a block at least, and no more once `patience` milliseconds

@@ -280,4 +280,12 @@ std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& pl
     return out;
 }
 
+bool LevelStore::provide(const Scene& scene, const Settings& settings, bool keep_buried, SetupCost& cost) {
+    const bool uploaded = volume.provide();
+    const bool collected =
+        splats.collect(volume, plan_collection(*volume.volume(), scene, settings, keep_buried), cost);
+    const bool occluded = splats.occlude(volume, scene, cost);
+    return uploaded || collected || occluded;
+}
+
 }  // namespace edgesplat

@@ -122,6 +122,11 @@ class SplatStore {
 /// One resolution of a volume, and the splats collected from it.
 struct LevelStore {
     explicit LevelStore(DeviceSession& session) : volume(session), splats(session) {}
+
+    /// Of a volume that is held as a whole: passes 1 to 2b, as far as the scene calls for them and what is there
+    /// differs. Whether any ran.
+    bool provide(const Scene& scene, const Settings& settings, bool keep_buried, SetupCost& cost);
+
     VolumeStore volume;
     SplatStore splats;
 };

@@ -104,7 +104,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; t
     X(SPEC_RAY_FILTER, 37u)   /* RaycastFilter */ \
     X(SPEC_CREASES, 38u)      /* 1: planes beside faces cut kernels, too */ \
     X(SPEC_OUTLINES, 39u)     /* 1: pixels that outlines pass show both sides */ \
-    X(SPEC_TEXELS, 40u)       /* 1: buffers of texels are loaded as such, 0: through their addresses */
+    X(SPEC_TEXELS, 40u)       /* 1: buffers of texels are loaded as such, 0: through their addresses */ \
+    X(SPEC_LOOPS, 41u)        /* 1: IF_ANY is a loop, 0: an if (drivers/if_any.glsl) */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

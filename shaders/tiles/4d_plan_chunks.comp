@@ -1,4 +1,4 @@
-// Which sheets are drawn at once: the device's own plan_chunks() (engine/compositors/tiles/chunks.h), so that the host need not
+// Which sheets are drawn at once: the device's own plan_chunks() (engine/compositors/tiles/lists.h), so that the host need not
 // be waited for. One workgroup: it loads the sheets side by side, one invocation goes through them. A chunk that would take more
 // room than there is stays empty; the host sees it afterwards.
 #version 460

@@ -217,9 +217,9 @@ TEST(OccludeAmbient, NothingIsThereWithoutIt) {
     state.collect(s.scene, s.settings, false);
     EXPECT_EQ(state.lists().occlusion.bytes(), 4 * state.lists().splat_count);
     s.scene.effects.occlusion->strength = 0.25;
-    EXPECT_EQ(state.collect(s.scene, s.settings, false), 0) << "only colour depends on the strength";
+    EXPECT_FALSE(state.collect(s.scene, s.settings, false)) << "only colour depends on the strength";
     s.scene.effects.occlusion->radius = 3;
-    EXPECT_GT(state.collect(s.scene, s.settings, false), 0);
+    EXPECT_TRUE(state.collect(s.scene, s.settings, false));
     s.scene.lights.clear();
     state.collect(s.scene, s.settings, false);
     EXPECT_FALSE(state.lists().occlusion) << "colours are shown as they are";

@@ -232,9 +232,9 @@ TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
     s.scene.lights[1].color = {1, 0.5, 0.25};
     s.scene.lights[2].intensity = 0.3;
     s.scene.lights.erase(s.scene.lights.begin());
-    EXPECT_EQ(state.collect(s.scene, s.settings, false), 0);
+    EXPECT_FALSE(state.collect(s.scene, s.settings, false));
     s.scene.lights[0].direction.x = 0.5;
-    EXPECT_GT(state.collect(s.scene, s.settings, false), 0);
+    EXPECT_TRUE(state.collect(s.scene, s.settings, false));
 }
 
 TEST_F(SweepLight, NothingIsThereWithoutIt) {

@@ -9,7 +9,6 @@
 #include <string_view>
 
 #include "engine/frame/picture.h"
-#include "engine/frame/setup.h"
 
 namespace edgesplat::test {
 
@@ -17,10 +16,13 @@ namespace edgesplat::test {
 struct DeviceUnderTest {
     explicit DeviceUnderTest(const DeviceChoice& choice) : session(choice) {}
 
-    /// Passes 1 to 2d, as far as they are to run. Milliseconds.
-    double collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
+    /// Passes 1 to 2d, as far as they are to run. Whether any did.
+    bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
-        return set_up(session, level, drawer.targets(), scene, settings, keep_buried, cost);
+        const bool found = level.provide(scene, settings, keep_buried, cost);
+        if (shadow_lights(scene).empty()) level.splats.drop_shadows();
+        const bool shadowed = !shadow_lights(scene).empty() && drawer.cast_shadows(level, scene, settings, cost);
+        return found || shadowed;
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {
