@@ -154,8 +154,8 @@ void App::finish_loading() {
     try {
         const glm::ivec2 size = state_.picture_size();
         viewer::Opened opened = loading->take();
-        // The cube's front has no hole.
-        if (options_.source.empty() && opened.path == kBuiltin) opened.document.camera.view = "oblique";
+        // Its hole is seen from the top.
+        if (options_.source.empty() && opened.path == kBuiltin) opened.document.camera.view = "top";
         state_.session.open(std::move(opened), glm::max(size, glm::ivec2(64)));
         state_.session.motion().set_collisions(state_.preferences.collisions);
         state_.shown.reset();

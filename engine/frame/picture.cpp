@@ -52,9 +52,11 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
     if (orders_->exchange) return draw_part(how);
     times_.clear();
     if (draw_front_first(level, how)) return;
-    // As many chunks as the last picture had: each that turns out empty takes as long as waiting would.
+    // As many chunks as the last picture had: each that turns out empty takes as long as waiting would. None where the
+    // device could not plan them.
     const auto foresee = [&](const Chunks& chunks) {
-        foreseen_ = std::max(static_cast<std::uint32_t>(chunks.parts.size()), 1U);
+        const auto count = std::max(static_cast<std::uint32_t>(chunks.parts.size()), 1U);
+        foreseen_ = fit(chunks, plan_.params, count) ? count : 0;
     };
     const bool chunks_foreseen = plan_.params.chunk_slots > 0 && !how.profile->rounds && !plan_.refined;
     if (chunks_foreseen) {

@@ -135,7 +135,7 @@ std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& pla
         record_steps(plan, frame, {});
     });
     Chunks chunks = chunks_of(plan, targets, {0, p.sheet_count}, commands.profile());
-    return fit(chunks, p) ? std::optional(std::move(chunks)) : std::nullopt;
+    return fit(chunks, p, p.chunk_slots) ? std::optional(std::move(chunks)) : std::nullopt;
 }
 
 std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,

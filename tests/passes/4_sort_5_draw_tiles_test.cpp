@@ -326,7 +326,7 @@ TEST(PlanChunks, TheDevicePlansAsTheHostDoes) {
                 EXPECT_EQ(download<glm::uvec2>(state, state.targets().chunks, slots), want)
                     << limit << " pairs, " << entries << " splats, " << slots << " chunks";
                 const auto kept = std::ranges::count_if(want, [](const glm::uvec2& part) { return part.y > 0; });
-                EXPECT_EQ(fit(chunks, p), static_cast<std::size_t>(kept) == chunks.parts.size());
+                EXPECT_EQ(fit(chunks, p, slots), static_cast<std::size_t>(kept) == chunks.parts.size());
             }
         }
     }

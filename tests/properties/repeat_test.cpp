@@ -102,6 +102,13 @@ TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
     const RenderResult foreseen = picture(renderer, many);
     EXPECT_TRUE(foreseen.color.pixels == expected.color.pixels);
     EXPECT_EQ(foreseen.stats.submissions, 1U);
+    // A sheet that is more than a chunk may be: nothing is tried in vain.
+    Shot thick = many;
+    thick.settings.sheet_spacing = 16;
+    picture(renderer, thick);
+    const RenderResult settled = picture(renderer, thick), later = picture(renderer, thick);
+    EXPECT_TRUE(later.color.pixels == settled.color.pixels);
+    EXPECT_EQ(later.stats.submissions, 2U);
 }
 
 TEST(RepeatOfRays, IsTheSame) {

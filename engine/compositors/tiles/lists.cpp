@@ -79,9 +79,9 @@ Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const gl
     return chunks;
 }
 
-bool fit(const Chunks& chunks, const shader::FrameParams& params) {
+bool fit(const Chunks& chunks, const shader::FrameParams& params, std::size_t slots) {
     const auto prepared = [&](const glm::uvec2& part) { return part.y - part.x <= params.prepared_mask + 1; };
-    return chunks.parts.size() <= params.chunk_slots && chunks.most_pairs <= params.chunk_pairs &&
+    return chunks.parts.size() <= slots && chunks.most_pairs <= params.chunk_pairs &&
            std::ranges::all_of(chunks.parts, prepared);
 }
 

@@ -39,8 +39,8 @@ std::span<const std::uint32_t> sheet_starts(const FramePlan& plan, const TargetR
 Chunks chunks_of(const FramePlan& plan, const TargetResources& targets, const glm::uvec2& sheets,
                  const gpu::DeviceProfile& profile);
 
-/// Whether the chunks are those that the device plans (4d_plan_chunks.comp), with nothing left out.
-bool fit(const Chunks& chunks, const shader::FrameParams& params);
+/// Whether the device plans these chunks (4d_plan_chunks.comp), as far as there are `slots`, with nothing left out.
+bool fit(const Chunks& chunks, const shader::FrameParams& params, std::size_t slots);
 
 /// Whether drawing some pixels first (FramePlan::refined) saves time: splats are some pixels wide.
 bool worth_refining(const Chunks& chunks);
