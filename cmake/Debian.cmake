@@ -2,17 +2,21 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edgesplat)
 set(CPACK_PACKAGE_VENDOR "Edgesplat developers")
-# Whoever packs maintains the package: DEBFULLNAME and DEBEMAIL, as Debian's own tools read them, else git's user.
-foreach(pair "DEBFULLNAME user.name packer" "DEBEMAIL user.email packer_mail")
-    string(REPLACE " " ";" pair ${pair})
-    list(GET pair 0 variable)
-    list(GET pair 1 key)
-    list(GET pair 2 result)
+# Whoever packs maintains the package: DEBFULLNAME and DEBEMAIL, as Debian's own tools read them, else git's user, else who made
+# the last commit.
+foreach(row "DEBFULLNAME user.name %an packer" "DEBEMAIL user.email %ae packer_mail")
+    string(REPLACE " " ";" row ${row})
+    list(GET row 0 variable)
+    list(GET row 1 key)
+    list(GET row 2 author)
+    list(GET row 3 result)
     set(${result} $ENV{${variable}})
-    if(NOT ${result})
-        execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} config ${key} OUTPUT_VARIABLE ${result}
-            OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
-    endif()
+    foreach(arguments "config;${key}" "log;-1;--format=${author}")
+        if(NOT ${result})
+            execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} ${arguments} OUTPUT_VARIABLE ${result}
+                OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET)
+        endif()
+    endforeach()
 endforeach()
 set(CPACK_PACKAGE_CONTACT "${packer} <${packer_mail}>")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -51,7 +55,7 @@ edgesplat_deb(edgesplat-fly edgesplat-fly "fly through volumes with sharp edges"
     "edgesplat (= ${PROJECT_VERSION})")
 edgesplat_deb(dev libedgesplat-dev "volume renderer by splatting, for programs"
     "Static libraries, headers and the CMake package edgesplat::engine."
-    "edgesplat (= ${PROJECT_VERSION}), cmake, libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libinsighttoolkit5-dev, libgdcm-tools, libhdf5-dev, libbz2-dev, libarchive-dev, zlib1g-dev, libtomlplusplus-dev, pkg-config")
+    "edgesplat (= ${PROJECT_VERSION}), cmake, libvulkan-dev, libglm-dev, libfmt-dev, libpng-dev, libinsighttoolkit5-dev, libgdcm-tools, libhdf5-dev, libbz2-dev, libarchive-dev, zlib1g-dev, libtomlplusplus-dev, pkgconf")
 edgesplat_deb(python-debian python3-edgesplat "volume renderer by splatting, for Python"
     "The module edgesplat: arrays, files and scenes in, pictures as arrays out."
     "python3, python3-numpy, edgesplat (= ${PROJECT_VERSION})")
