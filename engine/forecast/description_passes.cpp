@@ -155,7 +155,7 @@ class Passes {
             sort_sheets_shaders(plan.variant));
         if (plan.variant.tiles) {
             add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
-                {fmt::format("{}", fmt::join(passes::sort_tiles_shaders(*profile_), ", "))});
+                {fmt::format("{}", fmt::join(passes::sort_tiles_shaders(*profile_, plan.refined), ", "))});
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "4_mark_pixels", kRates.draw_entry * entries,

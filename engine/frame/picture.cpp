@@ -32,6 +32,12 @@ FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const
     return out;
 }
 
+bool PictureDrawer::provide_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost) {
+    if (!shadow_lights(scene).empty()) return cast_shadows(level, scene, settings, cost);
+    level.splats.drop_shadows();
+    return false;
+}
+
 void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
     plan_ = std::move(plan);
     level.splats.bind(level.volume);

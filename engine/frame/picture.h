@@ -42,9 +42,9 @@ class PictureDrawer {
 
     FramePlan plan(const LevelStore& level, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
-    /// Passes 2c and 2d for the level's splats, of a scene with lights that cast shadows, if what was found differs;
-    /// the targets are dropped then. Whether they ran.
-    bool cast_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
+    /// Passes 2c and 2d for the level's splats, if lights of the scene cast shadows and what was found differs; the
+    /// targets are dropped then. Whether they ran.
+    bool provide_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     /// Draws what the plan says and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the
     /// splat where something is no finite number: in the list, in the picture.
     void draw(const LevelStore& level, FramePlan plan);
@@ -64,6 +64,8 @@ class PictureDrawer {
     Targets& targets() { return targets_; }
 
   private:
+    /// provide_shadows() of a scene with such lights.
+    bool cast_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     void draw_planned(const LevelStore& level);
     /// What follows the sort of a tiled picture.
     void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);

@@ -126,7 +126,7 @@ std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& pla
     how.planned = true;
     fill_todo(plan, targets);
     begin_counts(targets);
-    const auto& p = targets.frame.mapped<shader::FrameParams>(1)[0];
+    const auto& p = plan.params;
     TilePasses frame(commands, plan, targets, p.chunk_slots, how);
     commands.run([&] {
         commands.to_device(targets.tile_todo);

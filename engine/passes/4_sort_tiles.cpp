@@ -42,9 +42,9 @@ void plan_chunks(gpu::Commands& commands) {
     commands.barrier();
 }
 
-std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile) {
-    if (profile.side_by_side) return kSideBySide;
-    return kInColumns;
+std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile, bool refined) {
+    if (!profile.side_by_side) return kInColumns;
+    return std::span<const char* const>(kSideBySide).subspan(refined ? 1 : 0);
 }
 
 }  // namespace edgesplat::passes

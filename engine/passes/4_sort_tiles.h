@@ -19,7 +19,7 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
 /// first ones; one of more than `chunk_pairs`, or of more splats than are prepared at once, is left empty.
 void plan_chunks(gpu::Commands& commands);
 
-/// The shaders that it runs.
-std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile);
+/// The shaders of both; of a picture that is refined its chunks are planned by the host.
+std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile, bool refined);
 
 }  // namespace edgesplat::passes

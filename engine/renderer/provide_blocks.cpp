@@ -56,7 +56,7 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
     CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
     wanted.blocks = true;
     const Gathered gathered = collect_blocks(request, wanted, *most, patience);
-    if (gathered == Gathered::All) provide_shadows(request);
+    if (gathered == Gathered::All) drawer_->provide_shadows(shown_, request.scene, settings, cost_);
     if (!cost_.times.empty()) milliseconds += milliseconds_since(start);
     return gathered;
 }

@@ -139,16 +139,10 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
 
 double SplatProvider::provide_whole(const FrameRequest& request) {
     const auto start = Clock::now();
-    const bool found = shown_.provide(request.scene, drawn_settings(request), keeps_buried(request), cost_);
-    const bool shadowed = provide_shadows(request);
+    const Settings settings = drawn_settings(request);
+    const bool found = shown_.provide(request.scene, settings, keeps_buried(request), cost_);
+    const bool shadowed = drawer_->provide_shadows(shown_, request.scene, settings, cost_);
     return found || shadowed ? milliseconds_since(start) : 0;
-}
-
-bool SplatProvider::provide_shadows(const FrameRequest& request) {
-    if (!shadow_lights(request.scene).empty())
-        return drawer_->cast_shadows(shown_, request.scene, drawn_settings(request), cost_);
-    shown_.splats.drop_shadows();
-    return false;
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {

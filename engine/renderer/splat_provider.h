@@ -54,8 +54,6 @@ class SplatProvider {
 
     /// Passes 1 to 2d, of the volume as a whole. Milliseconds, 0 where none ran.
     double provide_whole(const FrameRequest& request);
-    /// Passes 2c and 2d where the scene calls for them. Whether they ran.
-    bool provide_shadows(const FrameRequest& request);
     /// Passes 1 to 2d block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
     /// Passes 1 and 2 for the blocks that a picture shows, a block at least, and no more once `patience` milliseconds

@@ -20,8 +20,7 @@ struct DeviceUnderTest {
     bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
         const bool found = level.provide(scene, settings, keep_buried, cost);
-        if (shadow_lights(scene).empty()) level.splats.drop_shadows();
-        const bool shadowed = !shadow_lights(scene).empty() && drawer.cast_shadows(level, scene, settings, cost);
+        const bool shadowed = drawer.provide_shadows(level, scene, settings, cost);
         return found || shadowed;
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
