@@ -163,6 +163,14 @@ class Passes {
                     "4h_mark_pixels.comp",
                     passes::mark_pixels_constants(
                         plan.variant, {.profile = profile_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
+            if (plan.variant.traced) {
+                add(name, "5_trace_faces", kRates.draw_entry * entries,
+                    {variant("5_trace_faces.comp",
+                             passes::trace_constants(
+                                 plan.variant,
+                                 {.profile = profile_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
+                out_.back().depends = true;
+            }
             add(name, "5_draw_tiles", drawing,
                 {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.profile = profile_,
                                                                                     .refined = plan.refined,

@@ -115,6 +115,8 @@ void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t til
                                  .tile_groups = tile_groups(how_, step),
                                  .first_pixels = how_.refined && step == shader::REFINE_STEP};
     commands_.span("4_mark_pixels", [&] { passes::mark_pixels(commands_, plan_.variant, of_chunk, tiles, round); });
+    if (plan_.variant.traced)
+        commands_.span("5_trace_faces", [&] { passes::trace_faces(commands_, plan_.variant, of_chunk, tiles, part); });
     commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
 }
 

@@ -47,6 +47,7 @@ void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
 }
 
 void PictureDrawer::draw_planned(const LevelStore& level) {
+    level.splats.bind(level.volume);
     targets_.provide(plan_, level.splats.lists());
     gpu::Commands& commands = session_->commands();
     if (!plan_.variant.tiles) {
@@ -142,6 +143,7 @@ OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest&
     // A little more than a pixel needs to be closed, for what the box of the splats does to rounding.
     plan_.params.saturation += 0.2F * (1 - plan_.params.saturation);
     plan_.refined = plan_.may_refine = false;
+    level.splats.bind(level.volume);
     targets_.provide(plan_, level.splats.lists());
     const TargetResources& targets = targets_.resources();
     const Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, sheet)});

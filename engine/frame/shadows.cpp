@@ -17,6 +17,7 @@ bool PictureDrawer::cast_shadows(LevelStore& level, const Scene& scene, const Se
     if (splats.shadowed() == wanted) return false;
     targets_.drop();
     splats.begin_shadows();
+    splats.bind(level.volume);
     const Volume& volume = *level.volume.volume();
     const SplatExtent extent = splats.lists().extent();
     const double reach = kernel_reach(settings);

@@ -119,6 +119,8 @@ void Targets::provide_chunks(FramePlan& plan, const Chunks& chunks) {
     };
     grow_to(&TargetResources::tile_entries, padded_pairs(chunks.most_pairs, p.tiles) * 2 * kWord);
     grow_to(&TargetResources::tile_marks, tile_mark_words(plan, chunks.most_pairs) * kWord);
+    if (plan.variant.traced)
+        grow_to(&TargetResources::traced_entries, traced_words(plan, padded_pairs(chunks.most_pairs, p.tiles)) * kWord);
     const auto blocks = static_cast<std::uint32_t>(chunks.most_pairs / shader::BLOCK_PAIRS + 1);
     if (!session_->profile().side_by_side && blocks > p.tile_blocks) {
         if (blocks * tile_count(plan) > kMostTileCounters) {

@@ -30,6 +30,7 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
             {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
             {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
+            {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
             {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
 }
 

@@ -27,6 +27,7 @@ struct DrawVariant {
     ClipCount clip{};        ///< kernels are cut at planes
     bool opaque = false;     ///< of a ray's two pieces in a cut kernel the longer counts
     bool creases = false;    ///< planes beside faces cut kernels, too
+    bool traced = false;     ///< where no quadric fits, rays find the faces
     bool antialias = false;  ///< no footprint is narrower than a pixel
     bool outlines = false;   ///< pixels keep where outlines pass them
     bool tiles = false;      ///< sheets are summed tile by tile, not in layers

@@ -18,9 +18,30 @@ gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
     return constants;
 }
 
+namespace {
+
+std::uint32_t pushed(const TileRound& round) {
+    return round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U);
+}
+
+}  // namespace
+
+gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how) {
+    gpu::Specialization constants = tile_constants(variant, how);
+    for (auto& [id, value] : constants)
+        if (id == shader::SPEC_GROUP) value = how.profile->list_group;
+    return constants;
+}
+
+void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
+                 const TileRound& round) {
+    commands.dispatch("5_trace_faces.comp", trace_constants(variant, how), pushed(round), gpu::groups_for(tiles, 1));
+    commands.barrier();
+}
+
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
-    const std::uint32_t what = round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U);
-    commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), what, gpu::groups_for(round.groups, 1));
+    commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), pushed(round),
+                      gpu::groups_for(round.groups, 1));
     commands.barrier();
 }
 

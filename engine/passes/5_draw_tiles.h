@@ -34,12 +34,18 @@ struct TileRound {
     bool first_pixels = false;      ///< of refined ones: every REFINE_STEP-th, not those that are listed
 };
 
+/// FrameParams: where the rays of the round's pixels meet the surface, for entries in `traced_entries`, into
+/// `traced_rays`. Reads the field's coefficients.
+void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
+                 const TileRound& round);
+
 /// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats, puts the chunk's sheets behind
 /// what `output_pixels` holds (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum), and counts closed
 /// pixels in `tile_closed`. `tile_sheets` holds what a round leaves unfinished.
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
-/// Specialization of 5_draw_tiles.comp.
+/// Specialization of 5_trace_faces.comp, and of 5_draw_tiles.comp.
+gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how);
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how);
 
 }  // namespace edgesplat::passes

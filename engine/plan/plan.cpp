@@ -250,6 +250,18 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
     return settings.sheet_spacing / glm::length(to_index * camera_frame(camera).forward);
 }
 
+namespace {
+
+/// The values of a material's interval as the device has them, half open.
+glm::vec2 scaled_interval(const Volume& volume, const Scene& scene, std::size_t material) {
+    const auto end = [&](std::size_t j, float none) {
+        return j < scene.iso_values.size() ? static_cast<float>(scaled_iso_value(volume, scene.iso_values[j])) : none;
+    };
+    return {material > 0 ? end(material - 1, -3e38F) : -3e38F, end(material, 3e38F)};
+}
+
+}  // namespace
+
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats, double farthest_reach,
                      bool refines) {
@@ -324,6 +336,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
+    const auto traced = traced_material(settings, scene, geometry);
+    plan.variant.traced = plan.variant.opaque && splats.traced && traced;
+    if (plan.variant.traced) p.traced_interval = scaled_interval(volume, scene, *traced);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;

@@ -81,6 +81,7 @@ struct SplatExtent {
     std::uint64_t count = 0;
     glm::ivec3 low{0}, high{0};  ///< inclusive box of voxels that holds them
     bool creases = true;         ///< some may have a plane beside their face
+    bool traced = true;          ///< of some rays may have to find it
 };
 
 /// Throws Error when the scene has more sheets than the sort can hold. No kernel reaches further than `farthest_reach`

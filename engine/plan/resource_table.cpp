@@ -99,10 +99,10 @@ const std::array kFieldImages{
 const std::array kCollectionBuffers{
     row<CollectionBufferRow>(text("scene parameters", "(1) SceneParams", "host", "1, 2"), &L::scene,
                              [](const CollectionPlan&, const glm::ivec3&) { return std::uint64_t{sizeof(S)}; }),
-    // Behind the runs' counts how many splats have an edge, and a crease.
+    // Behind the runs' counts how many splats have an edge, a crease, a face that rays are to find.
     row<CollectionBufferRow>(
-        text("run offsets", "(runs + 2) uint", "2, host", "2, host"), &L::run_offsets,
-        [](const CollectionPlan&, const glm::ivec3& core) { return (passes::collect_runs(core) + 2) * kWord; }),
+        text("run offsets", "(runs + 3) uint", "2, host", "2, host"), &L::run_offsets,
+        [](const CollectionPlan&, const glm::ivec3& core) { return (passes::collect_runs(core) + 3) * kWord; }),
     row<CollectionBufferRow>(text("transfer function", "(rows) TransferRow", "host", "2, 5"), &L::transfer,
                              [](const CollectionPlan& p, const glm::ivec3&) {
                                  return p.transfer.size() * std::uint64_t{sizeof(shader::TransferRow)};
@@ -247,6 +247,15 @@ const std::array kTargetBuffers{
         text("outlines", "(y, x) where one passes the pixel", "5", "7"), &T::outlines, &F::outlines, Place::Device,
         kWords, shader::BIND_OUTLINES,
         [](const FramePlan& p, const Profile&) { return if_tiles(p, p.variant.outlines ? pixels(p) * kWord : 0); }),
+    row<TargetBufferRow>(
+        text("traced rays", "(y, x, 2) vec4", "5", "5"), &T::traced_rays, &F::traced_rays, Place::Device, kSums,
+        shader::BIND_TRACED_RAYS,
+        [](const FramePlan& p, const Profile&) { return if_tiles(p, p.variant.traced ? 2 * picture_bytes(p) : 0); }),
+    row<TargetBufferRow>(text("traced entries", "(pairs at once) bits", "4", "5"), &T::traced_entries,
+                         &F::traced_entries, Place::Device, kWords, shader::BIND_TRACED_ENTRIES,
+                         [](const FramePlan& p, const Profile& profile) {
+                             return if_tiles(p, traced_words(p, tile_entry_pairs(p, profile)) * kWord);
+                         }),
 };
 
 gpu::ImageShape texel(gpu::ImageShape kind) {

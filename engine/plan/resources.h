@@ -24,10 +24,12 @@ struct SplatLists {
     gpu::GpuImage edges, buried;
     gpu::Buffer scene, run_offsets, transfer;
     gpu::Buffer splats, traits, values, occlusion, shadows;
-    std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0;
+    std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0, traced_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
     SplatBricks bricks;                  ///< of the list
-    SplatExtent extent() const { return {splat_count, box_low, box_high, crease_splat_count > 0}; }
+    SplatExtent extent() const {
+        return {splat_count, box_low, box_high, crease_splat_count > 0, traced_splat_count > 0};
+    }
 };
 
 /// What stands until the picture's size, the number of sheets or of splats changes; likewise.
@@ -43,6 +45,7 @@ struct TargetResources {
     gpu::GpuImage prepared;
     gpu::Buffer tile_rects, sheet_pairs, sheet_starts, chunks, tile_counters, tile_ranges, tile_order, tile_entries;
     gpu::Buffer tile_marks, tile_closed, tile_todo, tiles_seen, tile_finest, tile_pixels, tile_sheets, outlines;
+    gpu::Buffer traced_rays, traced_entries;
 };
 
 /// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image or

@@ -59,6 +59,10 @@ std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs) {
            std::max(cells / shader::MARKED_AT_ONCE, std::uint64_t{plan.refined ? 2U : 1U});
 }
 
+std::uint64_t traced_words(const FramePlan& plan, std::uint64_t entries) {
+    return plan.variant.traced ? entries / shader::MARKED_AT_ONCE : 0;
+}
+
 std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step) {
     if (!how.refined) return shader::TILE * shader::TILE / passes::tile_group(how);
     const std::uint32_t across = shader::TILE / step, coarser = across / 2;

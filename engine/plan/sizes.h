@@ -34,6 +34,9 @@ std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& 
 /// Words that mark for which pixels lists of so many pairs are.
 std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs);
 
+/// Words that say which of so many entries are traced; none where nothing is.
+std::uint64_t traced_words(const FramePlan& plan, std::uint64_t entries);
+
 /// Groups of invocations for the most pixels that a tile draws at once, after that step of a refined picture.
 std::uint32_t tile_groups(passes::TileDraw how, std::uint32_t step);
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "engine/reference/field.h"
@@ -21,8 +22,14 @@ struct VoxelEdge {
         glm::dvec3 n{0};
         double D = std::numeric_limits<double>::infinity();
     };
-    Crease crease;          ///< of a face
-    glm::dmat3 bending{0};  ///< of a face: second derivatives of its quadric, 1/voxel, symmetric
+    Crease crease;  ///< of a face
+    /// Values that are matter, half open.
+    struct Interval {
+        double low = 0, high = 0;
+        bool holds(double value) const { return value >= low && value < high; }
+    };
+    std::optional<Interval> traced;  ///< no quadric fits: rays find the surface of this
+    glm::dmat3 bending{0};           ///< of a face: second derivatives of its quadric, 1/voxel, symmetric
     bool has_normal = false;
     bool has_edge = false;
     bool border = false;  ///< of a point of the surface: the volume ends there

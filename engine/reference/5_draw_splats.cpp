@@ -5,6 +5,7 @@
 
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
+#include "engine/reference/traced_face.h"
 #include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 
@@ -189,9 +190,18 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
     }
 }
 
-double SplatDrawer::footprint(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
-                              const std::optional<Slice>& slice) const {
-    const VoxelEdge& edge = records_[splat].edge;
+std::pair<SplatRecord, bool> SplatDrawer::met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const {
+    SplatRecord record = records_[splat];
+    // What is widened to a pixel is cut no more.
+    if (!record.edge.traced || selected_[splat].filter.share == 1) return {record, true};
+    const double ahead = glm::dot(glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index, u);
+    MetEdge edge = met_edge(record.edge, field_, view_.eye_index, u, p, ahead);
+    record.edge = edge.edge;
+    return {record, edge.matter};
+}
+
+double SplatDrawer::footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p,
+                              const glm::dvec3& u, const std::optional<Slice>& slice) const {
     const PixelFilter& filter = selected_[splat].filter;
     double own = 0;
     Slice piece = slice.value_or(Slice{});
@@ -223,44 +233,47 @@ double SplatDrawer::depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const
     return -glm::dot(z, p) / glm::dot(z, u);
 }
 
-bool SplatDrawer::in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
-                            double z) const {
+bool SplatDrawer::in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p,
+                            const glm::dvec3& u, double z) const {
     const PixelFilter& filter = selected_[splat].filter;
-    if (filter.share < 1) return footprints_.in_matter(records_[splat].edge, p, u, z);
+    if (filter.share < 1) return footprints_.in_matter(edge, p, u, z);
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
     const double from_voxel = z - depth_on_ray(p, u);
     return rho2 + from_voxel * from_voxel < kKernelRadius * kKernelRadius;
 }
 
 double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
-    const SplatRecord& record = records_[splat];
     const glm::dvec4& ray =
         rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
     const glm::dvec3 u(ray);
-    const glm::dvec3 v = glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index;
+    const glm::dvec3 v = glm::dvec3(field_.voxel(records_[splat].voxel)) - view_.eye_index;
     const double s0 = glm::dot(v, u);
+    const auto [record, matter] = met(splat, s0 * u - v, u);
+    if (!matter) return 0;
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
-        return record.extinction(scene_) * ray.w * footprint(splat, x, y, s0 * u - v, u, slice);
+        return record.extinction(scene_) * ray.w * footprint(splat, record.edge, x, y, s0 * u - v, u, slice);
     }
     const double share = in_front(s0);
     if (!(share > 0)) return 0;
     const glm::dvec3 p = s0 * u - v;
-    return record.extinction(scene_) * ray.w * share * footprint(splat, x, y, p, u, {});
+    return record.extinction(scene_) * ray.w * share * footprint(splat, record.edge, x, y, p, u, {});
 }
 
 glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                                      const std::optional<DepthRange>& cut) const {
-    const SplatRecord& record = records_[splat];
     const glm::dvec4& ray =
         rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
-    const glm::dvec3 u(ray), center(field_.voxel(record.voxel));
+    const glm::dvec3 u(ray), center(field_.voxel(records_[splat].voxel));
     const double s0 = glm::dot(center - view_.eye_index, u);
     const glm::dvec3 p = view_.eye_index + s0 * u - center;
+    const auto met_here = met(splat, p, u);
+    const SplatRecord& record = met_here.first;
+    if (!met_here.second) return glm::dvec4(0);
     const bool faces = draws_faces(settings_);
     const bool plain = selected_[splat].filter.share == 1;  // widened, it is cut no more
-    const auto met = [&](const Slice& slice) {
+    const auto quantity_of = [&](const Slice& slice) {
         return face_payload(record, field_, scene_, view_, settings_, payload, footprints_, p, u, slice, plain);
     };
     Slice slice;
@@ -270,19 +283,19 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
     }
     if (clip_.empty()) {
         const double share = tau(splat, x, y, cut);
-        return share > 0 ? share * glm::dvec4(faces ? met(slice) : own, 1) : glm::dvec4(0);
+        return share > 0 ? share * glm::dvec4(faces ? quantity_of(slice) : own, 1) : glm::dvec4(0);
     }
     slice.low = std::max(slice.low, -s0);
     glm::dvec4 sum(0);
     for (const KeptPiece& piece : clip_.kept_along(center + p, u)) {
         const Slice kept{std::max(piece.first, slice.low), std::min(piece.last, slice.high)};
         if (piece.empty() || !(kept.low < kept.high)) continue;
-        glm::dvec3 quantity = faces ? met(kept) : own;
+        glm::dvec3 quantity = faces ? quantity_of(kept) : own;
         const glm::dvec3 entry = p + piece.first * u;
-        if (piece.face && piece.first > -s0 && in_matter(splat, x, y, p, u, piece.first)) {
+        if (piece.face && piece.first > -s0 && in_matter(splat, record.edge, x, y, p, u, piece.first)) {
             quantity = cap_payload(record.material, own, *piece.face, center + entry, scene_, view_, payload);
         }
-        sum += footprint(splat, x, y, p, u, kept) * glm::dvec4(quantity, 1);
+        sum += footprint(splat, record.edge, x, y, p, u, kept) * glm::dvec4(quantity, 1);
     }
     return scene_.materials[record.material].extinction * ray.w * sum;
 }
@@ -315,8 +328,7 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                           std::span<std::optional<Outline>> outlines, const std::optional<DepthRange>& cut) const {
     parallel_for(view_.height, [&](int begin, int end) {
         for (const std::uint32_t splat : splats) {
-            const VoxelEdge& edge = records_[splat].edge;
-            if (!footprints_.cuts(edge)) continue;
+            if (!footprints_.cuts(records_[splat].edge)) continue;
             const PixelBox& box = selected_[splat].box;
             const glm::dvec3 center(field_.voxel(records_[splat].voxel));
             for (int y = std::max(box.y0, begin); y < std::min(box.y1, end); ++y) {
@@ -328,6 +340,8 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                     const double ahead = glm::dot(center - view_.eye_index, u);
                     const glm::dvec3 p = view_.eye_index + ahead * u - center;
                     const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
+                    const VoxelEdge edge = met(splat, p, u).first.edge;
+                    if (!footprints_.cuts(edge)) continue;
                     keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
                 }
             }

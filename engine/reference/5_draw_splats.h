@@ -61,13 +61,17 @@ class SplatDrawer {
     double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;
 
   private:
-    /// The splat's kernel along the ray of pixel (x, y), or along a piece of it, as wide as the pixel asks for.
-    double footprint(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
+    /// The splat as the ray meets it, and whether that meets any of its matter.
+    std::pair<SplatRecord, bool> met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const;
+    /// The splat's kernel along the ray of pixel (x, y), or along a piece of it, as wide as the pixel asks for; `edge`
+    /// as the ray meets it.
+    double footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                      const std::optional<Slice>& slice) const;
     /// Where the ray passes the voxel's depth, voxels from p.
     double depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const;
     /// Whether the ray is in the splat's matter at z.
-    bool in_matter(std::uint32_t splat, int x, int y, const glm::dvec3& p, const glm::dvec3& u, double z) const;
+    bool in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
+                   double z) const;
     /// tau times the quantity, and tau; `own` is the splat's quantity where no cut shows.
     glm::dvec4 contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                             const std::optional<DepthRange>& cut) const;

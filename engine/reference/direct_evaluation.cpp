@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 
 #include "engine/image/sample_mean.h"
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/faces.h"
 #include "engine/reference/splat_cloud.h"
+#include "engine/reference/traced_face.h"
 
 namespace edgesplat::reference {
 
@@ -32,6 +34,7 @@ class RayWalker {
     /// `mm_per_voxel` along the unit direction u; both in index space.
     RaySum walk(const glm::dvec3& eye, const glm::dvec3& u, double mm_per_voxel) {
         RaySum sum;
+        met_.clear();
         double begin = 0;
         double end = 0;
         if (!cloud_.clip(eye, u, begin, end)) return sum;
@@ -73,6 +76,7 @@ class RayWalker {
                 }
                 const double step = std::min(kPanel, last - t);
                 cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
+                meet(eye, u);
                 light(cut_seen ? piece.face : std::nullopt, origin + (cut_seen ? piece.first : 0) * u, u);
                 if (!active_.empty()) add_pieces(integrator, origin, u, t, t + step);
                 t += kPanel;
@@ -87,6 +91,27 @@ class RayWalker {
     }
 
   private:
+    /// Puts splats as this ray meets them in the place of those that are traced.
+    void meet(const glm::dvec3& eye, const glm::dvec3& u) {
+        std::erase_if(active_, [&](const ModelSplat*& splat) {
+            if (tau_only_ || !splat->edge->traced) return false;
+            auto [at, fresh] = met_.try_emplace(splat);
+            std::optional<ModelSplat>& here = at->second;
+            if (fresh) {
+                const double ahead = glm::dot(splat->center - eye, u);
+                const MetEdge met =
+                    met_edge(*splat->edge, prepared_.field(), eye, u, eye + ahead * u - splat->center, ahead);
+                if (met.matter) {
+                    here = *splat;
+                    here->record.edge = met.edge;
+                    here->edge = &here->record.edge;
+                }
+            }
+            if (here) splat = &*here;
+            return !here;
+        });
+    }
+
     /// From `begin` to `end`, in pieces that end where a face begins, ends or changes how a kernel is moved.
     template <typename Integrator>
     void add_pieces(Integrator& integrator, const glm::dvec3& origin, const glm::dvec3& u, double begin, double end) {
@@ -142,7 +167,8 @@ class RayWalker {
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
-    std::vector<glm::dvec3> emission_;  ///< of each active splat
+    std::map<const ModelSplat*, std::optional<ModelSplat>> met_;  ///< traced ones; nothing: without matter on the ray
+    std::vector<glm::dvec3> emission_;                            ///< of each active splat
     std::vector<double> breaks_;
     std::vector<std::optional<FacePath>> paths_;  ///< of each whose kernel a face cuts
 };

@@ -350,14 +350,13 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const double level = sum / std::max(opposite, 1e-20);
     const double of_wall = of_same + std::max(sum2 - sum * level, 0.0);
     bool is_wall = opposite > 0 && level < -kThinnest && of_wall < kWallShare * of_one;
-    const double error =
-        is_wall ? of_wall + wrong_sides(field, scene, i,
-                                        [&](const dvec3& r) {
-                                            const double to_wall = wall.at(r - middle);
-                                            return std::max(to_wall, level - to_wall);
-                                        })
-                : of_one + wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(one, r - middle); });
-    const double own_error = of_own + wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(own, r); });
+    const double wrong = wrong_sides(field, scene, i, [&](const dvec3& r) {
+        const double to_wall = wall.at(r - middle);
+        return is_wall ? std::max(to_wall, level - to_wall) : off_of(one, r - middle);
+    });
+    const double error = (is_wall ? of_wall : of_one) + wrong;
+    const double own_wrong = wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(own, r); });
+    const double own_error = of_own + own_wrong;
     // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
     // voxel.
     const bool is_own = !found || (error > kWell && own_error < kOwnShare * error);
@@ -387,6 +386,8 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     edge.n = real ? q.slope(at) / steep : n;
     edge.D = glm::dot(about + (real ? at : dvec3(0)), edge.n);
     if (real) edge.bending = q.h / steep;
+    if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM))
+        edge.traced = {scene.lower(m), scene.upper(m)};
     if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     return edge;
 }

@@ -5,6 +5,7 @@
 
 #include "engine/reference/faces.h"
 #include "footprints/kernel.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
@@ -95,6 +96,8 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
 }
 
 double Footprints::reach(const VoxelEdge& edge) const {
+    // Where the surface cuts it only rays will see.
+    if (edge.traced) return static_cast<double>(shader::TRACE_REACH);
     if (!warped(edge)) return kKernelRadius;
     return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), face_depth_).reach : kPaperReach;
 }

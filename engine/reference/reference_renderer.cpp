@@ -62,6 +62,9 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
     edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
+    if (!traced_material(settings_, scene_, volume.geometry))
+        for (VoxelEdge& edge : edges_)
+            edge.traced.reset();
 }
 
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
@@ -82,8 +85,11 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const int width = view.width, height = view.height;
-    const std::vector<SplatRecord> records =
+    std::vector<SplatRecord> records =
         collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye, output == Output::Tau, classified_);
+    // Optical depth is of all that is on a ray.
+    for (SplatRecord& record : records)
+        if (output == Output::Tau) record.edge.traced.reset();
     const std::vector<Selected> selected =
         select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);

@@ -60,6 +60,19 @@ bool one_piece_is_enough(const Settings& settings, const Scene& scene, const Vol
            hides_what_is_behind(scene, geometry);
 }
 
+std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
+                                           const VolumeGeometry& geometry) {
+    if (settings.edges != EdgeEstimator::Cubic || draws_table(settings)) return std::nullopt;
+    if (!one_piece_is_enough(settings, scene, geometry)) return std::nullopt;
+    std::optional<std::size_t> only;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        if (!(extinctions_of(scene, m).most > 0)) continue;
+        if (only) return std::nullopt;
+        only = m;
+    }
+    return only;
+}
+
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume) {
     if (scene.transfer.empty()) return {};
     if (!(volume.max_value > volume.min_value)) {

@@ -1,6 +1,8 @@
 // Colour and extinction by value: piecewise-linear transfer functions, and what materials are where there is none.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <span>
 
 #include "engine/scene/scene.h"
@@ -30,6 +32,11 @@ double face_depth(const Scene& scene, const VolumeGeometry& geometry);
 /// Whether of two pieces of a ray in one kernel the longer is enough: in whole kernels, uncut, that hide what is
 /// behind.
 bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+
+/// The one material whose faces rays may find where no quadric fits: all that is drawn, whole and opaque, of a field
+/// that is a cubic spline.
+std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
+                                           const VolumeGeometry& geometry);
 
 /// The scene's points with values scaled as samples are (scaled_field), rounded to float32 as the device holds them;
 /// empty without a transfer function. In a constant volume one point: the function at its value.

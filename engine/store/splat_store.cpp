@@ -121,7 +121,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
 }
 
 void SplatStore::clear_counts() {
-    lists_.splat_count = lists_.edge_splat_count = lists_.crease_splat_count = 0;
+    lists_.splat_count = lists_.edge_splat_count = lists_.crease_splat_count = lists_.traced_splat_count = 0;
     lists_.bricks.clear();
 }
 
@@ -234,9 +234,9 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     if (total > most_splats) return std::nullopt;
     if (total > kMostSplats) fail("{} voxels can be seen at once; the splat list holds {}", total, kMostSplats);
     if (exact || total > room()) reserve(plan, exact ? total : std::min(std::max(total, 2 * room()), most_splats));
-    // Behind the runs' offsets two more words.
+    // Behind the runs' offsets three more words.
     const std::uint64_t runs = passes::collect_runs(block.core_size);
-    const std::span<std::uint32_t> counts = lists_.run_offsets.mapped<std::uint32_t>(runs + 2).subspan(runs);
+    const std::span<std::uint32_t> counts = lists_.run_offsets.mapped<std::uint32_t>(runs + 3).subspan(runs);
     std::ranges::fill(counts, 0U);
     auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
     params.list_first = static_cast<std::uint32_t>(out.first);
@@ -248,9 +248,12 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     add_times(cost.times, commands.span_times());
     out.with_edge = counts[0];
     out.with_crease = counts[1];
+    out.traced = counts[2];
     lists_.splat_count = total;
     lists_.edge_splat_count += out.with_edge;
     lists_.crease_splat_count += out.with_crease;
+    // Rays need the whole field.
+    if (!residence_) lists_.traced_splat_count += out.traced;
     return out;
 }
 

@@ -21,7 +21,8 @@ uint pack_bending(vec3 v) {
     return (uint(code.x) & 1023u) | (uint(code.y) & 1023u) << 10 | (uint(code.z) & 1023u) << 20;
 }
 
-const uint FACE_MIXED = 1u << 30;  // of the first word: the face behind is of the other kind, lower or upper
+const uint FACE_MIXED = 1u << 30;   // of the first word: the face behind is of the other kind, lower or upper
+const uint FACE_TRACED = 1u << 30;  // of the second: it fits badly, and rays find the surface
 
 vec3 unpack_bending(uint code) {
     vec3 v = vec3(int(code << 22) >> 22, int(code << 12) >> 22, int(code << 2) >> 22) / 511.0;

@@ -108,6 +108,9 @@ struct FrameParams {
     float face_depth;       // no deeper under a face kernels are sampled, voxels
     uint chunk_pairs;       // of a chunk that the device plans, at most; its splats are prepared, too
     uint chunk_slots;       // chunks that it plans, at most
+    vec2 traced_interval;   // where the field is matter, half open, scaled; with traced faces only, as the next two
+    Address traced_rays;
+    Address traced_entries;
     Address footprints;     // (splat_count) uvec2: layer and rotation of each that is drawn (selected_footprint.glsl); with a table only
 };
 
@@ -119,7 +122,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1536);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1560);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -7,6 +7,7 @@
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -17,6 +18,8 @@ layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(push_constant) uniform Push { uint group; };
 
@@ -27,7 +30,7 @@ layout(location = 3) flat in vec4 normal_distance;
 layout(location = 4) flat in vec3 shape;
 layout(location = 5) flat in vec2 slopes;
 layout(location = 6) flat in vec3 matter;
-layout(location = 7) flat in uvec2 number_material;
+layout(location = 7) flat in uvec2 number_and_material;
 layout(location = 8) flat in vec4 filtered;
 layout(location = 9) flat in vec4 face_slope;
 layout(location = 10) flat in vec4 face_diagonal;
@@ -40,14 +43,32 @@ layout(location = 0) out vec4 sheet;
 
 #include "shaders/footprints/face_form.glsl"
 FaceForm face_form;
+uvec2 number_material;
+ivec3 dims;
 vec2 pixels;  // from the voxel's centre to the fragment's; with antialias only
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 SelectedFootprint selected_footprint;
 
 #include "shaders/splats/splat_value.glsl"
+#include "shaders/common/volume_sampling.glsl"
+#include "shaders/splats/trace_ray.glsl"
+#include "shaders/splats/use_traced.glsl"
+
+// Of the splat alone; false where the ray meets no matter.
+bool meets_traced(vec3 p, vec3 u, float ahead) {
+    Stretch along = kernel_stretch(p, ahead);
+    bool some = true;
+    dims = params.frame.dims;
+    IF_ANY((number_material.y & IS_TRACED) != 0u && along.first < along.last) {
+        TracedRay t = trace_ray(params.frame.anchor + params.frame.eye, u, along, params.frame.traced_interval);
+        some = use_traced(seen_ray(pieces_texel(t), ends_texel(t)), p, u, ahead);
+    }
+    return some;
+}
 
 void main() {
+    number_material = number_and_material;
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
                              FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0), crease);
@@ -59,5 +80,8 @@ void main() {
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);
+    bool some = true;
+    if (TRACED == 1u) some = meets_traced(p, u, dot(from_eye, u));
     sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));
+    sheet = some ? sheet : vec4(0.0);
 }

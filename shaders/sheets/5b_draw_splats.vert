@@ -8,6 +8,7 @@
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;

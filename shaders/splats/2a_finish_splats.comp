@@ -24,7 +24,7 @@ uint material_at(ivec3 p) { return material_of(voxel(p)); }
 
 void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    bool with_edge = false, with_crease = false;
+    bool with_edge = false, with_crease = false, traced = false;
     IF_ANY(i < params.scene.list_count) {
         dims = params.scene.dims;
         i += params.scene.list_first;
@@ -44,15 +44,18 @@ void main() {
             float slope = length(g);
             e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
-            uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed));
+            uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
             BendingsRef(params.scene.traits).at[i] = cut ? face.creased ? pack_crease(face.crease) : bent : uvec2(0u);
             with_crease = cut && face.creased;
+            traced = cut && face.traced;
         }
         with_edge = e.state >= EDGE_LOWER;
         splats.at[i] = Splat(splat.voxel, normal, (e.state == EDGE_NONE ? 0u : pack_edge(e)) | (material << 28));
     }
     uint edges_here = subgroupAdd(with_edge ? 1u : 0u), creases_here = subgroupAdd(with_crease ? 1u : 0u);
+    uint traced_here = subgroupAdd(traced ? 1u : 0u);
     uint at = params.scene.edge_count_at;
     if (subgroupElect() && edges_here > 0u) atomicAdd(UintsRef(params.scene.run_offsets).at[at], edges_here);
     if (subgroupElect() && creases_here > 0u) atomicAdd(UintsRef(params.scene.run_offsets).at[at + 1u], creases_here);
+    if (subgroupElect() && traced_here > 0u) atomicAdd(UintsRef(params.scene.run_offsets).at[at + 2u], traced_here);
 }

@@ -124,6 +124,7 @@ struct Face {
     bool mixed;  // what faces the other way around is the other end of the material's interval
     bool creased;
     vec4 crease;
+    bool traced;  // it fits badly: rays are to find the surface
 };
 
 // How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
@@ -219,7 +220,7 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
 
 // Without a surface in reach: no edge.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE);
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, false);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = 1e9;
     uint state = EDGE_LOWER;
@@ -291,6 +292,7 @@ Face fit_face(ivec3 p, uint material) {
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
         }
         if (face.creased) return face;
+        face.traced = found && (is_own ? wrong.z : is_wall ? wrong.y : wrong.x) > TRACE_FROM;
         Quadric q = one;
         if (is_wall) q = wall;
         if (is_own) {

@@ -12,6 +12,10 @@ struct PreparedSplat {
     SplatInputs inputs;
 };
 
+// Whether it is traced is the last bit of its depth.
+float with_traced(float depth, bool traced) { return uintBitsToFloat(floatBitsToUint(depth) & ~1u | (traced ? 1u : 0u)); }
+bool conic_is_traced(SplatConic conic) { return (floatBitsToUint(conic.depth) & 1u) != 0u; }
+
 PreparedSplat prepared_splat(uint number, uint sheet) {
     PreparedSplat s;
     Splat splat = SplatsRef(params.frame.splats).at[number];
@@ -25,6 +29,7 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     }
     s.inputs = splat_inputs(number, splat, e, p, depths);
     s.conic = splat_conic(p);
+    if (TRACED == 1u) s.conic.depth = with_traced(s.conic.depth, (s.inputs.number_material.y & IS_TRACED) != 0u);
     bool at_eye = view_position(p.position + p.centre).z < 1.05 * p.radius * length(params.frame.view_z);
     vec4 beside = rays_beside(p, at_eye);
     s.start = beside.xyz;
@@ -89,6 +94,9 @@ SplatConic load_conic(uint entry) {
     return SplatConic(u.xy, vec3(u.zw, v.x), v.yz, v.w);
 }
 
+// Points of rays beside an entry's splat: rays_beside().
+vec4 load_start(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START)); }
+
 // What draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);
@@ -104,7 +112,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
         s.inputs.normal_distance = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL));
         s.inputs.shape.x = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u)).x;
     }
-    vec4 v = imageLoad(prepared, prepared_texel(at + PREPARED_START));
+    vec4 v = load_start(entry);
     s.start = v.xyz;
     s.plane = v.w;
     s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));

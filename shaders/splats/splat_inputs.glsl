@@ -64,6 +64,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             vec3 at_foot = bent(h, e.d * e.n);
             s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
         }
+        if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced(number) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }
     if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.face_depth);
@@ -76,7 +77,10 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         float matter = warped ? matter_of_voxel(e.d, e.d2) : 1.0;
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
-        if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;
+        if (FACES && f.share >= 1.0) {
+            s.face.cut.depth = -1.0;
+            s.number_material.y &= ~IS_TRACED;
+        }
     }
 
     return s;

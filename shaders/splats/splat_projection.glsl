@@ -34,6 +34,12 @@ struct FaceTraits {
     vec4 crease;
 };
 
+// Whether rays find its face.
+bool is_traced(uint number) {
+    uvec2 code = BendingsRef(params.frame.traits).at[number];
+    return (code.x & FACE_CREASED) == 0u && (code.y & FACE_TRACED) != 0u;
+}
+
 FaceTraits traits_of(uint number, Edge e) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
     FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE);
@@ -120,6 +126,8 @@ Projection place_splat(uint number, uint voxel, Edge e) {
         FaceTraits traits = traits_of(number, e);
         FaceCut cut = cut_of(e, traits);
         support = vec2(cut.shift, cut.radius);
+        // Where the surface cuts it only rays will see.
+        if (TRACED == 1u) support = is_traced(number) ? vec2(0.0, TRACE_REACH) : support;
     }
     p.centre = support.x * e.n;
     p.radius = support.y;

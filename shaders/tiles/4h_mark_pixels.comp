@@ -10,6 +10,7 @@ layout(local_size_x = 8, local_size_y_id = SPEC_LIST_PARTS) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
@@ -29,6 +30,7 @@ TEXEL_WORDS(BIND_TILE_CLOSED, closed_pixels, tile_closed, load_closed)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
 TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
 STORED_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark, store_mark)
+STORED_WORDS(BIND_TRACED_ENTRIES, traced_words, traced_entries, load_traced, store_traced)
 TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 layout(push_constant) uniform Push { uint draw_round; };
@@ -69,6 +71,7 @@ void main() {
         if (REFINED == 1u) count = load_mark(marks_at) == ~0u ? count : 0u;
         uint marked[2u * TILE];
         for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
+        uint traced = 0u;
         for (uint k = 0u; k < count; ++k) {
             uvec2 entry = load_entry(params.frame.entries_first + base + k);
             SplatConic conic;
@@ -78,6 +81,7 @@ void main() {
                 float depth = max(conic.depth, params.frame.near_depth);
                 finest = min(finest, least_voxel() / (depth * 2.0 * params.frame.tan_half_x / float(params.frame.size.x)));
             }
+            if (TRACED == 1u) traced |= conic_is_traced(conic) ? 1u << k : 0u;
             uint covered = 0u;
             for (uint r = 0u; r < ROWS; ++r) {
                 ivec2 ends = clamp(row_of_conic(conic, row + int(r)) - corner.x, 0, int(TILE));
@@ -91,6 +95,9 @@ void main() {
         }
         IF_ANY(count > 0u)
             for (uint c = 0u; c < OWN; ++c) store_mark(marks_at + int(c), marked[c]);
+        if (TRACED == 1u) {
+            IF_ANY(count > 0u && gl_LocalInvocationID.x == 0u) store_traced(word_of(base), traced);
+        }
     }
     // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.
     if (REFINED == 1u && gl_LocalInvocationID.x == 0u)

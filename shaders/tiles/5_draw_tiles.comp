@@ -13,6 +13,7 @@ layout(local_size_x_id = SPEC_GROUP) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
@@ -40,6 +41,7 @@ TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_unfinished, store_unfinished)
+TEXEL_PIXELS(BIND_TRACED_RAYS, traced_pixels, traced_rays, load_traced)
 STORED_WORDS(BIND_OUTLINES, passing, outlines, load_outline, store_outline)
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/splats/splat_projection.glsl"
@@ -63,27 +65,16 @@ SelectedFootprint selected_footprint;
 #include "shaders/splats/splat_value.glsl"
 #include "shaders/common/fold_sheet.glsl"
 #include "shaders/tiles/outline.glsl"
-#include "shaders/tiles/pixel_in_tile.glsl"
 #include "shaders/tiles/tile_marks.glsl"
-
-uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
+#include "shaders/tiles/tile_places.glsl"
+#include "shaders/splats/traced_ray.glsl"
+#include "shaders/splats/use_traced.glsl"
+#include "shaders/tiles/traced_pixel.glsl"
 
 // A pixel takes no more once it is opaque.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
     sum = open ? folded(sum, sheet) : sum;
     open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
-}
-
-// Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
-const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
-
-// Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
-uint pixels_of(uint tile) { return mix(load_todo(tile), FIRST_PIXELS, what >> 31 == 1u); }
-
-ivec2 place_of(uint tile, uint place) {
-    if (REFINED == 0u) return pixel_in_tile(place);
-    uint listed = load_listed(tile * TILE * TILE + place);
-    return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
 }
 
 void main() {
@@ -118,6 +109,8 @@ void main() {
         float mm = length(params.frame.index_to_world * u);
         normal_distance = vec4(0.0);
         if (FACES) volume_piece = piece_in_volume(u);
+        SeenRay traced;
+        if (TRACED == 1u) traced = seen_ray(load_traced(traced_at(held)), load_traced(traced_at(held) + 1u));
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint outline = NO_OUTLINE;
@@ -182,6 +175,7 @@ void main() {
                 float beyond = dot(offset, u);
                 vec3 p = offset - beyond * u;
                 float ahead = h.plane * way_length - beyond;
+                if (TRACED == 1u) color_sigma.a = use_traced(traced, p, u, ahead) ? color_sigma.a : 0.0;
                 vec4 value = splat_value(p, u, ahead, mm);
                 sheet_sum += value;
                 if (OUTLINES == 1u) outline = sum.a < OUTLINE_OPEN ? min(outline, outline_of(p, u, ahead, value.a)) : outline;

@@ -9,6 +9,9 @@ const uint CELLS = TILE * TILE / (CELL_X * CELL_Y);
 // Where a list's marks begin, one word a cell for every 32 entries; `entry` is a multiple of them.
 int first_mark(uint entry) { return int((params.frame.entries_first + entry) / MARKED_AT_ONCE * CELLS); }
 
+// Where it is said which of these entries are traced.
+uint word_of(uint entry) { return (params.frame.entries_first + entry) / MARKED_AT_ONCE; }
+
 uint cell_of(ivec2 pixel) { return uint(pixel.y) % TILE / CELL_Y * (TILE / CELL_X) + uint(pixel.x) % TILE / CELL_X; }
 
 // Of a list's entries, the first that a round draws.

@@ -5,7 +5,7 @@
 
 #include "engine/reference/faces.h"
 #include "engine/reference/reference_renderer.h"
-#include "tests/passes/pass_fixture.h"
+#include "tests/passes/traced_scenes.h"
 
 namespace edgesplat::test {
 namespace {
@@ -83,7 +83,8 @@ TEST(Faces, RecordsHoldTheQuadricsThatFit) {
             }
             const auto &a = record.edge.crease, &b = want.crease;
             const bool same_crease = a.D < 3 ? std::abs(a.D - b.D) + glm::length(a.n - b.n) < 0.01 : !(b.D < 3);
-            differ += same_edge(record.edge, want) && bending <= 0.02 && same_crease ? 0U : 1U;
+            const bool same_way = record.edge.traced.has_value() == want.traced.has_value();
+            differ += same_edge(record.edge, want) && bending <= 0.02 && same_crease && same_way ? 0U : 1U;
         }
         EXPECT_GT(faces, 500U);
         EXPECT_GT(most_bent, s.name == "wall from inside" ? 1e-4 : 0.1);
@@ -159,7 +160,10 @@ struct Drawn {
 class DrawFaces : public NeedsLayers<testing::TestWithParam<Drawn>> {};
 
 TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
-    PassScene s = with_faces(pass_scenes()[GetParam().scene]);
+    std::vector<PassScene> scenes = pass_scenes();
+    for (const PassScene& traced : traced_scenes())
+        scenes.push_back(traced);
+    PassScene s = with_faces(scenes[GetParam().scene]);
     s.settings.sheet_spacing = 6;
     s.settings.sheets = GetParam().sheets;
     s.settings.saturation = 1;
@@ -171,6 +175,7 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
     DeviceUnderTest& state = prepared(s);
     const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
     ASSERT_EQ(state.plan().params.group_count, 1U);
+    EXPECT_EQ(state.plan().variant.traced, GetParam().scene >= pass_scenes().size());
     const Oracle oracle(s, records, kSize);
     const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
     const double thickness = reference::sheet_thickness(oracle.view, s.settings);
@@ -212,7 +217,8 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
 INSTANTIATE_TEST_SUITE_P(All, DrawFaces,
                          testing::Values(Drawn{"torus", 0}, Drawn{"orbital", 1}, Drawn{"wall", 2},
                                          Drawn{"torus_sliced", 0, SheetCut::Sliced},
-                                         Drawn{"orbital_clipped", 1, SheetCut::Whole, true}),
+                                         Drawn{"orbital_clipped", 1, SheetCut::Whole, true}, Drawn{"traced_opening", 3},
+                                         Drawn{"traced_gyroid", 4}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -146,7 +146,8 @@ inline glm::dmat3 decode_bending(const glm::uvec2& code) {
     return {glm::dvec3(xx, xy, xz), glm::dvec3(xy, yy, yz), glm::dvec3(xz, yz, zz)};
 }
 
-/// The device's splat list as the reference writes it, with bendings and classification where the device has them.
+/// The device's splat list as the reference writes it, with bendings and classification where the device has them. Of
+/// what is traced the interval is not there.
 inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat : download<shader::Splat>(state, state.lists().splats, state.lists().splat_count)) {
@@ -173,6 +174,7 @@ inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state
         }
         edge.bending = decode_bending(traits[i]);
         edge.mixed = (traits[i].x >> 30U & 1U) != 0;
+        if ((traits[i].y >> 30U & 1U) != 0) edge.traced.emplace();
     }
     return records;
 }
@@ -221,11 +223,26 @@ inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, cons
             state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
+/// The records as the scene has them drawn: traced in their material's interval, or not.
+inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
+                                                         std::vector<reference::SplatRecord> records) {
+    const bool traces = traced_material(s.settings, s.scene, s.volume.geometry).has_value();
+    const reference::ScaledScene scaled = s.scaled();
+    for (reference::SplatRecord& record : records) {
+        const auto material = static_cast<int>(record.material);
+        if (!traces) record.edge.traced.reset();
+        if (record.edge.traced) record.edge.traced = {scaled.lower(material), scaled.upper(material)};
+    }
+    return records;
+}
+
 /// The reference's passes 3 and 5 on a splat list of the device. Its members refer to one another.
 struct Oracle {
-    Oracle(const PassScene& s, const std::vector<reference::SplatRecord>& records, const glm::ivec2& size)
+    Oracle(const PassScene& s, const std::vector<reference::SplatRecord>& listed, const glm::ivec2& size)
         : values(scaled_field(s.volume)),
-          field{s.volume.geometry.dims, values, {}},
+          coefficients(bspline_coefficients(values, s.volume.geometry.dims)),
+          field{s.volume.geometry.dims, values, coefficients},
+          records(drawn_records(s, listed)),
           view(s.camera, s.volume.geometry, size.x, size.y),
           footprints(
               s.settings, face_depth(s.scene, s.volume.geometry),
@@ -235,8 +252,9 @@ struct Oracle {
     Oracle(const Oracle&) = delete;
     Oracle& operator=(const Oracle&) = delete;
 
-    std::vector<float> values;
+    std::vector<float> values, coefficients;
     reference::Field field;
+    std::vector<reference::SplatRecord> records;
     reference::View view;
     reference::Footprints footprints;
     std::vector<reference::Selected> selected;

@@ -138,7 +138,7 @@ ImageDifference against_reference(const Shot& shot, const std::string& what) {
         s.scene = shot.scene;
         s.settings = shot.settings;
         std::vector<reference::VoxelEdge> edges = drawn.edges();
-        for (const reference::SplatRecord& record : device_records(prepared(s)))
+        for (const reference::SplatRecord& record : drawn_records(s, device_records(prepared(s))))
             edges[record.voxel] = record.edge;
         drawn.replace_edges(std::move(edges));
     }

@@ -1,0 +1,139 @@
+#include "engine/reference/traced_face.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "footprints/kernel.h"
+#include "shaders/shared/limits.h"
+
+namespace edgesplat::reference {
+
+namespace {
+
+using glm::dvec3;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr auto kStep = static_cast<double>(shader::TRACE_STEP);
+constexpr auto kDeep = static_cast<double>(shader::TRACE_DEEP);
+constexpr auto kReach = static_cast<double>(shader::TRACE_REACH);
+
+/// The field along a ray.
+struct Along {
+    const Field& field;
+    dvec3 eye, u;
+    double value(double z) const { return sample(field, eye + z * u, true); }
+    double slope(double z) const { return glm::dot(spline_gradient(field, eye + z * u), u); }
+};
+
+struct Sample {
+    double z = 0, value = 0, slope = 0;
+};
+
+/// Where between two samples a cubic turns over an end of the interval that both lie on one side of.
+std::optional<double> turn_between(const Sample& a, const Sample& b, const VoxelEdge::Interval& interval) {
+    const double step = b.z - a.z, d0 = a.slope * step, d1 = b.slope * step;
+    if (!(d0 * d1 < 0)) return std::nullopt;
+    const double at = d0 / (d0 - d1), rest = 1 - at;
+    const double value =
+        rest * rest * (a.value * (1 + 2 * at) + d0 * at) + at * at * (b.value * (3 - 2 * at) - d1 * rest);
+    if (interval.holds(value) == interval.holds(a.value)) return std::nullopt;
+    return a.z + at * step;
+}
+
+/// Where the field is `level` between two places on either side of it.
+double root(const Along& along, double level, double a, double b) {
+    const bool rises = along.value(b) > along.value(a);
+    for (int step = 0; step < 60; ++step) {
+        const double m = 0.5 * (a + b);
+        ((along.value(m) < level) == rises ? a : b) = m;
+    }
+    return 0.5 * (a + b);
+}
+
+}  // namespace
+
+TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double first, double last,
+                    const VoxelEdge::Interval& interval) {
+    const Along along{field, eye, u};
+    TracedRay ray;
+    Sample before;
+    bool begun = false;
+    // False: nothing behind counts.
+    const auto take = [&](const Sample& at) {
+        const bool matter = interval.holds(at.value), was = begun && interval.holds(before.value);
+        ray.last = at.z;
+        if (!begun && matter) ray.pieces.push_back({-kInfinity, kInfinity, dvec3(0), false});
+        if (begun && matter != was) {
+            const double outer = matter ? before.value : at.value;
+            const bool upper = !(outer < interval.low);
+            const double z = root(along, upper ? interval.high : interval.low, before.z, at.z);
+            if (!matter) ray.pieces.back().end = z;
+            const dvec3 g = spline_gradient(field, eye + z * u);
+            if (matter && ray.pieces.size() == 2) return false;
+            if (matter) ray.pieces.push_back({z, kInfinity, glm::normalize(upper ? g : -g), upper});
+            if (!matter && ray.pieces.size() == 2) return false;
+        }
+        begun = true;
+        before = at;
+        if (!matter || !was) return true;
+        const double entered = ray.pieces.back().begin;
+        return at.z - (std::isfinite(entered) ? entered : first) <= kDeep;
+    };
+    const auto sampled = [&](double z) { return Sample{z, along.value(z), along.slope(z)}; };
+    const auto end = static_cast<std::int64_t>(std::ceil(last / kStep));
+    for (auto k = static_cast<std::int64_t>(std::floor(first / kStep)); k <= end; ++k) {
+        const Sample next = sampled(static_cast<double>(k) * kStep);
+        if (begun && interval.holds(next.value) == interval.holds(before.value)) {
+            const auto turn = turn_between(before, next, interval);
+            if (turn && !take(sampled(*turn))) return ray;
+        }
+        if (!take(next)) return ray;
+    }
+    return ray;
+}
+
+MetEdge met_edge(const VoxelEdge& edge, const Field& field, const dvec3& eye, const dvec3& u, const dvec3& p,
+                 double ahead) {
+    MetEdge met{edge};
+    const double half_chord = std::sqrt(std::max(kReach * kReach - glm::dot(p, p), 0.0));
+    const double low = std::max(ahead - half_chord, 0.0), high = ahead + half_chord;
+    if (!edge.traced || !(half_chord > 0) || !(low < high)) return met;
+    const TracedRay ray = trace_ray(field, eye, u, low, high, *edge.traced);
+    const TracedPiece* longest = nullptr;
+    double most = 0;
+    for (const TracedPiece& piece : ray.pieces) {
+        const double length = std::min(piece.end, high) - std::max(piece.begin, low);
+        if (length > most) {
+            longest = &piece;
+            most = length;
+        }
+    }
+    if (!longest) {
+        // What was not looked at keeps its quadric.
+        met.matter = ray.last < high - 1e-3;
+        return met;
+    }
+    const bool enters = longest->begin > low, leaves = longest->end < high;
+    if (enters) {
+        VoxelEdge& face = met.edge;
+        face.traced.reset();
+        face.n = longest->n;
+        face.D = glm::dot(face.n, p + (longest->begin - ahead) * u);
+        face.bending = glm::dmat3(0);
+        face.upper = longest->upper;
+        face.mixed = false;
+        face.D2 = kInfinity;
+        if (leaves) face.D2 = std::max((longest->end - longest->begin) * std::abs(glm::dot(u, face.n)), 0.05) - face.D;
+    } else if (!leaves) {
+        // Matter all along: a plain kernel with the normal of its face.
+        met.edge.n = glm::normalize(edge.n - edge.bending * (edge.D * edge.n));
+        met.edge.D = 1e9;
+        met.edge.traced.reset();
+        met.edge.D2 = kInfinity;
+    } else {
+        // Where it but leaves matter there is more of that before, of other splats.
+        met.matter = false;
+    }
+    return met;
+}
+
+}  // namespace edgesplat::reference

@@ -1,0 +1,108 @@
+// Where a ray meets the cubic field's surface, for splats that no quadric fits: the first pieces of it that lie in the matter.
+// docs/method.md, 5_trace_faces; mirrored by engine/reference/traced_face.h. The including shader declares `coefficients` and `dims`.
+#ifndef EDGESPLAT_TRACE_RAY_GLSL
+#define EDGESPLAT_TRACE_RAY_GLSL
+#include "shaders/drivers/if_any.glsl"
+#include "shaders/edges/edge_record.glsl"
+#include "shaders/splats/traced_ray.glsl"
+
+// Of the normal out of the matter: its code, and as the last bit whether the values beyond are higher.
+uint pack_end(vec3 n, bool upper) { return (pack_normal(n) & ~1u) | (upper ? 1u : 0u); }
+
+// A cubic with these values and slopes at 0 and 1: where it turns in between, and its value there.
+struct Turn {
+    bool there;
+    float at;
+    float value;
+};
+Turn turn_of(float f0, float d0, float f1, float d1) {
+    float at = d0 / (d0 - d1), rest = 1.0 - at;
+    float value = rest * rest * (f0 * (1.0 + 2.0 * at) + d0 * at) + at * at * (f1 * (3.0 - 2.0 * at) - d1 * rest);
+    return Turn(d0 * d1 < 0.0, at, value);
+}
+
+bool is_matter(float f, vec2 interval) { return f >= interval.x && f < interval.y; }
+
+// A part of a ray, voxels from the eye; none where first >= last.
+struct Stretch {
+    float first;
+    float last;
+};
+const Stretch NO_STRETCH = Stretch(TRACE_NOWHERE, -TRACE_NOWHERE);
+
+// What a kernel may have of a ray that passes it at p, `ahead` along u from the eye.
+Stretch kernel_stretch(vec3 p, float ahead) {
+    float half_chord = sqrt(max(TRACE_REACH * TRACE_REACH - dot(p, p), 0.0));
+    Stretch s = Stretch(max(ahead - half_chord, 0.0), ahead + half_chord);
+    if (!(half_chord > 0.0 && s.last > 0.0)) s = NO_STRETCH;
+    return s;
+}
+
+// Along u from `from`, matter being where the field is within `interval`. Samples lie TRACE_STEP apart, at
+// places that are the same wherever one begins, and where the field may turn over an end between two of them; ends are then found by
+// Newton's method. Looks no further than the second piece, or TRACE_DEEP into one.
+TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
+    int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
+    TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
+    uint pieces = 0u;
+    bool begun = false, matter = false, turned = false, probes = false, looks = along.first < along.last;
+    float entered = along.first, probe = 0.0, before = 0.0, value_before = 0.0, slope_before = 0.0;  // the sample before
+    float a = 0.0, b = 0.0, guess = 0.0, level = 0.0;  // between which an end lies
+    bool rises = false;
+    int searching = 0;
+    // One sample a turn, of the ray or of the search for an end, so that lavapipe has one loop of them.
+    while (looks) {
+        bool in_search = searching > 0, walks = !in_search;
+        float z = in_search ? guess : probes ? probe : float(k) * TRACE_STEP;
+        vec4 field = bspline_slope(ivec3(0), from + z * u);
+        float slope = dot(field.xyz, u);
+        bool inside = is_matter(field.w, interval);
+        // An end.
+        bool nearer = (field.w < level) == rises;
+        a = in_search && nearer ? z : a;
+        b = in_search && !nearer ? z : b;
+        float newton = z - (field.w - level) / (abs(slope) > 1e-9 ? slope : 1e-9);
+        float next = newton >= a && newton <= b ? newton : 0.5 * (a + b);
+        guess = in_search ? next : guess;
+        searching = in_search ? (abs(next - z) < TRACE_NEAR ? 0 : searching - 1) : searching;
+        bool found = in_search && searching == 0, second = pieces == 2u, enters = found && matter, leaves = found && !matter;
+        bool upper = level == interval.y;
+        uint code = pack_end(normalize((upper ? field.xyz : -field.xyz) + vec3(0.0, 0.0, 1e-12)), upper);
+        entered = enters ? guess : entered;
+        t.one.x = enters && !second ? guess : t.one.x;
+        t.first_end = enters && !second ? code : t.first_end;
+        t.one.y = leaves && !second ? guess : t.one.y;
+        t.two.x = enters && second ? guess : t.two.x;
+        t.second_end = enters && second ? code : t.second_end;
+        t.two.y = leaves && second ? guess : t.two.y;
+        // A sample of the ray.
+        float step = z - before;
+        Turn turn = turn_of(value_before, slope_before * step, field.w, slope * step);
+        bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(turn.value, interval) != matter;
+        bool takes = walks && !turns, crosses = takes && begun && inside != matter;
+        float outer = inside ? value_before : field.w;
+        level = crosses ? (outer < interval.x ? interval.x : interval.y) : level;
+        a = crosses ? before : a;
+        b = crosses ? z : b;
+        guess = crosses ? mix(a, b, (level - value_before) / (field.w - value_before)) : guess;
+        rises = crosses ? field.w > value_before : rises;
+        searching = crosses ? TRACE_ROOT_STEPS : searching;
+        bool starts = takes && !begun && inside;
+        pieces += starts || (crosses && inside) ? 1u : 0u;
+        t.one.x = starts ? -TRACE_NOWHERE : t.one.x;
+        matter = takes ? inside : matter;
+        probe = turns ? before + turn.at * step : probe;
+        turned = takes ? probes : turned;
+        k += takes && !probes ? 1 : 0;
+        probes = walks ? turns : probes;
+        before = takes ? z : before;
+        value_before = takes ? field.w : value_before;
+        slope_before = takes ? slope : slope_before;
+        begun = begun || takes;
+        t.last = takes ? z : t.last;
+        bool deep = takes && !crosses && matter && z - entered > TRACE_DEEP, at_end = takes && !crosses && k > end;
+        looks = !(leaves && second) && !at_end && pieces < 3u && !deep;
+    }
+    return t;
+}
+#endif
