@@ -6,6 +6,7 @@
 #include <span>
 
 #include "engine/reference/creases.h"
+#include "engine/reference/traced_face.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -386,7 +387,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     edge.n = real ? q.slope(at) / steep : n;
     edge.D = glm::dot(about + (real ? at : dvec3(0)), edge.n);
     if (real) edge.bending = q.h / steep;
-    if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM))
+    if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     return edge;

@@ -1,6 +1,7 @@
 #include "engine/reference/traced_face.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "footprints/kernel.h"
@@ -12,9 +13,9 @@ namespace {
 
 using glm::dvec3;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr auto kStep = static_cast<double>(shader::TRACE_STEP);
-constexpr auto kDeep = static_cast<double>(shader::TRACE_DEEP);
-constexpr auto kReach = static_cast<double>(shader::TRACE_REACH);
+constexpr auto kTraceStep = static_cast<double>(shader::TRACE_STEP);
+constexpr auto kTraceDeep = static_cast<double>(shader::TRACE_DEEP);
+constexpr auto kTraceReach = static_cast<double>(shader::TRACE_REACH);
 
 /// The field along a ray.
 struct Along {
@@ -51,6 +52,14 @@ double root(const Along& along, double level, double a, double b) {
 
 }  // namespace
 
+bool has_two_values(const Field& field, const glm::ivec3& i) {
+    std::array<double, 27> around{};
+    for (int k = 0; k < 27; ++k)
+        around[static_cast<std::size_t>(k)] = field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+    const auto [low, high] = std::ranges::minmax(around);
+    return std::ranges::all_of(around, [&](double f) { return std::min(f - low, high - f) <= 1e-3 * (high - low); });
+}
+
 TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double first, double last,
                     const VoxelEdge::Interval& interval) {
     const Along along{field, eye, u};
@@ -76,12 +85,12 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
         before = at;
         if (!matter || !was) return true;
         const double entered = ray.pieces.back().begin;
-        return at.z - (std::isfinite(entered) ? entered : first) <= kDeep;
+        return at.z - (std::isfinite(entered) ? entered : first) <= kTraceDeep;
     };
     const auto sampled = [&](double z) { return Sample{z, along.value(z), along.slope(z)}; };
-    const auto end = static_cast<std::int64_t>(std::ceil(last / kStep));
-    for (auto k = static_cast<std::int64_t>(std::floor(first / kStep)); k <= end; ++k) {
-        const Sample next = sampled(static_cast<double>(k) * kStep);
+    const auto end = static_cast<std::int64_t>(std::ceil(last / kTraceStep));
+    for (auto k = static_cast<std::int64_t>(std::floor(first / kTraceStep)); k <= end; ++k) {
+        const Sample next = sampled(static_cast<double>(k) * kTraceStep);
         if (begun && interval.holds(next.value) == interval.holds(before.value)) {
             const auto turn = turn_between(before, next, interval);
             if (turn && !take(sampled(*turn))) return ray;
@@ -94,7 +103,7 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
 MetEdge met_edge(const VoxelEdge& edge, const Field& field, const dvec3& eye, const dvec3& u, const dvec3& p,
                  double ahead) {
     MetEdge met{edge};
-    const double half_chord = std::sqrt(std::max(kReach * kReach - glm::dot(p, p), 0.0));
+    const double half_chord = std::sqrt(std::max(kTraceReach * kTraceReach - glm::dot(p, p), 0.0));
     const double low = std::max(ahead - half_chord, 0.0), high = ahead + half_chord;
     if (!edge.traced || !(half_chord > 0) || !(low < high)) return met;
     const TracedRay ray = trace_ray(field, eye, u, low, high, *edge.traced);

@@ -35,6 +35,7 @@ EDGESPLAT_CONSTANT float TRACE_REACH = 2.15f;      // of their kernels: R and th
 EDGESPLAT_CONSTANT float TRACE_STEP = 1.0f;       // voxels between samples of a ray
 EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // towards an end between two of them, at most: until one moves less than TRACE_NEAR
 EDGESPLAT_CONSTANT float TRACE_NEAR = 1e-3f;      // voxels
+EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.39f;    // voxels to a face that cuts nothing: less than R and the depth
 EDGESPLAT_CONSTANT float TRACE_DEEP = 2.5f;       // voxels within opaque matter that nothing is seen behind
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 8), 1/voxel

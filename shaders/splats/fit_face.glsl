@@ -216,6 +216,22 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
     return wrong;
 }
 
+// Whether the samples around have two values alone: how the field goes between them is not known then.
+bool has_two_values(ivec3 p) {
+    float low = 1e30, high = -1e30;
+    for (int i = 0; i < 27; ++i) {
+        float f = voxel(clamp(p + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), dims - 1));
+        low = min(low, f);
+        high = max(high, f);
+    }
+    bool two = true;
+    for (int i = 0; i < 27; ++i) {
+        float f = voxel(clamp(p + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), dims - 1));
+        two = two && min(f - low, high - f) <= 1e-3 * (high - low);
+    }
+    return two;
+}
+
 #include "shaders/splats/fit_crease.glsl"
 
 // Without a surface in reach: no edge.
@@ -293,6 +309,7 @@ Face fit_face(ivec3 p, uint material) {
         }
         if (face.creased) return face;
         face.traced = found && (is_own ? wrong.z : is_wall ? wrong.y : wrong.x) > TRACE_FROM;
+        IF_ANY(face.traced) face.traced = !has_two_values(p);
         Quadric q = one;
         if (is_wall) q = wall;
         if (is_own) {

@@ -15,17 +15,20 @@ bool use_traced(SeenRay t, vec3 p, vec3 u, float ahead) {
     // What was not looked at keeps its quadric: behind the second piece, or deep in matter.
     bool known = (number_material.y & IS_TRACED) != 0u && (some || t.last >= high - 1e-3);
     bool plane = known && enters, whole = known && some && !enters && !leaves;
+    n = whole ? normalize(face_form.slope) : n;
+    plane = plane || whole;
     face_form.slope = plane ? n : face_form.slope;
-    face_form.value = plane ? -dot(n, p + (piece.x - ahead) * u) : face_form.value;
-    face_form.h.diagonal = plane || whole ? vec3(0.0) : face_form.h.diagonal;
-    face_form.h.mixed = plane || whole ? vec3(0.0) : face_form.h.mixed;
+    // Matter all along: the face is too far off to cut it.
+    face_form.value = whole ? -TRACE_WHOLE : plane ? -dot(n, p + (piece.x - ahead) * u) : face_form.value;
+    face_form.h.diagonal = plane ? vec3(0.0) : face_form.h.diagonal;
+    face_form.h.mixed = plane ? vec3(0.0) : face_form.h.mixed;
     FaceCut cut = face_cut(-face_form.value, 0.0, 0.0, leaves ? max((piece.y - piece.x) * abs(dot(u, n)), 0.05) : 1e9, params.frame.face_depth);
-    face_form.cut.depth = plane ? cut.depth : whole ? -1.0 : face_form.cut.depth;
+    face_form.cut.depth = plane ? cut.depth : face_form.cut.depth;
     face_form.cut.thickness = plane ? cut.thickness : face_form.cut.thickness;
     face_form.cut.reach2 = plane ? cut.reach2 : face_form.cut.reach2;
     uint upward = number_material.y & ~(FACES_UPWARD | IS_MIXED) | (upper ? FACES_UPWARD : 0u);
-    number_material.y = plane ? upward : number_material.y;
+    number_material.y = plane && !whole ? upward : number_material.y;
     // Where it but leaves matter there is more of that before, of other splats.
-    return !known || plane || whole;
+    return !known || plane;
 }
 #endif

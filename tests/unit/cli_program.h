@@ -31,7 +31,11 @@ struct ProgramRun {
 /// A fresh folder per test, in which `run` works.
 class CliTest : public ::testing::Test {
   protected:
-    void SetUp() override { std::filesystem::create_directories(folder_); }
+    void SetUp() override {
+        // A program that was killed may have had the same number and left its folder.
+        std::filesystem::remove_all(folder_);
+        std::filesystem::create_directories(folder_);
+    }
     void TearDown() override {
         std::filesystem::remove_all(folder_);
         std::filesystem::remove_all(log_folder());
