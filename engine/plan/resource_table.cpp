@@ -248,11 +248,11 @@ const std::array kTargetBuffers{
         kWords, shader::BIND_OUTLINES,
         [](const FramePlan& p, const Profile&) { return if_tiles(p, p.variant.outlines ? pixels(p) * kWord : 0); }),
     row<TargetBufferRow>(
-        text("traced rays", "(y, x, 2) vec4", "5", "5"), &T::traced_rays, &F::traced_rays, Place::Device, kSums,
-        shader::BIND_TRACED_RAYS,
+        text("traced rays", "(y, x, 2) vec4", "5", "5"), &T::traced_rays, &F::traced_rays, Place::Device, kNoTexels,
+        kUnbound,
         [](const FramePlan& p, const Profile&) { return if_tiles(p, p.variant.traced ? 2 * picture_bytes(p) : 0); }),
     row<TargetBufferRow>(text("traced entries", "(pairs at once) bits", "4", "5"), &T::traced_entries,
-                         &F::traced_entries, Place::Device, kWords, shader::BIND_TRACED_ENTRIES,
+                         &F::traced_entries, Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile& profile) {
                              return if_tiles(p, traced_words(p, tile_entry_pairs(p, profile)) * kWord);
                          }),

@@ -56,8 +56,9 @@ bool has_two_values(const Field& field, const glm::ivec3& i) {
     std::array<double, 27> around{};
     for (int k = 0; k < 27; ++k)
         around[static_cast<std::size_t>(k)] = field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-    const auto [low, high] = std::ranges::minmax(around);
-    return std::ranges::all_of(around, [&](double f) { return std::min(f - low, high - f) <= 1e-3 * (high - low); });
+    const auto ends = std::ranges::minmax(around);
+    return std::ranges::all_of(
+        around, [&](double f) { return std::min(f - ends.min, ends.max - f) <= 1e-3 * (ends.max - ends.min); });
 }
 
 TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double first, double last,

@@ -28,9 +28,7 @@ EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 18u;     // r32ui (tiles, then groups 
 EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 19u;    // r32ui (tiles, TILE * TILE): which, x | y << 8 in the tile; with refined pixels only
 EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 20u;    // rgba32f (size.y, size.x): sums of a sheet whose entries go on in the next round
 EDGESPLAT_CONSTANT uint BIND_OUTLINES = 21u;       // r32ui (size.y, size.x): where an outline passes each pixel (outline.glsl)
-EDGESPLAT_CONSTANT uint BIND_TRACED_RAYS = 22u;     // rgba32f (size.y, size.x, 2): what each pixel's ray meets (traced_ray.glsl); with traced faces only
-EDGESPLAT_CONSTANT uint BIND_TRACED_ENTRIES = 23u;  // r32ui: which of each MARKED_AT_ONCE entries are traced; likewise
-EDGESPLAT_CONSTANT uint BIND_COUNT = 24u;
+EDGESPLAT_CONSTANT uint BIND_COUNT = 22u;
 
 EDGESPLAT_SHARED_END
 #endif

@@ -109,8 +109,8 @@ struct FrameParams {
     uint chunk_pairs;       // of a chunk that the device plans, at most; its splats are prepared, too
     uint chunk_slots;       // chunks that it plans, at most
     vec2 traced_interval;   // where the field is matter, half open, scaled; with traced faces only, as the next two
-    Address traced_rays;
-    Address traced_entries;
+    Address traced_rays;    // (size.y, size.x, 2) vec4: what each pixel's ray meets (traced_ray.glsl)
+    Address traced_entries; // uint: which of each MARKED_AT_ONCE entries are traced
     Address footprints;     // (splat_count) uvec2: layer and rotation of each that is drawn (selected_footprint.glsl); with a table only
 };
 

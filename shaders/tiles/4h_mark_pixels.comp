@@ -30,7 +30,6 @@ TEXEL_WORDS(BIND_TILE_CLOSED, closed_pixels, tile_closed, load_closed)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
 TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
 STORED_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark, store_mark)
-STORED_WORDS(BIND_TRACED_ENTRIES, traced_words, traced_entries, load_traced, store_traced)
 TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 layout(push_constant) uniform Push { uint draw_round; };
@@ -96,7 +95,7 @@ void main() {
         IF_ANY(count > 0u)
             for (uint c = 0u; c < OWN; ++c) store_mark(marks_at + int(c), marked[c]);
         if (TRACED == 1u) {
-            IF_ANY(count > 0u && gl_LocalInvocationID.x == 0u) store_traced(word_of(base), traced);
+            IF_ANY(count > 0u && gl_LocalInvocationID.x == 0u) UintsRef(params.frame.traced_entries).at[word_of(base)] = traced;
         }
     }
     // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.

@@ -41,7 +41,6 @@ TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_unfinished, store_unfinished)
-TEXEL_PIXELS(BIND_TRACED_RAYS, traced_pixels, traced_rays, load_traced)
 STORED_WORDS(BIND_OUTLINES, passing, outlines, load_outline, store_outline)
 layout(push_constant) uniform Push { uint what; };  // round | groups of a tile << 20 | first pixels of refined ones << 31
 #include "shaders/splats/splat_projection.glsl"
@@ -110,7 +109,7 @@ void main() {
         normal_distance = vec4(0.0);
         if (FACES) volume_piece = piece_in_volume(u);
         SeenRay traced;
-        if (TRACED == 1u) traced = seen_ray(load_traced(traced_at(held)), load_traced(traced_at(held) + 1u));
+        if (TRACED == 1u) traced = load_seen_ray(held);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint outline = NO_OUTLINE;

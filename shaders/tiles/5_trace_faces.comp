@@ -31,12 +31,10 @@ layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 TEXEL_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel)
 TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
 TEXEL_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark)
-TEXEL_WORDS(BIND_TRACED_ENTRIES, traced_words, traced_entries, load_traced)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
 TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
 TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
-STORED_PIXELS(BIND_TRACED_RAYS, traced_pixels, traced_rays, load_ray, store_ray)
 layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 ivec3 dims;
 #include "shaders/common/volume_sampling.glsl"
@@ -57,7 +55,7 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
     int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
     uint length = range.y - range.x;
     for (uint base = 0u; base < length; base += MARKED_AT_ONCE) {
-        uint bits = load_traced(word_of(range.x + base));
+        uint bits = traced_word(word_of(range.x + base));
         IF_ANY(bits != 0u) {
             bits &= load_mark(marks_at + int(base / MARKED_AT_ONCE * CELLS));
             while (bits != 0u) {
@@ -88,7 +86,7 @@ void main() {
     uvec2 range = load_range(tile);
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     uint any = 0u;
-    for (uint base = range.x; base < range.y; base += MARKED_AT_ONCE) any |= load_traced(word_of(base));
+    for (uint base = range.x; base < range.y; base += MARKED_AT_ONCE) any |= traced_word(word_of(base));
     if (any == 0u) return;
     ivec2 size = params.frame.size, corner = int(TILE) * ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x));
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
@@ -106,8 +104,8 @@ void main() {
             Stretch along = traced_stretch(range, pixel, across, u, way_length);
             IF_ANY(along.first < along.last) {
                 TracedRay ray = trace_ray(params.frame.anchor + params.frame.eye, u, along, params.frame.traced_interval);
-                store_ray(traced_at(held), pieces_texel(ray));
-                store_ray(traced_at(held) + 1u, ends_texel(ray));
+                PixelsRef(params.frame.traced_rays).at[traced_at(held)] = pieces_texel(ray);
+                PixelsRef(params.frame.traced_rays).at[traced_at(held) + 1u] = ends_texel(ray);
             }
         }
     }
