@@ -6,19 +6,19 @@ std::uint32_t tile_group(TileDraw how) {
     return how.refined ? how.profile->list_group : how.profile->tile_group;
 }
 
-gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
+namespace {
+
+gpu::Specialization constants_of(const DrawVariant& variant, TileDraw how, std::uint32_t group) {
     gpu::Specialization constants = draw_constants(variant);
     constants.emplace_back(shader::SPEC_ROUNDS, how.profile->rounds ? 1U : 0U);
     constants.emplace_back(shader::SPEC_COUNT, how.count ? 1U : 0U);
     constants.emplace_back(shader::SPEC_PREPARED, how.prepared ? 1U : 0U);
     constants.emplace_back(shader::SPEC_REFINED, how.refined ? 1U : 0U);
     constants.emplace_back(shader::SPEC_WIDE_MARKS, how.refined || how.wide_marks ? 1U : 0U);
-    constants.emplace_back(shader::SPEC_GROUP, tile_group(how));
+    constants.emplace_back(shader::SPEC_GROUP, group);
     constants.emplace_back(shader::SPEC_OUTLINES, variant.outlines ? 1U : 0U);
     return constants;
 }
-
-namespace {
 
 std::uint32_t pushed(const TileRound& round) {
     return round.round | round.tile_groups << 20U | (round.first_pixels ? 1U << 31U : 0U);
@@ -27,10 +27,11 @@ std::uint32_t pushed(const TileRound& round) {
 }  // namespace
 
 gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how) {
-    gpu::Specialization constants = tile_constants(variant, how);
-    for (auto& [id, value] : constants)
-        if (id == shader::SPEC_GROUP) value = how.profile->list_group;
-    return constants;
+    return constants_of(variant, how, how.profile->list_group);
+}
+
+gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
+    return constants_of(variant, how, tile_group(how));
 }
 
 void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,

@@ -190,14 +190,18 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
     }
 }
 
-std::pair<SplatRecord, bool> SplatDrawer::met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const {
+SplatDrawer::MetSplat SplatDrawer::met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const {
     SplatRecord record = records_[splat];
     // What is widened to a pixel is cut no more.
     if (!record.edge.traced || selected_[splat].filter.share == 1) return {record, true};
     const double ahead = glm::dot(glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index, u);
-    MetEdge edge = met_edge(record.edge, field_, view_.eye_index, u, p, ahead);
+    const MetEdge edge = met_edge(record.edge, field_, view_.eye_index, u, p, ahead);
     record.edge = edge.edge;
     return {record, edge.matter};
+}
+
+const glm::dvec4& SplatDrawer::ray_of(int x, int y) const {
+    return rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
 }
 
 double SplatDrawer::footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p,
@@ -243,34 +247,38 @@ bool SplatDrawer::in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, i
 }
 
 double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
-    const glm::dvec4& ray =
-        rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
+    const glm::dvec3 u(ray_of(x, y)), v = glm::dvec3(field_.voxel(records_[splat].voxel)) - view_.eye_index;
+    return tau(met(splat, glm::dot(v, u) * u - v, u), splat, x, y, cut);
+}
+
+double SplatDrawer::tau(const MetSplat& met, std::uint32_t splat, int x, int y,
+                        const std::optional<DepthRange>& cut) const {
+    if (!met.matter) return 0;
+    const SplatRecord& record = met.record;
+    const glm::dvec4& ray = ray_of(x, y);
     const glm::dvec3 u(ray);
-    const glm::dvec3 v = glm::dvec3(field_.voxel(records_[splat].voxel)) - view_.eye_index;
+    const glm::dvec3 v = glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index;
     const double s0 = glm::dot(v, u);
-    const auto [record, matter] = met(splat, s0 * u - v, u);
-    if (!matter) return 0;
+    const glm::dvec3 p = s0 * u - v;
     if (cut) {
         const double depth_along = glm::dot(view_.frame.forward, view_.geometry.index_to_world_axes * u);
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
-        return record.extinction(scene_) * ray.w * footprint(splat, record.edge, x, y, s0 * u - v, u, slice);
+        return record.extinction(scene_) * ray.w * footprint(splat, record.edge, x, y, p, u, slice);
     }
     const double share = in_front(s0);
     if (!(share > 0)) return 0;
-    const glm::dvec3 p = s0 * u - v;
     return record.extinction(scene_) * ray.w * share * footprint(splat, record.edge, x, y, p, u, {});
 }
 
 glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                                      const std::optional<DepthRange>& cut) const {
-    const glm::dvec4& ray =
-        rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
+    const glm::dvec4& ray = ray_of(x, y);
     const glm::dvec3 u(ray), center(field_.voxel(records_[splat].voxel));
     const double s0 = glm::dot(center - view_.eye_index, u);
     const glm::dvec3 p = view_.eye_index + s0 * u - center;
-    const auto met_here = met(splat, p, u);
-    const SplatRecord& record = met_here.first;
-    if (!met_here.second) return glm::dvec4(0);
+    const MetSplat here = met(splat, p, u);
+    if (!here.matter) return glm::dvec4(0);
+    const SplatRecord& record = here.record;
     const bool faces = draws_faces(settings_);
     const bool plain = selected_[splat].filter.share == 1;  // widened, it is cut no more
     const auto quantity_of = [&](const Slice& slice) {
@@ -282,7 +290,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
         slice = {cut->near / depth_along - s0, cut->far / depth_along - s0};
     }
     if (clip_.empty()) {
-        const double share = tau(splat, x, y, cut);
+        const double share = tau(here, splat, x, y, cut);
         return share > 0 ? share * glm::dvec4(faces ? quantity_of(slice) : own, 1) : glm::dvec4(0);
     }
     slice.low = std::max(slice.low, -s0);
@@ -340,7 +348,7 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                     const double ahead = glm::dot(center - view_.eye_index, u);
                     const glm::dvec3 p = view_.eye_index + ahead * u - center;
                     const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
-                    const VoxelEdge edge = met(splat, p, u).first.edge;
+                    const VoxelEdge edge = met(splat, p, u).record.edge;
                     if (!footprints_.cuts(edge)) continue;
                     keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
                 }

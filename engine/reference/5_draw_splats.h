@@ -61,8 +61,15 @@ class SplatDrawer {
     double tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut = {}) const;
 
   private:
-    /// The splat as the ray meets it, and whether that meets any of its matter.
-    std::pair<SplatRecord, bool> met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const;
+    const glm::dvec4& ray_of(int x, int y) const;
+    /// A splat as a ray meets it.
+    struct MetSplat {
+        SplatRecord record;
+        bool matter = true;  ///< some of it is on the ray
+    };
+    MetSplat met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const;
+    /// tau(), of what the ray of pixel (x, y) meets.
+    double tau(const MetSplat& met, std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const;
     /// The splat's kernel along the ray of pixel (x, y), or along a piece of it, as wide as the pixel asks for; `edge`
     /// as the ray meets it.
     double footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -134,10 +133,11 @@ MetEdge met_edge(const VoxelEdge& edge, const Field& field, const dvec3& eye, co
         face.D2 = kInfinity;
         if (leaves) face.D2 = std::max((longest->end - longest->begin) * std::abs(glm::dot(u, face.n)), 0.05) - face.D;
     } else if (!leaves) {
-        // Matter all along: a plain kernel with the normal of its face.
-        met.edge.n = glm::normalize(edge.n - edge.bending * (edge.D * edge.n));
-        met.edge.D = 1e9;
+        // Matter all along: the face is too far off to cut it.
         met.edge.traced.reset();
+        met.edge.n = glm::normalize(edge.n - edge.bending * (edge.D * edge.n));
+        met.edge.D = static_cast<double>(shader::TRACE_WHOLE);
+        met.edge.bending = glm::dmat3(0);
         met.edge.D2 = kInfinity;
     } else {
         // Where it but leaves matter there is more of that before, of other splats.

@@ -248,12 +248,11 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     add_times(cost.times, commands.span_times());
     out.with_edge = counts[0];
     out.with_crease = counts[1];
-    out.traced = counts[2];
     lists_.splat_count = total;
     lists_.edge_splat_count += out.with_edge;
     lists_.crease_splat_count += out.with_crease;
     // Rays need the whole field.
-    if (!residence_) lists_.traced_splat_count += out.traced;
+    if (!residence_) lists_.traced_splat_count += counts[2];
     return out;
 }
 

@@ -24,7 +24,7 @@ struct SetupCost {
 
 /// Splats that a block added to the list.
 struct CollectedBlock {
-    std::uint64_t first = 0, count = 0, with_edge = 0, with_crease = 0, traced = 0;
+    std::uint64_t first = 0, count = 0, with_edge = 0, with_crease = 0;
     glm::ivec3 low{0}, high{0};      ///< inclusive box that holds their voxels; the whole block without splats
     std::vector<SplatBrick> bricks;  ///< counted from `first`
 };

@@ -19,5 +19,5 @@ struct FaceForm {
 
 const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // of SplatInputs::number_material.y
 const uint MAIN_AXIS_AT = 11u;  // and the axis that the normal at the foot point is longest along, and its sign above
-const uint IS_TRACED = 1u << 14u;
+const uint IS_TRACED = 1u << 14u;  // rays find its face
 #endif

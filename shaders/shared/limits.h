@@ -29,13 +29,13 @@ EDGESPLAT_CONSTANT float CREASE_BEHIND = 0.1f;  // voxels that one plane's surfe
 EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // in which a plane's normal settles
 EDGESPLAT_CONSTANT float CREASE_FROM = 1e-3f;   // voxels^2, summed: where a quadric leaves less none is looked for
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // planes further off cut no kernel
-// Faces that rays find (5_trace_faces), where the best quadric leaves more than TRACE_FROM, voxels^2, summed.
+// Faces that rays find (5_trace_faces), where samples lie further than TRACE_FROM on the wrong side of the best quadric, voxels^2, summed.
 EDGESPLAT_CONSTANT float TRACE_FROM = 0.005f;
-EDGESPLAT_CONSTANT float TRACE_REACH = 2.15f;      // of their kernels: R and the depth of opaque matter, voxels
+EDGESPLAT_CONSTANT float TRACE_REACH = 2.15f;      // of their kernels, voxels: a plane at most R away cuts none that reaches further
 EDGESPLAT_CONSTANT float TRACE_STEP = 1.0f;       // voxels between samples of a ray
 EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // towards an end between two of them, at most: until one moves less than TRACE_NEAR
 EDGESPLAT_CONSTANT float TRACE_NEAR = 1e-3f;      // voxels
-EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.39f;    // voxels to a face that cuts nothing: less than R and the depth
+EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.39f;      // voxels to a face that cuts nothing: less than R and the depth
 EDGESPLAT_CONSTANT float TRACE_DEEP = 2.5f;       // voxels within opaque matter that nothing is seen behind
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 8), 1/voxel
