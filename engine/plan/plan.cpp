@@ -337,7 +337,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
     const auto traced = traced_material(settings, scene, geometry);
-    plan.variant.traced = plan.variant.opaque && splats.traced && traced;
+    plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && traced;
     if (plan.variant.traced) p.traced_interval = scaled_interval(volume, scene, *traced);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 

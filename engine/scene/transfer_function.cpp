@@ -63,7 +63,8 @@ bool one_piece_is_enough(const Settings& settings, const Scene& scene, const Vol
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry) {
     if (settings.edges != EdgeEstimator::Cubic || draws_table(settings)) return std::nullopt;
-    if (!one_piece_is_enough(settings, scene, geometry)) return std::nullopt;
+    if (!draws_faces(settings) || !scene.effects.clip.empty() || !hides_what_is_behind(scene, geometry))
+        return std::nullopt;
     std::optional<std::size_t> only;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         if (!(extinctions_of(scene, m).most > 0)) continue;

@@ -30,7 +30,7 @@ EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // in which a plane's normal set
 EDGESPLAT_CONSTANT float CREASE_FROM = 1e-3f;   // voxels^2, summed: where a quadric leaves less none is looked for
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // planes further off cut no kernel
 // Faces that rays find (5_trace_faces), where samples lie further than TRACE_FROM on the wrong side of the best quadric, voxels^2, summed.
-EDGESPLAT_CONSTANT float TRACE_FROM = 0.005f;
+EDGESPLAT_CONSTANT float TRACE_FROM = 0.01f;
 EDGESPLAT_CONSTANT float TRACE_REACH = 2.15f;      // of their kernels, voxels: a plane at most R away cuts none that reaches further
 EDGESPLAT_CONSTANT float TRACE_STEP = 1.0f;       // voxels between samples of a ray
 EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // towards an end between two of them, at most: until one moves less than TRACE_NEAR
