@@ -245,7 +245,7 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
 }
 
 /// What planes at a crease make of a voxel whose best quadric leaves `error`; nothing unless they leave less
-/// than half of it.
+/// than half of it, or a fifth where two planes meet at a blunt angle and might be a narrow ridge.
 std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i,
                                  std::span<const Surfel> surfels, const Surfel& nearest, double error) {
     if (!(error > kCreaseFrom)) return std::nullopt;
@@ -254,7 +254,8 @@ std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, c
     double off = wrong_sides(field, scene, i, [&](const dvec3& r) { return planes.off(r); });
     for (const Surfel& s : surfels)
         off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * std::pow(planes.off(s.at), 2);
-    if (!(off < kOwnShare * error)) return std::nullopt;
+    const bool blunt = glm::dot(planes.planes[0].n, planes.planes[1].n) > static_cast<double>(shader::CREASE_BLUNT);
+    if (!(off < (blunt ? static_cast<double>(shader::CREASE_BLUNT_LEFT) : kOwnShare) * error)) return std::nullopt;
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;

@@ -28,6 +28,8 @@ EDGESPLAT_CONSTANT float CREASE_ALIKE = 0.93f;  // cosine: those of one plane's 
 EDGESPLAT_CONSTANT float CREASE_BEHIND = 0.1f;  // voxels that one plane's surfels lie inside of another plane
 EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // in which a plane's normal settles
 EDGESPLAT_CONSTANT float CREASE_FROM = 1e-3f;   // voxels^2, summed: where a quadric leaves less none is looked for
+EDGESPLAT_CONSTANT float CREASE_BLUNT = 0.25f;      // cosine: two planes whose normals are more alike may be a ridge
+EDGESPLAT_CONSTANT float CREASE_BLUNT_LEFT = 0.2f;  // such ones must leave less of the squared error than a quadric
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // planes further off cut no kernel
 // Faces that rays find (5_trace_faces), where samples lie further than TRACE_FROM on the wrong side of the best quadric, voxels^2, summed.
 EDGESPLAT_CONSTANT float TRACE_FROM = 0.01f;

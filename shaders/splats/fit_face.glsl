@@ -303,7 +303,9 @@ Face fit_face(ivec3 p, uint material) {
             CreaseFit crease = fit_crease(p, material, middle, state, different.n);
             float left = 1e9;
             IF_ANY(crease.found) left = crease_error(p, material, middle, n, crease);
-            face.creased = left < FIT_OWN * best;
+            // Where two planes meet at a blunt angle a narrow ridge looks the same.
+            bool blunt = dot(crease.first.xyz, crease.second.xyz) > CREASE_BLUNT;
+            face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best;
             face.crease = crease.second;
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
         }
