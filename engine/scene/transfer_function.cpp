@@ -55,16 +55,23 @@ double face_depth(const Scene& scene, const VolumeGeometry& geometry) {
     return hides_what_is_behind(scene, geometry) ? kFaceDepth : kDeepFaceDepth;
 }
 
+namespace {
+
+/// Uncut kernels that hide what is behind, each cut at its face.
+bool draws_opaque_faces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_faces(settings) && scene.effects.clip.empty() && hides_what_is_behind(scene, geometry);
+}
+
+}  // namespace
+
 bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
-    return draws_faces(settings) && settings.sheets != SheetCut::Sliced && scene.effects.clip.empty() &&
-           hides_what_is_behind(scene, geometry);
+    return draws_opaque_faces(settings, scene, geometry) && settings.sheets != SheetCut::Sliced;
 }
 
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry) {
     if (settings.edges != EdgeEstimator::Cubic || draws_table(settings)) return std::nullopt;
-    if (!draws_faces(settings) || !scene.effects.clip.empty() || !hides_what_is_behind(scene, geometry))
-        return std::nullopt;
+    if (!draws_opaque_faces(settings, scene, geometry)) return std::nullopt;
     std::optional<std::size_t> only;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         if (!(extinctions_of(scene, m).most > 0)) continue;
