@@ -46,15 +46,22 @@ TEST_P(MaxError, HoldsForTheLargePicture) {
         accuracy::choose_settings(renderer, *volume, scene, camera, kSize, kSize, {c.limit, {}});
     EXPECT_LE(choice.expected_error, c.limit);
 
-    const RenderResult picture = renderer.render(scene, camera, choice.chosen.settings, kSize, kSize);
     const reference::PreparedVolume model(*volume, scene, accuracy::model_of({}));
     const auto expected =
         reference::direct_evaluation(model, camera, kSize, kSize, reference::Output::Color, {5e-4, {}});
-    const double error = accuracy::image_error(picture.color, expected.image).rms;
-    std::printf("%s: limit %.4f, expected %.5f, measured small %.5f, large %.5f\n", c.name, c.limit,
-                choice.expected_error, choice.chosen.error, error);
-    EXPECT_LE(error, c.limit);
-    EXPECT_LE(error, choice.expected_error);
+    // Whichever of them was the fastest today.
+    std::size_t allowed = 0;
+    for (const accuracy::TriedSettings& tried : choice.tried) {
+        const double bound = accuracy::kErrorMargin * tried.error;
+        if (bound > c.limit) continue;
+        const RenderResult picture = renderer.render(scene, camera, tried.settings, kSize, kSize);
+        const double error = accuracy::image_error(picture.color, expected.image).rms;
+        std::printf("%s: limit %.4f, expected %.5f, measured small %.5f, large %.5f with %s\n", c.name, c.limit, bound,
+                    tried.error, error, accuracy::settings_key(tried.settings).c_str());
+        EXPECT_LE(error, bound);
+        ++allowed;
+    }
+    EXPECT_GT(allowed, 0U);
 }
 
 INSTANTIATE_TEST_SUITE_P(RealVolumes, MaxError,
