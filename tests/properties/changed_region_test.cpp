@@ -136,6 +136,22 @@ TEST(ChangedRegion, NothingIsFoundAgainForTheSameSamples) {
     expect_same(first, again);
 }
 
+/// Rays that find faces need the field when all splats are collected, too.
+TEST(ChangedRegion, FacesThatRaysFindAreTheSameForTheSameSamples) {
+    Shot shot = torus_of(32);
+    shot.volume = std::make_shared<const Volume>(builtin_volume("builtin:gyroid:32"));
+    shot.scene.iso_values = builtin_scene("builtin:gyroid:32").iso_values;
+    shot.scene.materials = {{}, {{1, 0.85, 0.7}, 8}};
+    Renderer renderer = own_renderer();
+    renderer.set_volume(shot.volume);
+    const RenderResult first = picture(renderer, shot, {});
+    ASSERT_TRUE(std::ranges::any_of(first.stats.passes, [](const PassTime& p) { return p.name == "5_trace_faces"; }));
+    renderer.set_volume(std::make_shared<Volume>(*shot.volume));
+    const RenderResult again = picture(renderer, shot, {});
+    EXPECT_EQ(again.stats.setup_milliseconds, 0);
+    expect_same(first, again);
+}
+
 TEST(ChangedRegion, AnotherRangeOrGridIsAnotherVolume) {
     const Shot shot = torus_of(24);
     auto brighter = with_ball(*shot.volume, {12, 12, 12}, 1, shot.volume->max_value + 1);
