@@ -21,7 +21,7 @@ Taps taps(double place, int size, bool cubic) {
     if (cubic) return {spline_taps(p, size)};
     const int cell = static_cast<int>(p);
     const double t = p - cell;
-    return {{{1 - t, t}, {cell, std::min(cell + 1, size - 1)}}, 2};
+    return {{.weights = {1 - t, t}, .slopes = {}, .places = {cell, std::min(cell + 1, size - 1)}}, 2};
 }
 
 /// The spline at the second of three coefficients.
@@ -84,8 +84,8 @@ void FieldLine::move_to(const glm::dvec3& across) {
                 out[x] += weight * static_cast<double>(*from);
         }
     if (cubic_) {
-        nodes_.front() = out[std::min<std::size_t>(1, length - 1)];
-        nodes_.back() = out[length < 2 ? 0 : length - 2];
+        nodes_.front() = 2 * out[0] - out[std::min<std::size_t>(1, length - 1)];
+        nodes_.back() = 2 * out[length - 1] - out[length < 2 ? 0 : length - 2];
     }
 }
 

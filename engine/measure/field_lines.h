@@ -36,8 +36,7 @@ class FieldLine {
     int axis_;
     bool cubic_;
     glm::dvec3 across_{0};
-    std::vector<double>
-        nodes_;  ///< the spline's coefficients along the line with one mirrored at either end, or values
+    std::vector<double> nodes_;  ///< the spline's coefficients along the line and one beyond either end, or values
 };
 
 }  // namespace edgesplat::measure

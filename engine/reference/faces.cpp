@@ -174,7 +174,7 @@ VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const gl
     const dvec3 from = at - x, last(field.dims - 1);
     n = upper ? n : -n;
     const double d = glm::dot(from, n);
-    const bool inside = glm::all(glm::greaterThan(at, dvec3(-1e-3))) && glm::all(glm::lessThan(at, last + 1e-3));
+    const bool inside = glm::all(glm::greaterThan(at, dvec3(-0.5))) && glm::all(glm::lessThan(at, last + 0.5));
     if (!(std::abs(off) < 2e-3 && glm::length(from - d * n) < 0.25 && std::abs(d) <= kSurfelReach && inside))
         return none;
     VoxelEdge edge;

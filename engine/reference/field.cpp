@@ -12,19 +12,20 @@ namespace edgesplat::reference {
 namespace {
 
 /// The spline, or with `along` its derivative along that axis.
-double spline(const Field& field, const glm::dvec3& clamped_point, int along = -1) {
+double spline(const Field& field, const glm::dvec3& p, int along = -1) {
     std::array<SplineTaps, 3> taps;
+    std::array<const std::array<double, 4>*, 3> weights{};
     for (int axis = 0; axis < 3; ++axis) {
-        SplineTaps& on = taps[static_cast<std::size_t>(axis)] = spline_taps(clamped_point[axis], field.dims[axis]);
-        const double t = clamped_point[axis] - std::floor(clamped_point[axis]), s = 1 - t;
-        if (axis == along) on.weights = {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2};
+        const auto a = static_cast<std::size_t>(axis);
+        taps[a] = spline_taps(p[axis], field.dims[axis]);
+        weights[a] = axis == along ? &taps[a].slopes : &taps[a].weights;
     }
     double sum = 0;
     for (std::size_t z = 0; z < 4; ++z) {
         for (std::size_t y = 0; y < 4; ++y) {
             for (std::size_t x = 0; x < 4; ++x) {
                 const glm::ivec3 i{taps[0].places[x], taps[1].places[y], taps[2].places[z]};
-                sum += taps[0].weights[x] * taps[1].weights[y] * taps[2].weights[z] *
+                sum += (*weights[0])[x] * (*weights[1])[y] * (*weights[2])[z] *
                        static_cast<double>(field.coefficients[field.offset(i)]);
             }
         }
@@ -71,8 +72,8 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
 }
 
 double sample(const Field& field, const glm::dvec3& p, bool cubic) {
+    if (cubic) return spline(field, p);
     const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
-    if (cubic) return spline(field, q);
     const glm::ivec3 cell = glm::max(glm::min(glm::ivec3(glm::floor(q)), field.dims - 2), glm::ivec3(0));
     const glm::dvec3 t = q - glm::dvec3(cell);
     const auto row = [&](int y, int z) {
@@ -88,8 +89,7 @@ double sample(const Field& field, const glm::dvec3& p, bool cubic) {
 }
 
 glm::dvec3 spline_gradient(const Field& field, const glm::dvec3& p) {
-    const glm::dvec3 q = glm::clamp(p, glm::dvec3(0), glm::dvec3(field.dims - 1));
-    return {spline(field, q, 0), spline(field, q, 1), spline(field, q, 2)};
+    return {spline(field, p, 0), spline(field, p, 1), spline(field, p, 2)};
 }
 
 glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i) {

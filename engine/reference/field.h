@@ -11,7 +11,7 @@
 
 namespace edgesplat::reference {
 
-/// Samples as the GPU holds them. Positions are in index space (voxels); p is clamped to the volume.
+/// Samples as the GPU holds them. Positions are in index space (voxels).
 struct Field {
     glm::ivec3 dims{0};                   ///< voxels per axis, each >= 1
     std::span<const float> values;        ///< F, scaled to 0..1, (dims.z, dims.y, dims.x)
@@ -37,7 +37,8 @@ struct ScaledScene {
 /// The scene in F's units. Iso-values that all samples reach are -1e9, those above all of them +1e9.
 ScaledScene scale_scene(const Scene& scene, const Volume& volume);
 
-/// T(p), trilinear; with `cubic` the cubic B-spline of the coefficients (mirrored at the borders).
+/// T(p), trilinear, p clamped to the volume; with `cubic` the cubic B-spline of the coefficients, which goes on
+/// straight.
 double sample(const Field& field, const glm::dvec3& p, bool cubic = false);
 
 /// The gradient of the cubic B-spline of the coefficients.

@@ -26,7 +26,11 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter) {
     scene.name = volume.name;
     scene.dims = volume.geometry.dims;
     scene.iso_values = {low + range / 2};
-    scene.value = [=](const glm::dvec3& x) { return low + range * sample(field(), x, cubic); };
+    // Beyond the outermost samples the field is theirs.
+    const auto held = [last = glm::dvec3(volume.geometry.dims - 1)](const glm::dvec3& x) {
+        return glm::clamp(x, glm::dvec3(0), last);
+    };
+    scene.value = [=](const glm::dvec3& x) { return low + range * sample(field(), held(x), cubic); };
     scene.gradient = [=](const glm::dvec3& x) {
         const glm::dvec3 p = inside(x);
         if (cubic) return range * spline_gradient(field(), p);

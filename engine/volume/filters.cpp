@@ -1,8 +1,5 @@
 #include "engine/volume/filters.h"
 
-#include <itkBSplineDecompositionImageFilter.h>
-#include <itkImage.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -24,6 +21,34 @@ Volume like(const Volume& volume) {
 }
 
 using detail::bin_of;
+
+/// Lines side by side: the first sample of each, one behind the other, then the second of each.
+struct Lines {
+    float* samples;
+    std::size_t count;
+    std::size_t stride;  ///< from a line's sample to its next
+};
+
+/// Samples become the coefficients of the spline through them: c[i-1] + 4 c[i] + c[i+1] = 6 f[i], at either end c = f.
+void solve_lines(const Lines& lines, int length) {
+    const int last = length - 1;
+    std::vector<float> kept(static_cast<std::size_t>(length), 0.0F);
+    const auto samples_at = [&](int i) { return lines.samples + static_cast<std::size_t>(i) * lines.stride; };
+    for (int i = 1; i < last; ++i) {
+        const float m = kept[static_cast<std::size_t>(i)] = 1 / (4 - kept[static_cast<std::size_t>(i) - 1]);
+        const float* before = samples_at(i - 1);
+        float* here = samples_at(i);
+        for (std::size_t line = 0; line < lines.count; ++line)
+            here[line] = m * (6 * here[line] - before[line]);
+    }
+    for (int i = last - 1; i > 0; --i) {
+        const float m = kept[static_cast<std::size_t>(i)];
+        const float* behind = samples_at(i + 1);
+        float* here = samples_at(i);
+        for (std::size_t line = 0; line < lines.count; ++line)
+            here[line] -= m * behind[line];
+    }
+}
 
 }  // namespace
 
@@ -108,28 +133,57 @@ std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box) {
 }
 
 std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims) {
-    using ImageType = itk::Image<float, 3>;
     if (dims.x < 1 || dims.y < 1 || dims.z < 1 ||
         field.size() !=
             static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z))
         fail("B-spline coefficients: {} samples for dims {} x {} x {}", field.size(), dims.x, dims.y, dims.z);
-    const auto image = ImageType::New();
-    const ImageType::SizeType size{{static_cast<itk::SizeValueType>(dims.x), static_cast<itk::SizeValueType>(dims.y),
-                                    static_cast<itk::SizeValueType>(dims.z)}};
-    image->SetRegions(size);
-    auto samples = field;  // ITK's image points at them: no second copy
-    image->GetPixelContainer()->SetImportPointer(samples.data(), samples.size(), false);
-    const auto filter = itk::BSplineDecompositionImageFilter<ImageType, ImageType>::New();
-    filter->SetSplineOrder(3);
-    filter->SetInput(image);
-    try {
-        filter->Update();
-    } catch (const itk::ExceptionObject& error) {
-        fail("B-spline coefficients: {}", error.GetDescription());
+    std::vector<float> coefficients = field;
+    const std::size_t row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
+    for (std::size_t at = 0; at < coefficients.size(); at += row)
+        solve_lines({&coefficients[at], 1, 1}, dims.x);
+    for (std::size_t at = 0; at < coefficients.size(); at += slice)
+        solve_lines({&coefficients[at], row, row}, dims.y);
+    solve_lines({coefficients.data(), slice, slice}, dims.z);
+    return coefficients;
+}
+
+SplineTaps spline_taps(double place, int size) {
+    const int last = size - 1;
+    const double held = std::clamp(place, 0.0, static_cast<double>(last)), beyond = place - held;
+    const int cell = static_cast<int>(held);
+    const double t = held - cell, s = 1 - t;
+    SplineTaps taps{
+        {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6},
+        {-s * s / 2, (1.5 * t - 2) * t, (2 - 1.5 * s) * s, t * t / 2},
+        {}};
+    for (int k = 0; k < 4; ++k)
+        taps.places[static_cast<std::size_t>(k)] = std::clamp(cell + k - 1, 0, last);
+    for (std::array<double, 4>* w : {&taps.weights, &taps.slopes}) {
+        auto& [before, first, second, behind] = *w;
+        // A coefficient beyond a border goes on straight from the two before it.
+        if (cell == 0) {
+            first += 2 * before;
+            second -= before;
+            before = 0;
+        }
+        if (cell == last - 1) {
+            second += 2 * behind;
+            first -= behind;
+            behind = 0;
+        }
+        if (cell == last) {
+            first += 2 * second;
+            before -= second;
+            second = 0;
+        }
     }
-    const float* coefficients = filter->GetOutput()->GetBufferPointer();
-    std::copy_n(coefficients, samples.size(), samples.begin());
-    return samples;
+    if (size == 1) {
+        taps.weights = {0, 1, 0, 0};
+        taps.slopes = {};
+    }
+    for (std::size_t k = 0; k < 4; ++k)
+        taps.weights[k] += beyond * taps.slopes[k];
+    return taps;
 }
 
 Histogram histogram(const Volume& volume, int bins) {

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <cstdlib>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -36,28 +35,18 @@ double scaled_value(const Volume& volume, double value);
 /// extrapolates to it.
 double scaled_iso_value(const Volume& volume, double iso_value);
 
-/// Coefficients of the cubic B-spline that goes through `field` (x fastest, mirrored at the borders): what the `cubic`
-/// edge estimator interpolates. Same size and order as `field`. Throws Error when dims and field disagree.
+/// Coefficients of the cubic B-spline that goes through `field` (x fastest), without second derivatives at the borders:
+/// what the `cubic` edge estimator interpolates. Same size and order as `field`. Throws Error when dims and field
+/// disagree.
 std::vector<float> bspline_coefficients(const std::vector<float>& field, const glm::ivec3& dims);
 
-/// The four coefficients beside a place of that spline on one axis, and their weights.
+/// The four coefficients beside a place of that spline on one axis, and their weights in its value and its slope.
 struct SplineTaps {
-    std::array<double, 4> weights{};
-    std::array<int, 4> places{};  ///< mirrored at the borders
+    std::array<double, 4> weights{}, slopes{};
+    std::array<int, 4> places{};  ///< one beyond a border has no weight
 };
-
-/// `place` in [0, size - 1], size >= 1.
-inline SplineTaps spline_taps(double place, int size) {
-    const int cell = static_cast<int>(place), last = size - 1;
-    const double t = place - cell, s = 1 - t;
-    SplineTaps taps{
-        {s * s * s / 6, (3 * t * t * t - 6 * t * t + 4) / 6, (3 * s * s * s - 6 * s * s + 4) / 6, t * t * t / 6}, {}};
-    for (int k = 0; k < 4; ++k) {
-        const int i = std::abs(cell + k - 1);
-        taps.places[static_cast<std::size_t>(k)] = std::clamp(i > last ? 2 * last - i : i, 0, last);
-    }
-    return taps;
-}
+/// Any `place`: beyond the outermost samples the spline goes on straight. size >= 1.
+SplineTaps spline_taps(double place, int size);
 
 struct Histogram {
     double low = 0, high = 0;  ///< value range; bin i covers low + [i, i+1) * (high - low) / bins, the last one closed

@@ -2,52 +2,56 @@
 // The including shader declares `volume` and `coefficients` (r32f image3D) and the variable `dims`.
 #include "shaders/common/trilinear.glsl"
 
-vec4 bspline_weights(float t) {
-    float s = 1.0 - t;
-    return vec4(s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t) / 6.0;
+// Along an axis: the four coefficients beside a place of the spline, and their weights in its value and slope.
+struct SplineTaps {
+    ivec4 places;  // one beyond a border has no weight
+    vec4 weights, slopes;
+};
+
+// A coefficient beyond a border goes on straight from the two before it; `cell` of n - 1.
+vec4 within_border(vec4 w, int cell, int n) {
+    w = cell == 0 ? vec4(0.0, w.y + 2.0 * w.x, w.z - w.x, w.w) : w;
+    w = cell == n - 2 ? vec4(w.x, w.y - w.w, w.z + 2.0 * w.w, 0.0) : w;
+    return cell == n - 1 ? vec4(w.x - w.z, w.y + 2.0 * w.z, 0.0, w.w) : w;
 }
 
-// Mirror at the border, as the prefilter assumes.
-ivec4 mirrored(int i, int n) {
-    ivec4 m = abs(i + ivec4(-1, 0, 1, 2));
-    return clamp(min(m, 2 * n - 2 - m), 0, n - 1);
+// At p from voxel `origin`, of n. Beyond the outermost samples the spline goes on straight. Mirrors engine/volume/filters.h.
+SplineTaps spline_taps(int origin, float p, int n) {
+    float held = clamp(p, float(-origin), float(n - 1 - origin)), c = floor(held), t = held - c, s = 1.0 - t;
+    int cell = origin + int(c);
+    SplineTaps taps;
+    taps.places = clamp(cell + ivec4(-1, 0, 1, 2), 0, n - 1);
+    taps.weights = within_border(vec4(s * s * s, 3.0 * t * t * t - 6.0 * t * t + 4.0, 3.0 * s * s * s - 6.0 * s * s + 4.0, t * t * t) / 6.0, cell, n);
+    taps.slopes = within_border(vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t), cell, n);
+    taps.weights = n == 1 ? vec4(0.0, 1.0, 0.0, 0.0) : taps.weights + (p - held) * taps.slopes;
+    taps.slopes = n == 1 ? vec4(0.0) : taps.slopes;
+    return taps;
 }
 
 float bspline(vec3 p) {
-    p = clamp(p, vec3(0.0), vec3(dims - 1));
-    vec3 c = floor(p);
-    vec4 wx = bspline_weights(p.x - c.x), wy = bspline_weights(p.y - c.y), wz = bspline_weights(p.z - c.z);
-    ivec4 x = mirrored(int(c.x), dims.x), y = mirrored(int(c.y), dims.y), z = mirrored(int(c.z), dims.z);
+    SplineTaps x = spline_taps(0, p.x, dims.x), y = spline_taps(0, p.y, dims.y), z = spline_taps(0, p.z, dims.z);
     float sum = 0.0;
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
             float line = 0.0;
             for (int i = 0; i < 4; ++i)
-                line += wx[i] * imageLoad(coefficients, ivec3(x[i], y[j], z[k])).r;
-            sum += wy[j] * wz[k] * line;
+                line += x.weights[i] * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            sum += y.weights[j] * z.weights[k] * line;
         }
     return sum;
 }
 
-vec4 bspline_slopes(float t) {
-    float s = 1.0 - t;
-    return vec4(-0.5 * s * s, (1.5 * t - 2.0) * t, (2.0 - 1.5 * s) * s, 0.5 * t * t);
-}
-
 // (gradient, value) of the spline, at p from voxel `origin`.
 vec4 bspline_slope(ivec3 origin, vec3 p) {
-    p = clamp(p, vec3(-origin), vec3(dims - 1 - origin));
-    vec3 c = floor(p), t = p - c;
-    vec4 wx = bspline_weights(t.x), wy = bspline_weights(t.y), wz = bspline_weights(t.z);
-    vec4 sx = bspline_slopes(t.x), sy = bspline_slopes(t.y), sz = bspline_slopes(t.z);
-    ivec4 x = mirrored(origin.x + int(c.x), dims.x), y = mirrored(origin.y + int(c.y), dims.y), z = mirrored(origin.z + int(c.z), dims.z);
+    SplineTaps x = spline_taps(origin.x, p.x, dims.x), y = spline_taps(origin.y, p.y, dims.y), z = spline_taps(origin.z, p.z, dims.z);
     vec4 sum = vec4(0.0);
     for (int k = 0; k < 4; ++k)
         for (int j = 0; j < 4; ++j) {
             vec2 line = vec2(0.0);
             for (int i = 0; i < 4; ++i)
-                line += vec2(wx[i], sx[i]) * imageLoad(coefficients, ivec3(x[i], y[j], z[k])).r;
-            sum += vec4(line.y * wy[j] * wz[k], line.x * sy[j] * wz[k], line.x * wy[j] * sz[k], line.x * wy[j] * wz[k]);
+                line += vec2(x.weights[i], x.slopes[i]) * imageLoad(coefficients, ivec3(x.places[i], y.places[j], z.places[k])).r;
+            float wy = y.weights[j], wz = z.weights[k];
+            sum += vec4(line.y * wy * wz, line.x * y.slopes[j] * wz, line.x * wy * z.slopes[k], line.x * wy * wz);
         }
     return sum;
 }

@@ -39,7 +39,8 @@ Edge find_surfel(ivec3 p, float value, float low, float high) {
     }
     n = upper ? n : -n;
     float d = dot(at, n);
-    bool inside = all(greaterThan(at, vec3(-p) - 1e-3)) && all(lessThan(at, vec3(dims - 1 - p) + 1e-3));
+    // The volume ends half a voxel beyond its outermost samples.
+    bool inside = all(greaterThan(at, vec3(-p) - 0.5)) && all(lessThan(at, vec3(dims - 1 - p) + 0.5));
     bool found = !lost && abs(off) < 2e-3 && length(at - d * n) < 0.25 && abs(d) <= SURFEL_REACH && inside;
     if (found) e = Edge(n, d, 1e9, upper ? EDGE_UPPER : EDGE_LOWER);
     return e;

@@ -23,10 +23,13 @@ uint visible_mask;
 #include "shaders/common/opacity.glsl"
 #include "shaders/common/volume_sampling.glsl"
 
+// Beyond the outermost samples the field is theirs.
+vec3 within_samples(vec3 p) { return clamp(p, vec3(0.0), vec3(dims - 1)); }
+
 // trilinear() with a cheaper choice of the cell: at the last sample it has no width. Or the spline.
 float field(vec3 p) {
+    p = within_samples(p);
     if (FILTER == FILTER_CUBIC) return bspline(p);
-    p = clamp(p, vec3(0.0), vec3(dims - 1));
     ivec3 c = ivec3(p);
     return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
 }

@@ -1,6 +1,7 @@
 // Which bricks hold anything but transparent material: 0 for those, BRICK_FAR for the rest. docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
+#include "shaders/drivers/if_any.glsl"
 #include "shaders/shared/raycast_params.h"
 #include "shaders/shared/bindings.h"
 
@@ -14,6 +15,22 @@ layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams 
 #include "shaders/common/material.glsl"
 #include "shaders/common/transfer.glsl"
 
+// A coefficient beyond a border goes on straight from the two before it.
+float spline_coefficient(ivec3 p) {
+    ivec3 last = params.scene.dims - 1, held = clamp(p, ivec3(0), last);
+    float value = imageLoad(coefficients, held).r;
+    IF_ANY(held != p) {
+        ivec3 before = clamp(2 * held - p, ivec3(0), last);
+        value = 0.0;
+        for (int i = 0; i < 8; ++i) {
+            bvec3 inner = bvec3(i & 1, i & 2, i & 4);
+            vec3 w = mix(mix(vec3(1.0), vec3(2.0), notEqual(held, p)), mix(vec3(0.0), vec3(-1.0), notEqual(held, p)), inner);
+            value += w.x * w.y * w.z * imageLoad(coefficients, mix(held, before, inner)).r;
+        }
+    }
+    return value;
+}
+
 void main() {
     ivec3 brick = ivec3(gl_GlobalInvocationID), count = imageSize(scratch);
     if (any(greaterThanEqual(brick, count))) return;
@@ -21,8 +38,8 @@ void main() {
     ivec3 first = brick << BRICK_SHIFT, last = min(first + (1 << BRICK_SHIFT), params.scene.dims - 1);
     // A spline lies within the coefficients of the four voxels around along each axis, but for rounding.
     if (FILTER == FILTER_CUBIC) {
-        first = max(first - 1, ivec3(0));
-        last = min(last + 1, params.scene.dims - 1);
+        --first;
+        ++last;
     }
     float low = 3e38, high = -3e38;
     for (int z = first.z; z <= last.z; ++z)
@@ -30,7 +47,7 @@ void main() {
             for (int x = first.x; x <= last.x; ++x) {
                 float value = 0.0, rounding = 0.0;
                 if (FILTER == FILTER_CUBIC) {
-                    value = imageLoad(coefficients, ivec3(x, y, z)).r;
+                    value = spline_coefficient(ivec3(x, y, z));
                     rounding = 1e-6 * (1.0 + abs(value));
                 } else {
                     value = imageLoad(volume, ivec3(x, y, z)).r;

@@ -44,7 +44,7 @@ EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
 EDGESPLAT_CONSTANT uint MAX_CLIP_PLANES = 8u;        // of either kind
 // A block's border holds all that its splats depend on. From a splat outwards, voxels: the points of the surface that its face is
-// fitted to, the way to those and the gradient there, and a spline's coefficients, which what is mirrored there is not in.
+// fitted to, the way to those and the gradient there, and a spline's coefficients as far as its ends are felt.
 EDGESPLAT_CONSTANT int ESTIMATE_MARGIN = 7;
 EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
 EDGESPLAT_CONSTANT int BLOCK_BORDER = 24;

@@ -173,7 +173,9 @@ TEST(DrawTiles, PicturesAreThoseOfLayers) {
             EXPECT_GT(peak, 0);
             std::printf("payload %u %-24s worst of peak %.1e\n", payload, s.name.c_str(),
                         static_cast<double>(worst / peak));
-            EXPECT_LE(worst, 2e-5F * peak);
+            // Where a ray just misses a curved face the root of a difference near 0 has half a float's digits: 3e-4 of
+            // one splat.
+            EXPECT_LE(worst, 1e-4F * peak);
         }
     }
 }

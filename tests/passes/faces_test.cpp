@@ -60,8 +60,11 @@ INSTANTIATE_TEST_SUITE_P(All, Surfels, testing::Values(EdgeEstimator::March, Edg
 
 TEST(Faces, RecordsHoldTheQuadricsThatFit) {
     for (const PassScene& plain : pass_scenes()) {
-        const PassScene s = with_faces(plain);
+        PassScene s = with_faces(plain);
         SCOPED_TRACE(s.name);
+        const bool is_wall = s.name == "wall from inside";
+        // Of thinner ones a single quadric often fits both faces, of thicker ones a voxel sees one.
+        if (is_wall) s.volume = sample(slab_scene({24, 24, 24}, {0.3, 1, 0.2}, {11.5, 13, 11.5}, 2.5));
         DeviceUnderTest& state = prepared(s);
         const auto values = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, values, {}};
@@ -87,11 +90,9 @@ TEST(Faces, RecordsHoldTheQuadricsThatFit) {
             differ += same_edge(record.edge, want) && bending <= 0.02 && same_crease && same_way ? 0U : 1U;
         }
         EXPECT_GT(faces, 500U);
-        EXPECT_GT(most_bent, s.name == "wall from inside" ? 1e-4 : 0.1);
-        if (s.name == "wall from inside") {
-            // Beside the volume's border the wall's faces meet that, and are no wall.
-            EXPECT_GT(walls, 25U);
-        }
+        EXPECT_GT(most_bent, is_wall ? 1e-4 : 0.1);
+        if (is_wall) std::printf("%zu of %zu are walls\n", walls, faces);
+        EXPECT_TRUE(!is_wall || 2 * walls > faces);
         // Which of two surfels is nearer, or of two fits better, may be a matter of rounding.
         EXPECT_LE(static_cast<double>(differ), 0.01 * static_cast<double>(faces)) << differ << " of " << faces;
     }

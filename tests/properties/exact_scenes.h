@@ -10,14 +10,13 @@
 
 namespace edgesplat::test {
 
-/// A builtin scene, opaque, whole in a picture of 120 x 120 pixels.
+/// A scene, opaque, whole in a picture of 120 x 120 pixels.
 struct Exact {
     Shot shot;
     Image truth;
 };
 
-inline Exact exact_scene(const std::string& name, double extinction = 8) {
-    const AnalyticScene scene = builtin_scene("builtin:" + name);
+inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8) {
     Exact out;
     Shot& shot = out.shot;
     shot.volume = std::make_shared<const Volume>(sample(scene));
@@ -33,6 +32,11 @@ inline Exact exact_scene(const std::string& name, double extinction = 8) {
     out.truth =
         reference::truth(scene, shot.volume->geometry, shot.scene, shot.camera, shot.width, shot.height, options).image;
     return out;
+}
+
+/// A builtin one.
+inline Exact exact_scene(const std::string& name, double extinction = 8) {
+    return exact_scene(builtin_scene("builtin:" + name), extinction);
 }
 
 /// How near a picture is to the truth, PSNR of RGBA.

@@ -49,6 +49,24 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NearerToTheTruth,
                              return name;
                          });
 
+/// Beyond its outermost samples a volume goes on for half a voxel, and a surface with it, as it came.
+TEST(Faces, ABallThatTheBorderCutsHasNoFlange) {
+    const glm::ivec3 dims(24, 22, 20);
+    const Exact scene = exact_scene(sphere_scene(dims, glm::dvec3(dims - 1) / 2.0, 11.8));
+    const Shot& shot = scene.shot;
+    const double faces = decibels(render(shot).color, scene.truth);
+    const auto by_rays = [&](RaycastFilter filter) {
+        return decibels(
+            test_renderer()
+                .raycast(shot.scene, shot.camera, shot.settings, {.filter = filter}, shot.width, shot.height)
+                .color,
+            scene.truth);
+    };
+    const double trilinear = by_rays(RaycastFilter::Trilinear), cubic = by_rays(RaycastFilter::Cubic);
+    std::printf("faces %.1f dB, rays %.1f, cubic %.1f\n", faces, trilinear, cubic);
+    EXPECT_GE(faces - std::max(trilinear, cubic), 3);
+}
+
 TEST(Faces, DepthAndNormalAreThoseOfTheSurface) {
     const Exact scene = exact_scene("small-ball");
     Shot shot = scene.shot;

@@ -298,30 +298,58 @@ TEST(Filters, BoxThresholdAndScaling) {
     EXPECT_TRUE(suggest_iso_values(volume).empty());
 }
 
-TEST(Filters, BsplineCoefficientsInterpolate) {
-    const auto volume = builtin_volume("builtin:sphere:24x20x16");
-    const auto& dims = volume.geometry.dims;
-    const auto c = bspline_coefficients(volume.values, dims);
-    ASSERT_EQ(c.size(), volume.values.size());
-    const auto mirrored = [](int i, int n) { return i < 0 ? -i : i >= n ? 2 * (n - 1) - i : i; };
-    const double weight[] = {1.0 / 6, 4.0 / 6, 1.0 / 6};
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x) {
-                double sum = 0;
-                for (int k = 0; k < 3; ++k)
-                    for (int j = 0; j < 3; ++j)
-                        for (int i = 0; i < 3; ++i) {
-                            const int at =
-                                (mirrored(z + k - 1, dims.z) * dims.y + mirrored(y + j - 1, dims.y)) * dims.x +
-                                mirrored(x + i - 1, dims.x);
-                            sum += weight[i] * weight[j] * weight[k] *
-                                   static_cast<double>(c[static_cast<std::size_t>(at)]);
-                        }
-                ASSERT_NEAR(sum, volume.at(x, y, z), 1e-5);
+namespace {
+
+double spline_at(const std::vector<float>& coefficients, const glm::ivec3& dims, const glm::dvec3& p) {
+    const auto x = spline_taps(p.x, dims.x), y = spline_taps(p.y, dims.y), z = spline_taps(p.z, dims.z);
+    double sum = 0;
+    for (std::size_t k = 0; k < 4; ++k)
+        for (std::size_t j = 0; j < 4; ++j)
+            for (std::size_t i = 0; i < 4; ++i) {
+                const int at = (z.places[k] * dims.y + y.places[j]) * dims.x + x.places[i];
+                sum += x.weights[i] * y.weights[j] * z.weights[k] *
+                       static_cast<double>(coefficients[static_cast<std::size_t>(at)]);
             }
+    return sum;
+}
+
+}  // namespace
+
+TEST(Filters, BsplineCoefficientsInterpolate) {
+    for (const char* name : {"builtin:sphere:24x20x16", "builtin:sphere:7x3x2", "builtin:sphere:5x2x4"}) {
+        const auto volume = builtin_volume(name);
+        const auto& dims = volume.geometry.dims;
+        const auto c = bspline_coefficients(volume.values, dims);
+        ASSERT_EQ(c.size(), volume.values.size());
+        for (int z = 0; z < dims.z; ++z)
+            for (int y = 0; y < dims.y; ++y)
+                for (int x = 0; x < dims.x; ++x)
+                    ASSERT_NEAR(spline_at(c, dims, {x, y, z}), volume.at(x, y, z), 1e-5) << name;
+    }
     EXPECT_EQ(bspline_coefficients({1, 2, 3}, {3, 1, 1}).size(), 3U);
     EXPECT_THROW(bspline_coefficients({1, 2}, {3, 1, 1}), Error);
+}
+
+TEST(Filters, ASplineGoesOnStraightBeyondTheBorder) {
+    const glm::ivec3 dims(6, 5, 2);
+    const auto plane = [](const glm::dvec3& p) { return 0.3 + 0.1 * p.x - 0.04 * p.y + 0.2 * p.z; };
+    std::vector<float> samples;
+    for (int z = 0; z < dims.z; ++z)
+        for (int y = 0; y < dims.y; ++y)
+            for (int x = 0; x < dims.x; ++x)
+                samples.push_back(static_cast<float>(plane({x, y, z})));
+    const auto c = bspline_coefficients(samples, dims);
+    for (const glm::dvec3 p : {glm::dvec3(-0.5, 2.3, 1.5), {5.5, 4.5, -0.5}, {0, 0.2, 0}, {4.9, 4, 1}, {2.5, -2, 3}})
+        EXPECT_NEAR(spline_at(c, dims, p), plane(p), 1e-6);
+    // Slopes are the weights' own derivatives, at borders and within.
+    for (const double place : {-0.4, 0.3, 1.7, 4.2, 5.3})
+        for (std::size_t k = 0; k < 4; ++k) {
+            const double h = 1e-5;
+            const auto taps = spline_taps(place, dims.x);
+            const double slope =
+                (spline_taps(place + h, dims.x).weights[k] - spline_taps(place - h, dims.x).weights[k]) / (2 * h);
+            EXPECT_NEAR(taps.slopes[k], slope, 1e-8) << place;
+        }
 }
 
 TEST(Filters, HistogramAndIsoValues) {
