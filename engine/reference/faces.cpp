@@ -23,6 +23,7 @@ constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
 constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
 constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
 constexpr auto kOwnShare = static_cast<double>(shader::FIT_OWN);
+constexpr auto kBadly = static_cast<double>(shader::FIT_BADLY);
 constexpr auto kWell = static_cast<double>(shader::FIT_WELL);
 constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
 constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
@@ -211,8 +212,13 @@ Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, doubl
     return {scale * off, -scale * g, -scale * dmat3(diagonal.x, xy, xz, xy, diagonal.y, yz, xz, yz, diagonal.z)};
 }
 
+struct Foot {
+    dvec3 at, slope;
+    bool real;  ///< else the quadric has no surface in reach
+};
+
 /// The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
-dvec3 foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
+Foot foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
     for (int step = 0; step < shader::FOOT_STEPS; ++step) {
         const double steep = glm::length(q.slope(at)), value = q.at(at);
         const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
@@ -222,7 +228,16 @@ dvec3 foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
         const dvec3 from = at - voxel_at;
         if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
     }
-    return at;
+    const dvec3 slope = q.slope(at);
+    return {at, slope, glm::length(slope) >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius};
+}
+
+/// Of the field's own quadric about the voxel.
+Foot own_foot_of(const Quadric& q) {
+    const dvec3 d(q.h[0][0], q.h[1][1], q.h[2][2]);
+    dvec3 way = q.g;
+    way[d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2)] += 1e-3;
+    return foot_of(q, dvec3(0), 0.1 * glm::normalize(way));
 }
 
 /// How far a point is from a quadric, to first order.
@@ -361,36 +376,28 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const double own_error = of_own + own_wrong;
     // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
     // voxel.
-    const bool is_own = !found || (error > kWell && own_error < kOwnShare * error);
+    const Foot fitted = foot_of(is_wall ? wall : one, -middle, dvec3(0)), from_voxel = own_foot_of(own);
+    bool is_own = !fitted.real || (error > kWell && own_error < (error > kBadly ? 1 : kOwnShare) * error);
+    is_own = !found || (is_own && from_voxel.real);
     is_wall = is_wall && !is_own;
     if (found) {
         if (const auto edge = creased(field, scene, i, seen, nearest, is_own ? own_error : error)) return *edge;
     }
     const Quadric& q = is_own ? own : (is_wall ? wall : one);
-    const dvec3 about = is_own ? dvec3(0) : middle;
-    dvec3 begin(0);
-    if (is_own) {
-        const dvec3 d(q.h[0][0], q.h[1][1], q.h[2][2]);
-        const int axis = d.x >= d.y && d.x >= d.z ? 0 : (d.y >= d.z ? 1 : 2);
-        dvec3 way = q.g;
-        way[axis] += 1e-3;
-        begin = 0.1 * glm::normalize(way);
-    }
-    const dvec3 at = foot_of(q, -about, begin);
-    const double steep = glm::length(q.slope(at));
-    const bool real = steep >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius;
-    if (is_own && !real) return normal_alone(field, i);
+    const Foot& foot = is_own ? from_voxel : fitted;
+    if (is_own && !foot.real) return normal_alone(field, i);
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;
     // Where none is seen a layer ends at its lower values.
     edge.mixed = mixed > 0 || (mixed == 0 && nearest.upper);
-    edge.n = real ? q.slope(at) / steep : n;
-    edge.D = glm::dot(about + (real ? at : dvec3(0)), edge.n);
-    if (real) edge.bending = q.h / steep;
+    const double steep = glm::length(foot.slope);
+    edge.n = foot.real ? foot.slope / steep : n;
+    edge.D = glm::dot((is_own ? dvec3(0) : middle) + (foot.real ? foot.at : dvec3(0)), edge.n);
+    if (foot.real) edge.bending = q.h / steep;
     if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
-    if (real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
+    if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     return edge;
 }
 

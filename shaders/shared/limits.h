@@ -21,6 +21,7 @@ EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave
 EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
 EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
 EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept
+EDGESPLAT_CONSTANT float FIT_BADLY = 2.0f;  // the same: of what fits worse than this the better is taken
 // Creases: planes fitted to surfels whose normals differ.
 EDGESPLAT_CONSTANT float CREASE_RADIUS = 2.2f;  // voxels around the nearest surfel
 EDGESPLAT_CONSTANT float CREASE_TURNED = 0.6f;  // cosine: normals of two planes are less alike

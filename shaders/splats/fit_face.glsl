@@ -183,8 +183,13 @@ Quadric field_quadric(ivec3 p, float iso, float side) {
 // The same about another point.
 Quadric quadric_about(Quadric q, vec3 m) { return Quadric(quadric_at(q, m), quadric_slope(q, m), q.h); }
 
+struct Foot {
+    vec3 at, slope;
+    bool real;  // else the quadric has no surface in reach
+};
+
 // The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
-vec3 foot_of(Quadric q, vec3 voxel_at, vec3 at) {
+Foot foot_of(Quadric q, vec3 voxel_at, vec3 at) {
     for (int i = 0; i < FOOT_STEPS; ++i) {
         vec3 slope = quadric_slope(q, at);
         float steep = length(slope);
@@ -195,7 +200,8 @@ vec3 foot_of(Quadric q, vec3 voxel_at, vec3 at) {
         vec3 from = at - voxel_at;
         at -= i + 2 < FOOT_STEPS ? 0.7 * (from - dot(from, up) * up) : vec3(0.0);
     }
-    return at;
+    vec3 slope = quadric_slope(q, at);
+    return Foot(at, slope, length(slope) >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS);
 }
 
 // By how much samples around lie on the wrong side of each of three quadrics about `middle`, squared: of `one`, of the wall
@@ -295,8 +301,21 @@ Face fit_face(ivec3 p, uint material) {
         bool is_wall = e.opposite > 0.0 && level < -FIT_THINNEST && wall_error < FIT_WALL * e.one;
         vec3 wrong = wrong_sides(p, material, middle, one, wall, level, own);
         float error = is_wall ? wall_error + wrong.y : e.one + wrong.x;
+        Quadric q = one;
+        if (is_wall) q = wall;
+        Foot foot = foot_of(q, -middle, vec3(0.0));
         // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a voxel.
-        bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < FIT_OWN * error);
+        bool is_own = !found || !foot.real || (error > FIT_WELL && e.own + wrong.z < (error > FIT_BADLY ? 1.0 : FIT_OWN) * error);
+        IF_ANY(is_own) {
+            vec3 d = centred.h.diagonal;
+            vec3 axis = d.x >= d.y && d.x >= d.z ? vec3(1.0, 0.0, 0.0) : d.y >= d.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
+            Foot from_voxel = foot_of(centred, vec3(0.0), 0.1 * normalize(centred.g + 1e-3 * axis));
+            is_own = is_own && (from_voxel.real || !found);
+            if (is_own) {
+                foot = from_voxel;
+                q = centred;
+            }
+        }
         is_wall = is_wall && !is_own;
         float best = is_own ? e.own + wrong.z : error;
         IF_ANY(found && best > CREASE_FROM) {
@@ -312,30 +331,13 @@ Face fit_face(ivec3 p, uint material) {
         if (face.creased) return face;
         face.traced = found && (is_own ? wrong.z : is_wall ? wrong.y : wrong.x) > TRACE_FROM;
         IF_ANY(face.traced) face.traced = !has_two_values(p);
-        Quadric q = one;
-        if (is_wall) q = wall;
-        if (is_own) {
-            q = centred;
-            middle = vec3(0.0);
-        }
-        vec3 begin = vec3(0.0);
-        if (is_own) {
-            vec3 d = q.h.diagonal;
-            vec3 axis = d.x >= d.y && d.x >= d.z ? vec3(1.0, 0.0, 0.0) : d.y >= d.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
-            begin = 0.1 * normalize(q.g + 1e-3 * axis);
-        }
-        vec3 at = foot_of(q, -middle, begin);
-        vec3 slope = quadric_slope(q, at);
-        float steep = length(slope);
-        bool real = steep >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS;
-        vec3 foot = middle + (real ? at : vec3(0.0));
-        bool none = is_own && !real;
-        face.edge.n = real ? slope / max(steep, 1e-6) : n;
-        face.edge.d = dot(foot, face.edge.n);
-        face.edge.state = none ? EDGE_NONE : state;
-        float scale = real ? 1.0 / max(steep, 0.3) : 0.0;
+        vec3 about = is_own ? vec3(0.0) : middle;
+        float scale = foot.real ? 1.0 / length(foot.slope) : 0.0;
+        face.edge.n = foot.real ? scale * foot.slope : n;
+        face.edge.d = dot(about + (foot.real ? foot.at : vec3(0.0)), face.edge.n);
+        face.edge.state = found || foot.real ? state : EDGE_NONE;
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
-        if (real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
+        if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
     }
     return face;
 }
