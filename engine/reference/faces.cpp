@@ -377,8 +377,8 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
     // voxel.
     const Foot fitted = foot_of(is_wall ? wall : one, -middle, dvec3(0)), from_voxel = own_foot_of(own);
-    bool is_own = !fitted.real || (error > kWell && own_error < (error > kBadly ? 1 : kOwnShare) * error);
-    is_own = !found || (is_own && from_voxel.real);
+    const bool is_own = !found || (error > kWell && own_error < (error > kBadly ? 1 : kOwnShare) * error) ||
+                        (!fitted.real && from_voxel.real);
     is_wall = is_wall && !is_own;
     if (found) {
         if (const auto edge = creased(field, scene, i, seen, nearest, is_own ? own_error : error)) return *edge;

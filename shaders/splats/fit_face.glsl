@@ -305,12 +305,12 @@ Face fit_face(ivec3 p, uint material) {
         if (is_wall) q = wall;
         Foot foot = foot_of(q, -middle, vec3(0.0));
         // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a voxel.
-        bool is_own = !found || !foot.real || (error > FIT_WELL && e.own + wrong.z < (error > FIT_BADLY ? 1.0 : FIT_OWN) * error);
-        IF_ANY(is_own) {
+        bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < (error > FIT_BADLY ? 1.0 : FIT_OWN) * error);
+        IF_ANY(is_own || !foot.real) {
             vec3 d = centred.h.diagonal;
             vec3 axis = d.x >= d.y && d.x >= d.z ? vec3(1.0, 0.0, 0.0) : d.y >= d.z ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0);
             Foot from_voxel = foot_of(centred, vec3(0.0), 0.1 * normalize(centred.g + 1e-3 * axis));
-            is_own = is_own && (from_voxel.real || !found);
+            is_own = is_own || (!foot.real && from_voxel.real);
             if (is_own) {
                 foot = from_voxel;
                 q = centred;
@@ -335,7 +335,7 @@ Face fit_face(ivec3 p, uint material) {
         float scale = foot.real ? 1.0 / length(foot.slope) : 0.0;
         face.edge.n = foot.real ? scale * foot.slope : n;
         face.edge.d = dot(about + (foot.real ? foot.at : vec3(0.0)), face.edge.n);
-        face.edge.state = found || foot.real ? state : EDGE_NONE;
+        face.edge.state = is_own && !foot.real ? EDGE_NONE : state;
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
     }
