@@ -38,10 +38,22 @@ Stretch kernel_stretch(vec3 p, float ahead) {
     return s;
 }
 
+// The part of a ray in the volume, which has no ends along an axis of one voxel.
+Stretch within_volume(vec3 from, vec3 u) {
+    vec3 way = mix(u, vec3(1e-8), lessThan(abs(u), vec3(1e-8)));
+    vec3 a = (vec3(-0.5) - from) / way, b = (vec3(dims) - 0.5 - from) / way;
+    bvec3 endless = equal(dims, ivec3(1));
+    vec3 near = mix(min(a, b), vec3(-TRACE_NOWHERE), endless), far = mix(max(a, b), vec3(TRACE_NOWHERE), endless);
+    return Stretch(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
+}
+
 // Along u from `from`, matter being where the field is within `interval`. Samples lie TRACE_STEP apart, at
 // places that are the same wherever one begins, and where the field may turn over an end between two of them; ends are then found by
-// Newton's method. Looks no further than the second piece, or TRACE_DEEP into one.
+// Newton's method. Looks no further than the second piece, or TRACE_DEEP into one. Where the volume ends, so does what is looked at.
 TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
+    Stretch whole = within_volume(from, u);
+    float until = along.last;
+    along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
     TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
     uint pieces = 0u;
@@ -53,7 +65,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     // One sample a turn, of the ray or of the search for an end, so that lavapipe has one loop of them.
     while (looks) {
         bool in_search = searching > 0, walks = !in_search;
-        float z = in_search ? guess : probes ? probe : float(k) * TRACE_STEP;
+        float z = in_search ? guess : probes ? probe : clamp(float(k) * TRACE_STEP, whole.first, whole.last);
         vec4 field = bspline_slope(ivec3(0), from + z * u);
         float slope = dot(field.xyz, u);
         bool inside = is_matter(field.w, interval);
@@ -99,8 +111,8 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         value_before = takes ? field.w : value_before;
         slope_before = takes ? slope : slope_before;
         begun = begun || takes;
-        t.last = takes ? z : t.last;
         bool deep = takes && !crosses && matter && z - entered > TRACE_DEEP, at_end = takes && !crosses && k > end;
+        t.last = at_end ? max(z, until) : takes ? z : t.last;
         looks = !(leaves && second) && !at_end && pieces < 3u && !deep;
     }
     return t;
