@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <utility>
 
+#include "engine/reference/volume_piece.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -51,19 +51,6 @@ double root(const Along& along, double level, double a, double b) {
     return 0.5 * (a + b);
 }
 
-/// The part of a ray in the volume, which has no ends along an axis of one voxel.
-std::pair<double, double> within_volume(const Field& field, const dvec3& eye, const dvec3& u) {
-    double first = -kInfinity, last = kInfinity;
-    for (int axis = 0; axis < 3; ++axis) {
-        if (field.dims[axis] == 1) continue;
-        const double way = std::abs(u[axis]) < 1e-8 ? 1e-8 : u[axis];
-        const double a = (-0.5 - eye[axis]) / way, b = (field.dims[axis] - 0.5 - eye[axis]) / way;
-        first = std::max(first, std::min(a, b));
-        last = std::min(last, std::max(a, b));
-    }
-    return {first, last};
-}
-
 }  // namespace
 
 bool has_two_values(const Field& field, const glm::ivec3& i) {
@@ -78,10 +65,10 @@ bool has_two_values(const Field& field, const glm::ivec3& i) {
 TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double first, double last,
                     const VoxelEdge::Interval& interval) {
     const Along along{field, eye, u};
-    const auto [enters, leaves] = within_volume(field, eye, u);
-    first = std::max(first, enters);
+    const VolumePiece whole = piece_in_volume(field.dims, eye, u);
+    first = std::max(first, whole.low);
     TracedRay ray;
-    if (!(first < std::min(last, leaves))) return ray;
+    if (!(first < std::min(last, whole.high))) return ray;
     Sample before;
     bool begun = false;
     // False: nothing behind counts.
@@ -106,9 +93,9 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
         return at.z - (std::isfinite(entered) ? entered : first) <= kTraceDeep;
     };
     const auto sampled = [&](double z) { return Sample{z, along.value(z), along.slope(z)}; };
-    const auto end = static_cast<std::int64_t>(std::ceil(std::min(last, leaves) / kTraceStep));
+    const auto end = static_cast<std::int64_t>(std::ceil(std::min(last, whole.high) / kTraceStep));
     for (auto k = static_cast<std::int64_t>(std::floor(first / kTraceStep)); k <= end; ++k) {
-        const Sample next = sampled(std::clamp(static_cast<double>(k) * kTraceStep, enters, leaves));
+        const Sample next = sampled(std::clamp(static_cast<double>(k) * kTraceStep, whole.low, whole.high));
         if (begun && interval.holds(next.value) == interval.holds(before.value)) {
             const auto turn = turn_between(before, next, interval);
             if (turn && !take(sampled(*turn))) return ray;

@@ -10,6 +10,7 @@
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 #include "shaders/common/clip_ray.glsl"
+#include "shaders/common/volume_ends.glsl"
 #include "shaders/light/shading.glsl"
 
 float footprint(float rho2, float pn, float un, Slice slice) {
@@ -77,11 +78,9 @@ struct VolumePiece {
 VolumePiece volume_piece;
 
 VolumePiece piece_in_volume(vec3 u) {
-    vec3 way = mix(u, vec3(1e-8), lessThan(abs(u), vec3(1e-8)));
-    vec3 from = params.frame.anchor + params.frame.eye;
-    vec3 a = (vec3(-0.5) - from) / way, b = (vec3(params.frame.dims) - 0.5 - from) / way;
-    bvec3 flat_axis = equal(params.frame.dims, ivec3(1));
-    vec3 near = mix(min(a, b), vec3(-1e9), flat_axis), far = mix(max(a, b), vec3(1e9), flat_axis);
+    vec3 way = divisible(u);
+    VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, way, params.frame.dims);
+    vec3 near = ends.near, far = ends.far;
     float low = max(near.x, max(near.y, near.z)), high = min(far.x, min(far.y, far.z));
     bool x = near.x >= low, y = !x && near.y >= low;
     vec3 out_of = -sign(way) * vec3(x, y, !x && !y);

@@ -2,6 +2,7 @@
 // docs/method.md, 5_trace_faces; mirrored by engine/reference/traced_face.h. The including shader declares `coefficients` and `dims`.
 #ifndef EDGESPLAT_TRACE_RAY_GLSL
 #define EDGESPLAT_TRACE_RAY_GLSL
+#include "shaders/common/volume_ends.glsl"
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/traced_ray.glsl"
@@ -38,20 +39,12 @@ Stretch kernel_stretch(vec3 p, float ahead) {
     return s;
 }
 
-// The part of a ray in the volume, which has no ends along an axis of one voxel.
-Stretch within_volume(vec3 from, vec3 u) {
-    vec3 way = mix(u, vec3(1e-8), lessThan(abs(u), vec3(1e-8)));
-    vec3 a = (vec3(-0.5) - from) / way, b = (vec3(dims) - 0.5 - from) / way;
-    bvec3 endless = equal(dims, ivec3(1));
-    vec3 near = mix(min(a, b), vec3(-TRACE_NOWHERE), endless), far = mix(max(a, b), vec3(TRACE_NOWHERE), endless);
-    return Stretch(max(near.x, max(near.y, near.z)), min(far.x, min(far.y, far.z)));
-}
-
 // Along u from `from`, matter being where the field is within `interval`. Samples lie TRACE_STEP apart, at
 // places that are the same wherever one begins, and where the field may turn over an end between two of them; ends are then found by
 // Newton's method. Looks no further than the second piece, or TRACE_DEEP into one. Where the volume ends, so does what is looked at.
 TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
-    Stretch whole = within_volume(from, u);
+    VolumeEnds ends = volume_ends(from, divisible(u), dims);
+    Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
     float until = along.last;
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
