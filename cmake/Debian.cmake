@@ -64,6 +64,7 @@ set(CPACK_DEBIAN_EDGESPLAT_PACKAGE_SUGGESTS "ffmpeg, gnuplot-nox")
 set(CPACK_DEBIAN_DEV_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_PYTHON-DEBIAN_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON-DEBIAN_PACKAGE_SUGGESTS "python3-ipywidgets")
 
 # Debian wants the date of a version, which is that of its commit.
 execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} log -1 --format=%cD OUTPUT_VARIABLE date

@@ -10,6 +10,7 @@ Lengths are mm, angles degrees, colours linear light from 0 to 1. Arrays of volu
 from ._core import DeviceLost, Error, Interrupted, SceneError, __version__, builtin_names
 from ._renderer import Device, Movie, Picture, Renderer, Statistics, accuracy, list_devices, movie, render
 from ._scene import Camera, Key, Scene, scene_keys
+from ._view import View
 from ._volume import Extents, Quantity, Volume
 
 __all__ = [
@@ -27,6 +28,7 @@ __all__ = [
     "Scene",
     "SceneError",
     "Statistics",
+    "View",
     "Volume",
     "__version__",
     "accuracy",

@@ -133,9 +133,16 @@ class Picture:
         it as ``.tau.exr`` and so on) or ``.exr`` (float32, linear, everything in it)."""
         self._core.save(os.fspath(path))
 
-    def png(self) -> bytes:
-        """A PNG file: 8-bit sRGB over the background."""
-        return self._core.png()
+    def png(self, left: Picture | None = None, wipe: float = 0.5) -> bytes:
+        """A PNG file: 8-bit sRGB over the background. Left of `wipe`, from 0 to 1 of the width, and of a white line
+        there, it shows the picture `left`, of the same size."""
+        if left is None:
+            return self._core.png()
+        if left.color.shape != self.color.shape:
+            raise Error(f"left: {left.color.shape[1]} x {left.color.shape[0]}: expected the picture's own size")
+        if not 0 <= wipe <= 1:
+            raise Error(f"wipe: {wipe}: expected 0 to 1")
+        return self._core.wiped_png(left._core, wipe)
 
     def _repr_png_(self) -> bytes:
         return self.png()

@@ -1,6 +1,8 @@
 // Pictures as arrays, files and figures.
 #include "python/src/pictures.h"
 
+#include <cmath>
+
 #include "apps/edgesplat/max_error_option.h"
 #include "engine/accuracy/json_text.h"
 #include "engine/error.h"
@@ -59,6 +61,21 @@ std::string png(const Picture& self) {
     return encode_png(without_alpha(self.frames.front().result.color), metadata);
 }
 
+/// A picture with another one of its size left of a white line.
+std::string wiped_png(const Picture& self, const Picture& left, double wipe) {
+    const py::gil_scoped_release release;
+    Image image = without_alpha(self.frames.back().result.color);
+    const Image other = without_alpha(left.frames.back().result.color);
+    const int line = static_cast<int>(std::lround(wipe * (image.width - 1)));
+    for (int y = 0; y < image.height; ++y)
+        for (int c = 0; c < image.channels; ++c) {
+            for (int x = 0; x < line; ++x)
+                image.at(x, y, c) = other.at(x, y, c);
+            image.at(line, y, c) = 1;
+        }
+    return encode_png(image, {});
+}
+
 py::object array_of(const py::object& self, const Image& image) {
     std::vector<py::ssize_t> shape{image.height, image.width};
     if (image.channels > 1) shape.push_back(image.channels);
@@ -99,6 +116,8 @@ void add_pictures(py::module_& module) {
         .def_property_readonly("volume", [](const Picture& self) { return self.volume; })
         .def("statistics", [](const Picture& self) { return json_text(described(self).statistics); })
         .def("png", [](const Picture& self) { return py::bytes(png(self)); })
+        .def("wiped_png", [](const Picture& self, const Picture& left,
+                             double wipe) { return py::bytes(wiped_png(self, left, wipe)); })
         .def("save", save);
 }
 
