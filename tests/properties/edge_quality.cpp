@@ -13,6 +13,9 @@ namespace edgesplat::test {
 namespace {
 
 constexpr int kOrientations = 24;
+/// Steps of opacity are placed to half a pixel.
+constexpr double kFine = 160;
+constexpr int kFineWidth = 641;
 
 Settings with(EdgeEstimator edges, FootprintMode mode, WarpFamily family = WarpFamily::Face) {
     Settings s;
@@ -57,15 +60,6 @@ struct Strip {
     }
 };
 
-const Strip& edge_on_strip() {
-    static const Strip strip = [] {
-        Strip s{.size = 18, .width = 161, .height = 24};
-        s.place();
-        return s;
-    }();
-    return strip;
-}
-
 /// Smallest signed distance to the scene's solid along the ray of a pixel, voxels. Index = world.
 double closest(const AnalyticScene& solid, const Camera& camera, int x, int y, int width, int height) {
     const CameraFrame frame = camera_frame(camera);
@@ -99,11 +93,12 @@ double true_silhouette(const AnalyticScene& solid, const Camera& camera, int y, 
 void add_silhouette(const AnalyticScene& solid, const VolumePointer& volume, const glm::dvec3& target,
                     const glm::dvec3& direction, const glm::dvec3& out, const Settings& settings,
                     EdgeProfiles& profiles) {
-    constexpr int kWidth = 161, kHeight = 6;
-    const Camera camera = camera_at(target, direction, out, kHeight);
-    const Image color = render({volume, two_tone(0, 4), camera, settings, kWidth, kHeight}).color;
+    constexpr int kHeight = 6;
+    const Camera camera = camera_at(target, direction, out, kHeight, kFine);
+    const Image color = render({volume, two_tone(0, 4), camera, settings, kFineWidth, kHeight}).color;
     for (int y = 0; y < kHeight; ++y)
-        add_profile(row_of(color, y, nullptr, 3), true_silhouette(solid, camera, y, kWidth, kHeight), profiles);
+        add_profile(row_of(color, y, nullptr, 3), true_silhouette(solid, camera, y, kFineWidth, kHeight), profiles,
+                    kFine);
 }
 
 double uniform(std::mt19937& random) {
@@ -162,17 +157,23 @@ std::vector<Method> compared_methods() {
             {"paper's own (taylor, warp2d)", papers_own()}};
 }
 
-EdgeProfiles plane_edges(const Settings& settings) {
-    const Strip& strip = edge_on_strip();
+EdgeProfiles plane_edges(const Settings& settings, double cut_away) {
+    constexpr int kSize = 18, kHeight = 12;
+    Scene scene = two_tone(0, 1);
+    for (int axis = 0; axis < 3 && cut_away > 0; ++axis) {
+        glm::dvec3 outwards(0);
+        outwards[axis] = 1;
+        scene.effects.clip.keep.push_back({glm::dvec3(cut_away), -outwards});
+        scene.effects.clip.keep.push_back({glm::dvec3(kSize - 1 - cut_away), outwards});
+    }
     EdgeProfiles profiles;
-    for (std::size_t i = 0; i < strip.list.size(); ++i) {
-        const Pose& pose = strip.list[i];
-        const Image color = render({plane_volume(strip.size, pose, strip.center(pose)), two_tone(0, 1),
-                                    strip.cameras[i], settings, strip.width, strip.height})
-                                .color;
-        // Opacity: where the plane meets the grid's border matter is lost.
-        for (int y = 0; y < strip.height; ++y)
-            add_profile(row_of(color, y, nullptr, 3), (strip.width - 1) / 2.0, profiles);
+    for (const Pose& pose : poses(kOrientations)) {
+        const glm::dvec3 center = glm::dvec3((kSize - 1) / 2.0) + pose.shift;
+        const Camera camera = camera_at(center, pose.across, pose.n, kHeight, kFine);
+        const Image color =
+            render({plane_volume(kSize, pose, center), scene, camera, settings, kFineWidth, kHeight}).color;
+        for (int y = 0; y < kHeight; ++y)
+            add_profile(row_of(color, y, nullptr, 3), (kFineWidth - 1) / 2.0, profiles, kFine);
     }
     return profiles;
 }

@@ -18,8 +18,9 @@ struct Method {
 /// The default first; then plain splatting, the estimators, the paper's curve and the paper's own method.
 std::vector<Method> compared_methods();
 
-/// Planes seen edge-on at 24 random orientations, optical depth at 40 pixels per voxel.
-EdgeProfiles plane_edges(const Settings& settings);
+/// Planes seen edge-on at 24 random orientations, opacity, without the matter that is less than `cut_away` voxels from
+/// the grid's outermost samples: where the plane meets the grid's border a kernel knows one of the two.
+EdgeProfiles plane_edges(const Settings& settings, double cut_away);
 
 /// Opaque solids, extinction 4 per voxel, on alpha: where it is one half, against the edge of the solid's projection
 /// (the ray that just touches it). Positive location: the picture's solid is too large.

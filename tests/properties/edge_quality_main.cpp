@@ -28,9 +28,12 @@ void edge_header(const char* what) {
 }
 
 void planes() {
-    edge_header("Planes seen edge-on, 24 orientations, opacity, 40 pixels per voxel; lengths in voxels");
-    for (const Method& method : compared_methods())
-        print_edges(method.name, plane_edges(method.settings));
+    for (const double cut_away : {1.0, 0.0}) {
+        edge_header(cut_away > 0 ? "Planes seen edge-on, 24 orientations, without the voxel beside the grid's border"
+                                 : "Planes seen edge-on, 24 orientations, the grid's border included");
+        for (const Method& method : compared_methods())
+            print_edges(method.name, plane_edges(method.settings, cut_away));
+    }
 }
 
 void silhouettes() {

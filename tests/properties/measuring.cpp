@@ -90,15 +90,15 @@ Camera camera_at(const glm::dvec3& target, const glm::dvec3& direction, const gl
     return camera;
 }
 
-void add_profile(std::span<const double> profile, double expected, EdgeProfiles& profiles) {
+void add_profile(std::span<const double> profile, double expected, EdgeProfiles& profiles, double pixels_per_voxel) {
     const auto low = first_below(profile, 0.1), half = first_below(profile, 0.5);
     const auto high = low ? last_below(profile, 0.9, *low) : std::nullopt;
     if (!low || !half || !high) {
         ++profiles.missed;
         return;
     }
-    profiles.rise.push_back((*low - *high) / kPixelsPerVoxel);
-    profiles.location.push_back((*half - expected) / kPixelsPerVoxel);
+    profiles.rise.push_back((*low - *high) / pixels_per_voxel);
+    profiles.location.push_back((*half - expected) / pixels_per_voxel);
     profiles.overshoot.push_back(*std::max_element(profile.begin(), profile.end()) - 1);
 }
 

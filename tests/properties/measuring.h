@@ -43,7 +43,8 @@ struct EdgeProfiles {
 };
 
 /// Adds a profile that falls from 1 to 0, one value a pixel, with its edge expected at sample `expected`.
-void add_profile(std::span<const double> profile, double expected, EdgeProfiles& profiles);
+void add_profile(std::span<const double> profile, double expected, EdgeProfiles& profiles,
+                 double pixels_per_voxel = kPixelsPerVoxel);
 
 double mean(std::span<const double> values);  ///< NaN of none
 double mean_magnitude(std::span<const double> values);
