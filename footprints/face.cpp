@@ -82,6 +82,7 @@ double FacePlane::beyond(double z) const {
 FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     : rho2_(ray.rho2),
       half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))),
+      share_(cut.share),
       crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
       facing_(cut.crease.facing) {
     const bool wall = cut.thickness < kInfinity;
@@ -135,7 +136,7 @@ double FacePath::sampled_at(const FacePiece& piece, double z) const {
 double FacePath::kernel_at(double z) const {
     if (!(std::abs(z) < half_chord_)) return 0;
     for (const FacePiece& piece : pieces())
-        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z));
+        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z)) / share_;
     return 0;
 }
 
@@ -153,7 +154,7 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
             const double z = begin + (end - begin) * rule.nodes[k];
             sum += rule.weights[k] * kernel(sampled_at(piece, z));
         }
-        out.integral += std::max(end - begin, 0.0) * sum;
+        out.integral += std::max(end - begin, 0.0) * sum / share_;
         // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where
         // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
         const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();

@@ -54,6 +54,7 @@ struct FaceCut {
     double depth = 0.8;                                          ///< where it is sampled at least, > 0
     double thickness = std::numeric_limits<double>::infinity();  ///< of the wall, > 0
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
+    double share = 1;  ///< that matter holds of it, which it is divided by (face_share)
     /// Another plane that ends the matter; none at infinity.
     struct Crease {
         double distance = std::numeric_limits<double>::infinity();  ///< from the voxel's centre
@@ -136,7 +137,7 @@ class FacePath {
     /// |x|^2 of where the kernel is sampled for the point z of the ray.
     double sampled_at(const FacePiece& piece, double z) const;
 
-    double rho2_, half_chord_;
+    double rho2_, half_chord_, share_;
     FacePlane crease_;
     double facing_;  ///< of the crease with the face
     std::array<FacePiece, 2> pieces_;

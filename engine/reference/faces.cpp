@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -19,45 +20,15 @@ using glm::dvec3;
 // The shaders' numbers.
 constexpr auto kFitRadius = static_cast<double>(shader::FIT_RADIUS);
 constexpr auto kFitRidge = static_cast<double>(shader::FIT_RIDGE);
-constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
 constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
 constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
 constexpr auto kOwnShare = static_cast<double>(shader::FIT_OWN);
 constexpr auto kBadly = static_cast<double>(shader::FIT_BADLY);
 constexpr auto kWell = static_cast<double>(shader::FIT_WELL);
 constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
+constexpr auto kWallLevel = static_cast<double>(shader::WALL_LEVEL);
+constexpr auto kWallBent = static_cast<double>(shader::WALL_BENT);
 constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
-
-VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
-    VoxelEdge edge;
-    const dvec3 g = voxel_gradient(field, i);
-    edge.has_normal = glm::length(g) >= kSmallestGradient;
-    if (edge.has_normal) edge.n = -g / glm::length(g);
-    return edge;
-}
-
-struct Crossed {
-    bool down = false, up = false;
-};
-
-/// Whether samples around a voxel leave its interval.
-Crossed crossed_around(const Field& field, const glm::ivec3& i, double low, double high) {
-    Crossed crossed;
-    const auto look = [&](const glm::ivec3& o) {
-        const double f = field.at(i + o);
-        crossed.down = crossed.down || f < low;
-        crossed.up = crossed.up || f >= high;
-    };
-    for (int k = 0; k < 27; ++k)
-        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 o(0);
-        o[axis] = 2;
-        look(o);
-        look(-o);
-    }
-    return crossed;
-}
 
 /// What voxel j found, where it bounds material m.
 std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
@@ -148,56 +119,6 @@ Quadric quadric_of(const Moments& sums) {
 
 namespace {
 
-/// The point of the field's surface.
-VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
-    const VoxelEdge none = normal_alone(field, i);
-    const double f = field.at(i);
-    const int m = scene.material(f);
-    const double low = scene.lower(m), high = scene.upper(m);
-    const Crossed crossed = crossed_around(field, i, low, high);
-    if (!crossed.down && !crossed.up) return none;
-    const bool upper = crossed.up && (!crossed.down || high - f < f - low);
-    const double iso = upper ? high : low;
-    const dvec3 x(i);
-    dvec3 at = x, n(0);
-    double off = 1;
-    for (int step = 0; step < shader::SURFEL_STEPS; ++step) {
-        const dvec3 g = cubic ? spline_gradient(field, at) : point_gradient(field, at);
-        const double slope = glm::length(g);
-        if (!(slope >= kSmallestGradient) || glm::distance(at, x) > 3) return none;
-        n = g / slope;
-        off = (sample(field, at, cubic) - iso) / slope;
-        if (step + 1 == shader::SURFEL_STEPS) break;
-        at -= std::clamp(off, -0.6, 0.6) * n;
-        const dvec3 from = at - x;
-        if (step >= 2 && step + 4 < shader::SURFEL_STEPS) at -= 0.5 * (from - glm::dot(from, n) * n);
-    }
-    const dvec3 from = at - x, last(field.dims - 1);
-    n = upper ? n : -n;
-    const double d = glm::dot(from, n);
-    const bool inside = glm::all(glm::greaterThan(at, dvec3(-0.5))) && glm::all(glm::lessThan(at, last + 0.5));
-    if (!(std::abs(off) < 2e-3 && glm::length(from - d * n) < 0.25 && std::abs(d) <= kSurfelReach && inside))
-        return none;
-    VoxelEdge edge;
-    edge.n = n;
-    edge.D = d;
-    edge.upper = upper;
-    edge.has_edge = edge.has_normal = true;
-    return edge;
-}
-
-/// Where the volume ends, half a voxel beyond its outermost samples: the side beside voxel i, towards it, or 0.
-dvec3 border_beside(const Field& field, const glm::ivec3& i) {
-    for (int axis = 0; axis < 3; ++axis) {
-        const bool outermost = i[axis] == 0 || i[axis] == field.dims[axis] - 1;
-        if (!outermost || field.dims[axis] == 1) continue;  // along an axis of one voxel nothing ends
-        dvec3 n(0);
-        n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
-        return n;
-    }
-    return dvec3(0);
-}
-
 /// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13).
 Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
     const auto at = [&](int x, int y, int z) { return field.at(i + glm::ivec3(x, y, z)); };
@@ -280,18 +201,25 @@ std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, c
     return edge;
 }
 
-}  // namespace
-
-VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
-    VoxelEdge edge = surfel_in_field(field, scene, i, cubic);
-    const dvec3 out_of = border_beside(field, i);
-    if (glm::dot(out_of, out_of) == 0 || (edge.has_edge && std::abs(edge.D) <= 0.5)) return edge;
-    edge = {};
-    edge.n = out_of;
-    edge.D = 0.5;
-    edge.has_edge = edge.has_normal = edge.border = true;
-    return edge;
+/// Where matter ends along -n, by surfels that the fit does not look at and that are level with the face.
+struct FaceBehind {
+    double away = std::numeric_limits<double>::infinity();
+    bool upper = false;
+};
+FaceBehind face_behind(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+                       const glm::ivec3& i, const dvec3& n) {
+    FaceBehind behind;
+    for (int step = 1; step <= shader::WALL_STEPS; ++step) {
+        const glm::ivec3 j = i + glm::ivec3(glm::roundEven(-static_cast<double>(step) * n));
+        const auto s = surfel_of(field, scene, surfels, i, j, scene.material(field.at(i)));
+        if (!s || s->border || !(glm::dot(s->n, n) < -kWallLevel)) continue;
+        const double away = glm::dot(s->at, s->n) / -glm::dot(s->n, n);
+        if (away > 0 && away < behind.away) behind = {away, s->upper};
+    }
+    return behind;
 }
+
+}  // namespace
 
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                    const glm::ivec3& i) {
@@ -323,7 +251,9 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     }
     const bool found = std::isfinite(distance);
     if (!found) {
-        Crossed crossed;
+        struct {
+            bool down = false, up = false;
+        } crossed;
         for (int k = 0; k < 27; ++k) {
             const int other = scene.material(field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1));
             crossed.down = crossed.down || other < m;
@@ -398,6 +328,15 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
+    // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
+    const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n);
+    const double bending =
+        std::sqrt(glm::dot(edge.bending[0], edge.bending[0]) + glm::dot(edge.bending[1], edge.bending[1]) +
+                  glm::dot(edge.bending[2], edge.bending[2]));
+    if (foot.real && !is_wall && std::isfinite(behind.away) && bending * (edge.D + behind.away) < kWallBent) {
+        edge.D2 = behind.away;
+        edge.mixed = behind.upper != nearest.upper;
+    }
     return edge;
 }
 

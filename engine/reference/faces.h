@@ -11,6 +11,9 @@ namespace edgesplat::reference {
 /// one a normal alone. By Newton's method on the trilinear field, or with `cubic` on the spline.
 VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic);
 
+/// Of voxel i without a surface in reach: along the gradient, where there is one.
+VoxelEdge normal_alone(const Field& field, const glm::ivec3& i);
+
 /// The face of voxel i: n, D, D2 and second derivatives of the quadric that fits the surfels around the nearest best.
 /// Without one in reach a normal alone.
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,

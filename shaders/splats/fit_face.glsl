@@ -204,6 +204,24 @@ Foot foot_of(Quadric q, vec3 voxel_at, vec3 at) {
     return Foot(at, slope, length(slope) >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS);
 }
 
+// Where matter ends along -n, by surfels that the fit does not look at and that are level with the face.
+struct FaceBehind {
+    float away;  // 1e9: none is known
+    uint state;
+};
+
+FaceBehind face_behind(ivec3 p, uint material, vec3 n) {
+    FaceBehind behind = FaceBehind(1e9, EDGE_NONE);
+    for (int i = 1; i <= WALL_STEPS; ++i) {
+        Surfel s = surfel_at(p, p + ivec3(roundEven(-float(i) * n)), material);
+        float facing = dot(s.n, n), away = dot(s.at, s.n) / -facing;
+        bool nearer = s.there && !s.border && facing < -WALL_LEVEL && away > 0.0 && away < behind.away;
+        behind.away = nearer ? away : behind.away;
+        behind.state = nearer ? s.state : behind.state;
+    }
+    return behind;
+}
+
 // By how much samples around lie on the wrong side of each of three quadrics about `middle`, squared: of `one`, of the wall
 // from `wall` to its level, of the field's own.
 vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall, float level, Quadric own) {
@@ -338,6 +356,11 @@ Face fit_face(ivec3 p, uint material) {
         face.edge.state = is_own && !foot.real ? EDGE_NONE : state;
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
+        // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
+        FaceBehind behind = face_behind(p, material, face.edge.n);
+        bool thick = foot.real && !is_wall && behind.away < 1e9 && bending_norm(face.h) * (face.edge.d + behind.away) < WALL_BENT;
+        face.edge.d2 = thick ? behind.away : face.edge.d2;
+        face.mixed = thick ? behind.state != state : face.mixed;
     }
     return face;
 }

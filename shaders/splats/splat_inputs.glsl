@@ -4,6 +4,8 @@
 #define EDGESPLAT_SPLAT_INPUTS_GLSL
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
+#include "shaders/footprints/kernel.glsl"
+#include "shaders/footprints/face_share.glsl"
 
 struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
@@ -16,6 +18,13 @@ struct SplatInputs {
     vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
     SelectedFootprint selected;  // with a table only
 };
+
+FaceBody body_of(Edge e, Bending h, FaceCut cut) {
+    vec3 hn = bent(h, e.n);
+    float bend = dot(e.n, hn), norm = bending_norm(h), mean = 0.5 * (h.diagonal.x + h.diagonal.y + h.diagonal.z - bend);
+    float across2 = norm * norm - 2.0 * dot(hn, hn) + bend * bend;  // of both principal curvatures
+    return FaceBody(bend, mean, sqrt(max(0.5 * across2 - mean * mean, 0.0)), cut.thickness);
+}
 
 SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
     SplatInputs s;
@@ -52,7 +61,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
         s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
-                          CREASE_NONE);
+                          CREASE_NONE, 1.0);
         IF_ANY(is_cut) {
             FaceTraits traits = traits_of(number, e);
             FaceCut cut = cut_of(e, traits);
@@ -61,8 +70,11 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
             s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
+            float share = 1.0;
+            bool thin = cut.thickness < FACE_NO_WALL || bending_norm(h) > SHARE_BENDING;
+            IF_ANY(params.frame.face_depth > FACE_DEPTH && thin) share = thin ? face_share(body_of(e, h, cut), e.d, cut.depth) : 1.0;
             vec3 at_foot = bent(h, e.d * e.n);
-            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, share);
         }
         if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced(number) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;

@@ -164,6 +164,7 @@ vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice sli
     FaceFootprint f;
     if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, p, u, plain, inside, slice);
     else f = cut_footprint(sight, p, u, plain, inside, slice);
+    if (FACE_PIECES == 2u) f.integral /= face_form.share;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;

@@ -351,4 +351,21 @@ Wall wall(const Settings& settings, double thickness) {
     return result;
 }
 
+double ball_matter(const Settings& settings, double radius) {
+    constexpr int kSize = 20, kPixels = 80;
+    const double scale = kPixels / (2.4 * radius);  // pixels a voxel
+    double sum = 0;
+    const std::vector<Pose> list = poses(8);
+    for (const Pose& pose : list) {
+        const glm::dvec3 center = glm::dvec3((kSize - 1) / 2.0) + pose.shift;
+        const auto volume = sampled(
+            glm::ivec3(kSize), [&](const glm::dvec3& x) { return blurred_step(glm::length(x - center) - radius); });
+        const Image tau = render_tau({volume, two_tone(0, 1), camera_at(center, pose.n, pose.across, kPixels, scale),
+                                      settings, kPixels, kPixels});
+        for (const float value : tau.pixels)
+            sum += static_cast<double>(value) / (scale * scale);
+    }
+    return sum / static_cast<double>(list.size()) / (4 * std::numbers::pi / 3 * std::pow(radius, 3));
+}
+
 }  // namespace edgesplat::test

@@ -56,4 +56,8 @@ struct Wall {
 };
 Wall wall(const Settings& settings, double thickness);
 
+/// How much optical depth balls in blur .7 have, extinction 1, summed over pictures from 8 directions, over their
+/// volume.
+double ball_matter(const Settings& settings, double radius);
+
 }  // namespace edgesplat::test

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "footprints/face.h"
+#include "footprints/face_share.h"
 #include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
 #include "shaders/shared/footprint_table.h"
@@ -64,6 +65,7 @@ const uint NODES = 4;
 // After what it needs.
 const uint FACE_PIECES = 2;
 #include "shaders/footprints/face.glsl"
+#include "shaders/footprints/face_share.glsl"
 
 // Of the table's layers, what a sampler with linear filter makes of them.
 const std::uint16_t* layers = nullptr;
@@ -177,6 +179,23 @@ TEST(FootprintShader, MirrorsFaces) {
     // Where a ray but touches a face, rounding decides whether it meets it.
     EXPECT_LE(entries, cut / 500);
     EXPECT_LE(error.percentile(99.5), 1e-3);
+}
+
+TEST(FootprintShader, MirrorsTheShareOfAFace) {
+    namespace four = glsl::nodes4;
+    std::mt19937 random(33);
+    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
+    const auto f = [](double v) { return static_cast<float>(v); };
+    for (int i = 0; i < 5000; ++i) {
+        FaceBody body{uniform(-0.5, 1.5), uniform(-1, 1.5), uniform(0, 0.5)};
+        const bool wall = i % 2 == 0;
+        if (wall) body.thickness = uniform(0.3, 4);
+        const double distance = uniform(-0.3, 2), depth = uniform(0.2, 1.4);
+        const four::FaceBody same{f(body.bend), f(body.mean), f(body.spread), wall ? f(body.thickness) : 1e9F};
+        EXPECT_NEAR(static_cast<double>(four::face_share(same, f(distance), f(depth))),
+                    face_share(body, distance, depth), 2e-4)
+            << i;
+    }
 }
 
 TEST(FootprintShader, MirrorsTheTable) {

@@ -1,0 +1,110 @@
+// Points of the surface beside voxels: the mirror of shaders/edges/find_surfel.glsl.
+#include <algorithm>
+#include <cmath>
+
+#include "engine/reference/faces.h"
+#include "shaders/shared/limits.h"
+
+namespace edgesplat::reference {
+
+namespace {
+
+using glm::dvec3;
+
+constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
+
+struct Crossed {
+    bool down = false, up = false;
+};
+
+/// Whether samples around a voxel leave its interval.
+Crossed crossed_around(const Field& field, const glm::ivec3& i, double low, double high) {
+    Crossed crossed;
+    const auto look = [&](const glm::ivec3& o) {
+        const double f = field.at(i + o);
+        crossed.down = crossed.down || f < low;
+        crossed.up = crossed.up || f >= high;
+    };
+    for (int k = 0; k < 27; ++k)
+        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 o(0);
+        o[axis] = 2;
+        look(o);
+        look(-o);
+    }
+    return crossed;
+}
+
+/// The point of the field's surface.
+VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+    const VoxelEdge none = normal_alone(field, i);
+    const double f = field.at(i);
+    const int m = scene.material(f);
+    const double low = scene.lower(m), high = scene.upper(m);
+    const Crossed crossed = crossed_around(field, i, low, high);
+    if (!crossed.down && !crossed.up) return none;
+    const bool upper = crossed.up && (!crossed.down || high - f < f - low);
+    const double iso = upper ? high : low;
+    const dvec3 x(i);
+    dvec3 at = x, n(0);
+    double off = 1;
+    for (int step = 0; step < shader::SURFEL_STEPS; ++step) {
+        const dvec3 g = cubic ? spline_gradient(field, at) : point_gradient(field, at);
+        const double slope = glm::length(g);
+        if (!(slope >= kSmallestGradient) || glm::distance(at, x) > 3) return none;
+        n = g / slope;
+        off = (sample(field, at, cubic) - iso) / slope;
+        if (step + 1 == shader::SURFEL_STEPS) break;
+        at -= std::clamp(off, -0.6, 0.6) * n;
+        const dvec3 from = at - x;
+        if (step >= 2 && step + 4 < shader::SURFEL_STEPS) at -= 0.5 * (from - glm::dot(from, n) * n);
+    }
+    const dvec3 from = at - x, last(field.dims - 1);
+    n = upper ? n : -n;
+    const double d = glm::dot(from, n);
+    const bool inside = glm::all(glm::greaterThan(at, dvec3(-0.5))) && glm::all(glm::lessThan(at, last + 0.5));
+    if (!(std::abs(off) < 2e-3 && glm::length(from - d * n) < 0.25 && std::abs(d) <= kSurfelReach && inside))
+        return none;
+    VoxelEdge edge;
+    edge.n = n;
+    edge.D = d;
+    edge.upper = upper;
+    edge.has_edge = edge.has_normal = true;
+    return edge;
+}
+
+/// Where the volume ends, half a voxel beyond its outermost samples: the side beside voxel i, towards it, or 0.
+dvec3 border_beside(const Field& field, const glm::ivec3& i) {
+    for (int axis = 0; axis < 3; ++axis) {
+        const bool outermost = i[axis] == 0 || i[axis] == field.dims[axis] - 1;
+        if (!outermost || field.dims[axis] == 1) continue;  // along an axis of one voxel nothing ends
+        dvec3 n(0);
+        n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
+        return n;
+    }
+    return dvec3(0);
+}
+
+}  // namespace
+
+VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
+    VoxelEdge edge;
+    const dvec3 g = voxel_gradient(field, i);
+    edge.has_normal = glm::length(g) >= kSmallestGradient;
+    if (edge.has_normal) edge.n = -g / glm::length(g);
+    return edge;
+}
+
+VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
+    VoxelEdge edge = surfel_in_field(field, scene, i, cubic);
+    const dvec3 out_of = border_beside(field, i);
+    if (glm::dot(out_of, out_of) == 0 || (edge.has_edge && std::abs(edge.D) <= 0.5)) return edge;
+    edge = {};
+    edge.n = out_of;
+    edge.D = 0.5;
+    edge.has_edge = edge.has_normal = edge.border = true;
+    return edge;
+}
+
+}  // namespace edgesplat::reference
