@@ -10,7 +10,7 @@
 namespace edgesplat {
 namespace {
 
-constexpr double kLeastShare = 0.2, kClosesNowhere = 1e6, kLeastBend = 1e-4;
+constexpr double kClosesNowhere = 1e6, kLeastBend = 1e-4;
 constexpr double kKernelRadius2 = kKernelRadius * kKernelRadius;
 
 /// Matter that is alike all around the normal, with `across` for its curvature.
@@ -34,12 +34,11 @@ double kept(const FaceBody& body, double across, double depth) {
 
 }  // namespace
 
-double face_share(const FaceBody& body, double distance, double depth) {
+double face_share(const FaceBody& body, double depth) {
     // Curvature goes as the cosine of twice the angle: two of its values have its mean and its mean square.
     const double apart = body.spread / std::numbers::sqrt2;
     const double share = 0.5 * (kept(body, body.mean + apart, depth) + kept(body, body.mean - apart, depth));
-    const double off = distance - depth;
-    return std::clamp(std::max(share, kernel(off * off)), kLeastShare, 1.0);
+    return std::clamp(share, kernel(0), 1.0);
 }
 
 }  // namespace edgesplat

@@ -22,7 +22,7 @@ struct FaceBody {
 inline constexpr double kThinBending = 0.1;
 
 /// The integral of a kernel whose centre lies `depth` under the face over the matter that the face encloses: at most 1,
-/// and no less than a fifth. The voxel whose kernel it is lies `distance` under the face and has its own matter.
-double face_share(const FaceBody& body, double distance, double depth);
+/// and no less than what a voxel has by itself in its centre.
+double face_share(const FaceBody& body, double depth);
 
 }  // namespace edgesplat

@@ -56,7 +56,7 @@ FaceCut cut_of(const VoxelEdge& edge, double deepest) {
     FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, deepest);
     // Of opaque matter most of the sum of kernels is enough.
     const bool thin = wall || norm_of(edge.bending) > kThinBending;
-    if (deepest > kFaceDepth && thin) cut.share = face_share(body_of(edge, bend, thickness), edge.D, cut.depth);
+    if (deepest > kFaceDepth && thin) cut.share = face_share(body_of(edge, bend, thickness), cut.depth);
     const dvec3 own = edge.n - edge.bending * (edge.D * edge.n);
     add_crease(cut, {edge.crease.D, glm::dot(own, edge.crease.n)});
     return cut;

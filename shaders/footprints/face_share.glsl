@@ -31,9 +31,9 @@ float share_all_around(FaceBody body, float across, float depth) {
     return 8.04247719 * sum;  // pi R^2
 }
 
-float face_share(FaceBody body, float distance, float depth) {
-    float apart = 0.707106781 * body.spread, off = distance - depth;
+float face_share(FaceBody body, float depth) {
+    float apart = 0.707106781 * body.spread;
     float share = 0.5 * (share_all_around(body, body.mean + apart, depth) + share_all_around(body, body.mean - apart, depth));
-    return clamp(max(share, kernel(off * off)), 0.2, 1.0);
+    return clamp(share, kernel(0.0), 1.0);
 }
 #endif

@@ -72,7 +72,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
             float share = 1.0;
             bool thin = cut.thickness < FACE_NO_WALL || bending_norm(h) > SHARE_BENDING;
-            IF_ANY(params.frame.face_depth > FACE_DEPTH && thin) share = thin ? face_share(body_of(e, h, cut), e.d, cut.depth) : 1.0;
+            IF_ANY(params.frame.face_depth > FACE_DEPTH && thin) share = thin ? face_share(body_of(e, h, cut), cut.depth) : 1.0;
             vec3 at_foot = bent(h, e.d * e.n);
             s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, share);
         }

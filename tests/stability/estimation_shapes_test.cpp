@@ -112,7 +112,8 @@ void expect_wall(double thickness, double within) {
         expect_as_reference(shot_of(volume), fmt::format("a wall of {} at {}", thickness, shift), ties);
         const Middle thick = thickness_along_x(shot_of(volume));
         EXPECT_GE(thick.mean, thickness - within) << shift;
-        EXPECT_LE(thick.mean, std::max(thickness, 1.0) + within) << shift;
+        // Dense in the mean over lattices: one whose voxels lie in the very middle of a wall of one has a fifth more.
+        EXPECT_LE(thick.mean, std::max(thickness, 1.0) + (thickness > 1 ? within : 0.3)) << shift;
         EXPECT_LE(thick.most - thick.least, 0.06) << shift << ": even from voxel to voxel";
     }
 }

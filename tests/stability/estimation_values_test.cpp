@@ -248,12 +248,12 @@ TEST(EstimationValues, Checkerboard) {
     plain.settings.edges = EdgeEstimator::Off;
     EXPECT_NEAR(thickness_along_x(plain).mean, 6, 0.02);
     const double faces = thickness_along_x(shot_of(board)).mean;
-    EXPECT_GE(faces, 4) << "each voxel a face of its own";
-    EXPECT_LE(faces, 6.05);
+    EXPECT_GE(faces, 5) << "each voxel a face of its own";
+    EXPECT_LE(faces, 7.2);
 }
 
-/// Matter as thin as a voxel, with a little noise, so that nothing is where it is by symmetry: faces take some of it
-/// away, as no kernel reaches over its own, but most stays, and none is invented.
+/// Matter as thin as a voxel, with a little noise, so that nothing is where it is by symmetry. No kernel reaches over
+/// its own face; what is lost by that is given back in the mean, most of it, and where a lattice suits it too much.
 TEST(EstimationValues, OfFineMatterMostIsKept) {
     constexpr int n = 20;
     using Pattern = std::function<int(const glm::ivec3&)>;
@@ -261,14 +261,14 @@ TEST(EstimationValues, OfFineMatterMostIsKept) {
         const char* name;
         Pattern pattern;  ///< odd where there is matter
         float noise;
-        double kept;
+        double least, most;
     };
     const Fine all[] = {
-        {"noise", [](const glm::ivec3&) { return 0; }, 4, 0.6},
-        {"board", [](const glm::ivec3& v) { return v.x + v.y + v.z; }, 0.01F, 0.6},
-        {"columns along", [](const glm::ivec3& v) { return v.y + v.z; }, 0.01F, 0.5},
-        {"columns across", [](const glm::ivec3& v) { return v.x + v.y; }, 0.01F, 0.55},
-        {"sheets across", [](const glm::ivec3& v) { return v.x; }, 0.01F, 0.9},
+        {"noise", [](const glm::ivec3&) { return 0; }, 4, 0.9, 1.02},
+        {"board", [](const glm::ivec3& v) { return v.x + v.y + v.z; }, 0.01F, 0.95, 1.12},
+        {"columns along", [](const glm::ivec3& v) { return v.y + v.z; }, 0.01F, 0.8, 1.05},
+        {"columns across", [](const glm::ivec3& v) { return v.x + v.y; }, 0.01F, 0.9, 1.05},
+        {"sheets across", [](const glm::ivec3& v) { return v.x; }, 0.01F, 0.95, 1.25},
     };
     for (const Fine& fine : all) {
         std::uint32_t random = 20260301;
@@ -284,8 +284,8 @@ TEST(EstimationValues, OfFineMatterMostIsKept) {
         shot.settings.edges = EdgeEstimator::Off;
         const double share = faces / thickness_along_x(shot).mean;
         std::printf("%-16s %.2f of it\n", fine.name, share);
-        EXPECT_GE(share, fine.kept) << fine.name;
-        EXPECT_LE(share, 1.02) << fine.name;
+        EXPECT_GE(share, fine.least) << fine.name;
+        EXPECT_LE(share, fine.most) << fine.name;
     }
 }
 
