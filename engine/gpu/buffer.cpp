@@ -10,6 +10,9 @@ namespace edgesplat::gpu {
 
 namespace {
 
+constexpr std::size_t kGuardBytes = 4096;
+constexpr unsigned char kGuard = 0xa5;
+
 vk::BufferCreateInfo create_info(std::size_t bytes) {
     using Usage = vk::BufferUsageFlagBits;
     return {{},
@@ -45,12 +48,20 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
         place = device.profile().own_memory ? Place::Device : Place::Host;
         if (place == Place::Device) of_host_ = std::make_unique<Buffer>(device, bytes, Place::Copy, name);
     }
-    const auto requirements = buffer_.getMemoryRequirements();
+    auto requirements = buffer_.getMemoryRequirements();
+    allocated_ = place == Place::Copy ? 0 : requirements.size;
+    const bool guarded = device.guards_buffers();
+    if (guarded) requirements.size += kGuardBytes;
     memory_ = place != Place::Device ? device.allocate(requirements, Memory::eHostCached,
                                                        Memory::eHostVisible | Memory::eHostCoherent, true, name)
                                      : device.allocate(requirements, Memory::eDeviceLocal, {}, true, name);
     buffer_.bindMemory(*memory_, 0);
-    if (place != Place::Device) map_ = memory_.mapMemory(0, VK_WHOLE_SIZE);
+    void* const map = place != Place::Device || guarded ? memory_.mapMemory(0, VK_WHOLE_SIZE) : nullptr;
+    if (place != Place::Device) map_ = map;
+    if (guarded) {
+        guard_ = static_cast<unsigned char*>(map) + bytes_;
+        std::fill_n(guard_, kGuardBytes, kGuard);
+    }
     address_ = device.handle().getBufferAddress({*buffer_});
     // Where buffers are not loaded as texels, only what stands in for them has a view.
     constexpr std::size_t kStandIn = 16;
@@ -59,7 +70,6 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
         if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
     }
-    allocated_ = place == Place::Copy ? 0 : requirements.size;
     if (allocated_ > 0) device.count_bytes(name_, static_cast<std::int64_t>(allocated_));
 }
 
@@ -75,12 +85,27 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     bytes_ = std::exchange(other.bytes_, 0);
     allocated_ = std::exchange(other.allocated_, 0);
     map_ = std::exchange(other.map_, nullptr);
+    guard_ = std::exchange(other.guard_, nullptr);
     address_ = std::exchange(other.address_, 0);
     return *this;
 }
 
+void Buffer::check_guard() const {
+    const auto* end = guard_ + kGuardBytes;
+    const auto* written = std::find_if(guard_, guard_ + kGuardBytes, [](unsigned char byte) { return byte != kGuard; });
+    if (written != end)
+        device_->report(fmt::format("{}: something was written {} bytes behind its end; it has {}", name_,
+                                    written - guard_, bytes_));
+}
+
+void Buffer::too_small(std::size_t count, std::size_t of_bytes) const {
+    fail("{}: it has {} bytes, and {} times {} were asked for", name_, bytes_, count, of_bytes);
+}
+
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
+    if (guard_ != nullptr) check_guard();
+    guard_ = nullptr;
     if (allocated_ > 0) device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
     of_host_ = nullptr;
     texels_ = nullptr;

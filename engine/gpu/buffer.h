@@ -1,4 +1,5 @@
-// A buffer with its own memory and a device address. Move-only.
+// A buffer with its own memory and a device address. Move-only. Shaders write through addresses, which validation does
+// not follow: while calls are checked, what stands behind a buffer is looked at when the buffer goes.
 #pragma once
 
 #include <cstddef>
@@ -44,14 +45,17 @@ class Buffer {
 
     /// What the host sees of it where that lies apart, else null.
     const Buffer* of_host() const { return of_host_.get(); }
-    /// The mapped memory (not of Place::Device) as `count` elements.
+    /// The mapped memory (not of Place::Device) as `count` elements. Throws Error when there are not so many.
     template <typename T>
     std::span<T> mapped(std::size_t count) const {
+        if (count > bytes_ / sizeof(T)) too_small(count, sizeof(T));
         return {static_cast<T*>(of_host_ ? of_host_->map_ : map_), count};
     }
 
   private:
     void release() noexcept;
+    void check_guard() const;
+    [[noreturn]] void too_small(std::size_t count, std::size_t of_bytes) const;
     const Device* device_ = nullptr;
     std::unique_ptr<Buffer> of_host_;
     vk::raii::DeviceMemory memory_ = nullptr;
@@ -60,6 +64,7 @@ class Buffer {
     std::string name_;
     std::size_t bytes_ = 0, allocated_ = 0;
     void* map_ = nullptr;
+    unsigned char* guard_ = nullptr;  ///< the first byte behind it, where buffers are guarded
     std::uint64_t address_ = 0;
 };
 

@@ -17,9 +17,8 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT severity,
                                           VkDebugUtilsMessageTypeFlagsEXT,
                                           const VkDebugUtilsMessengerCallbackDataEXT* data, void* user) {
-    static_cast<ValidationLog*>(user)->messages++;
-    std::fprintf(stderr, "vulkan %s: %s\n",
-                 (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0 ? "error" : "warning", data->pMessage);
+    static_cast<ValidationLog*>(user)->add(
+        (severity & VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) != 0 ? "error" : "warning", data->pMessage);
     return VK_FALSE;
 }
 
@@ -115,6 +114,11 @@ bool matches(const DeviceInfo& info, const std::string& choice) {
 }
 
 }  // namespace
+
+void ValidationLog::add(const char* severity, const char* message) {
+    ++messages;
+    std::fprintf(stderr, "vulkan %s: %s\n", severity, message);
+}
 
 vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log,
                                    std::vector<const char*> extensions) {
@@ -258,6 +262,11 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
     device_ = vk::raii::Device(physical_, device_info);
     queue_ = device_.getQueue(queue_family_, 0);
     memory_ = physical_.getMemoryProperties();
+    guards_buffers_ = choice.validation &&
+                      std::all_of(memory_.memoryTypes.begin(), memory_.memoryTypes.begin() + memory_.memoryTypeCount,
+                                  [](const vk::MemoryType& type) {
+                                      return bool(type.propertyFlags & vk::MemoryPropertyFlagBits::eHostVisible);
+                                  });
     const auto known = physical_.enumerateDeviceExtensionProperties();
     has_memory_budget_ = std::ranges::any_of(known, [](const vk::ExtensionProperties& e) {
         return std::string_view(e.extensionName.data()) == VK_EXT_MEMORY_BUDGET_EXTENSION_NAME;
@@ -285,6 +294,10 @@ std::optional<std::uint32_t> Device::memory_type(std::uint32_t allowed, vk::Memo
         }
     }
     return std::nullopt;
+}
+
+void Device::report(const std::string& message) const {
+    log_->add("error", message.c_str());
 }
 
 std::uint32_t Device::heap_of(bool host) const {

@@ -17,6 +17,7 @@ namespace edgesplat::gpu {
 
 /// What validation said so far. Lives at a fixed address, since the driver keeps a pointer to it.
 struct ValidationLog {
+    void add(const char* severity, const char* message);
     std::atomic<std::uint64_t> messages{0};
 };
 
@@ -64,6 +65,10 @@ class Device {
     /// Why it cannot draw into layers of a target; empty: it can.
     const std::string& layers_obstacle() const { return layers_obstacle_; }
     std::uint64_t validation_messages() const { return log_->messages; }
+    /// Whether calls are checked and all memory can be mapped: then buffers have a guard behind them (Buffer).
+    bool guards_buffers() const { return guards_buffers_; }
+    /// Prints it as validation prints its errors, and counts it among them.
+    void report(const std::string& message) const;
     /// Bytes of device memory held now by buffers and images.
     std::uint64_t allocated_bytes() const { return allocations_->at(kTotal).bytes; }
     /// The most that was held at once since forget_peaks.
@@ -107,7 +112,7 @@ class Device {
     std::uint32_t queue_family_ = 0;
     double timestamp_period_ = 0;
     const DeviceProfile* profile_ = nullptr;
-    bool has_memory_budget_ = false, counts_draws_ = false, loads_texels_ = true;
+    bool has_memory_budget_ = false, counts_draws_ = false, loads_texels_ = true, guards_buffers_ = false;
 };
 
 }  // namespace edgesplat::gpu

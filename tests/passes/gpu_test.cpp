@@ -21,6 +21,23 @@ TEST(Commands, AfterATimeOutWaitForWhatTheDeviceIsStillAt) {
     EXPECT_EQ(state.device().validation_messages(), before);
 }
 
+TEST(Buffers, SayWhatWasWrittenBehindThem) {
+    const gpu::Device device({.device = device_under_test().device().info().name, .validation = true});
+    if (!device.guards_buffers()) GTEST_SKIP() << "not all memory of " << device.info().name << " can be mapped";
+    {
+        const gpu::Buffer sound(device, 40, gpu::Buffer::Place::Host, "sound");
+        sound.mapped<std::uint32_t>(10)[9] = 1;
+        EXPECT_THROW((void)sound.mapped<std::uint32_t>(11), Error);
+    }
+    EXPECT_EQ(device.validation_messages(), 0U);
+    {
+        gpu::Buffer written(device, 40, gpu::Buffer::Place::Host, "written");
+        written.mapped<std::uint32_t>(10).data()[10] = 1;
+        const gpu::Buffer moved = std::move(written);
+    }
+    EXPECT_EQ(device.validation_messages(), 1U);
+}
+
 TEST(DeviceProfiles, CanBeForcedAndSayWhy) {
     for (const gpu::DeviceProfile& profile : gpu::device_profiles()) {
         EXPECT_EQ(&gpu::profile_named(profile.name), &profile);

@@ -169,5 +169,24 @@ TEST(RefinedPixels, AreAllOfThemInAPictureOfAFewPixels) {
     }
 }
 
+/// A large picture without faces that rays find leaves more room for lists than it has for what is noted of such faces.
+TEST(RefinedPixels, KeepTheirListsWhereAllOfThemHaveRoom) {
+    Renderer renderer({.device = test_renderer().device().name, .validation = true});
+    if (!renderer.device().is_processor) GTEST_SKIP() << "what is written behind buffers is not seen there";
+    const AnalyticScene waves = analytic_scene("gyroid");
+    const auto volume = std::make_shared<const Volume>(sample(waves));
+    renderer.set_volume(volume);
+    Scene scene;
+    scene.iso_values = waves.iso_values;
+    scene.materials = {{}, {{1, 0.85, 0.7}, 4}};
+    const Camera camera = look(*volume, {21, 3, 19}, {20, 20, 20}, 70);
+    Settings plain, faces;
+    plain.edges = EdgeEstimator::Off;
+    faces.sheets = SheetCut::Sliced;  // so that its lists are many
+    faces.sheet_spacing = 0.5;
+    for (const auto& [settings, pixels] : {std::pair(plain, 256), std::pair(faces, 80), std::pair(plain, 80)})
+        EXPECT_EQ(renderer.render(scene, camera, settings, pixels, pixels).stats.validation_messages, 0U);
+}
+
 }  // namespace
 }  // namespace edgesplat::test

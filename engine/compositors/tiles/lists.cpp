@@ -141,12 +141,25 @@ bool TileOrder::any_todo() const {
     return std::ranges::any_of(todo_, [](std::uint32_t pixels) { return pixels > 0; });
 }
 
+namespace {
+
+/// So many entries of tiles have room in every buffer that says something of each. Earlier pictures, which had other
+/// entries or did without some of the buffers, may have left one larger than another.
+std::uint64_t pairs_with_room(const TargetResources& targets) {
+    const std::uint64_t marked = std::min(targets.tile_entries.bytes() / sizeof(glm::uvec2),
+                                          targets.tile_marks.bytes() / sizeof(std::uint32_t));
+    const std::uint64_t traced = targets.traced_entries.bytes() / sizeof(std::uint32_t) * shader::MARKED_AT_ONCE;
+    return targets.traced_entries ? std::min(marked, traced) : marked;
+}
+
+}  // namespace
+
 KeptLists::KeptLists(const FramePlan& plan, const TargetResources& targets, std::size_t chunks)
     : tiles_(tile_count(plan)), targets_(targets), lists_(chunks) {}
 
 void KeptLists::place(std::uint32_t chunk, std::uint64_t pairs) {
     constexpr std::uint64_t kPart = shader::MARKED_AT_ONCE;
-    const std::uint64_t room = targets_.tile_entries.bytes() / sizeof(glm::uvec2);
+    const std::uint64_t room = pairs_with_room(targets_);
     Lists& lists = lists_[chunk];
     lists.ranges.clear();
     lists.begin = std::min(used_, room - std::min(room, pairs)) / kPart * kPart;
