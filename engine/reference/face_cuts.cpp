@@ -18,14 +18,6 @@ namespace {
 constexpr auto kCreaseReach = static_cast<double>(shader::CREASE_REACH);
 constexpr auto kBendingUnit = static_cast<double>(shader::BENDING_UNIT);
 
-/// Frobenius.
-double norm_of(const dmat3& h) {
-    double norm2 = 0;
-    for (int i = 0; i < 3; ++i)
-        norm2 += glm::dot(h[i], h[i]);
-    return std::sqrt(norm2);
-}
-
 FaceBody body_of(const VoxelEdge& edge, double bend, double thickness) {
     const dmat3& h = edge.bending;
     const dvec3 hn = h * edge.n;
@@ -35,6 +27,13 @@ FaceBody body_of(const VoxelEdge& edge, double bend, double thickness) {
 }
 
 }  // namespace
+
+double norm_of(const dmat3& bending) {
+    double norm2 = 0;
+    for (int i = 0; i < 3; ++i)
+        norm2 += glm::dot(bending[i], bending[i]);
+    return std::sqrt(norm2);
+}
 
 dmat3 quantise_bending(const dmat3& bending) {
     const auto through = [](double h) {

@@ -115,10 +115,6 @@ Quadric quadric_of(const Moments& sums) {
     return q;
 }
 
-}  // namespace
-
-namespace {
-
 /// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13).
 Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
     const auto at = [&](int x, int y, int z) { return field.at(i + glm::ivec3(x, y, z)); };
@@ -329,13 +325,12 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
-    const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n);
-    const double bending =
-        std::sqrt(glm::dot(edge.bending[0], edge.bending[0]) + glm::dot(edge.bending[1], edge.bending[1]) +
-                  glm::dot(edge.bending[2], edge.bending[2]));
-    if (foot.real && !is_wall && std::isfinite(behind.away) && bending * (edge.D + behind.away) < kWallBent) {
-        edge.D2 = behind.away;
-        edge.mixed = behind.upper != nearest.upper;
+    if (foot.real && !is_wall) {
+        const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n);
+        if (std::isfinite(behind.away) && norm_of(edge.bending) * (edge.D + behind.away) < kWallBent) {
+            edge.D2 = behind.away;
+            edge.mixed = behind.upper != nearest.upper;
+        }
     }
     return edge;
 }

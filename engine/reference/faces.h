@@ -19,6 +19,9 @@ VoxelEdge normal_alone(const Field& field, const glm::ivec3& i);
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                    const glm::ivec3& i);
 
+/// How much a face bends: the Frobenius norm of its second derivatives.
+double norm_of(const glm::dmat3& bending);
+
 /// The second derivatives after their way through the 60 stored bits.
 glm::dmat3 quantise_bending(const glm::dmat3& bending);
 
