@@ -152,15 +152,12 @@ std::span<const Preset> presets() {
     static const std::vector<Preset> rows = [] {
         Settings draft;
         draft.edges = EdgeEstimator::March;
-        Settings balanced;
-        balanced.sheets = SheetCut::Sliced;
-        balanced.sheet_spacing = 1;
-        Settings accurate = balanced;
+        Settings accurate;
+        accurate.sheets = SheetCut::Sliced;
         accurate.sheet_spacing = 0.5;
         accurate.saturation = 0.9999;
         accurate.pixels = PixelChoice::Every;
         return std::vector<Preset>{{"draft", "faces by the march: found sooner, drawn as fast", draft},
-                                   {"balanced", "the default in slices of a voxel", balanced},
                                    {"accurate", "slices of half a voxel, every pixel", accurate}};
     }();
     return rows;

@@ -52,8 +52,8 @@ struct Preset {
     Settings settings;
 };
 
-/// draft, balanced, accurate: cheapest first. The default settings are whole kernels, as draft is: draft is found
-/// sooner, balanced and accurate are slower than both.
+/// draft, accurate: cheapest first. The default settings are whole kernels, as draft is: draft is found sooner,
+/// accurate is drawn slower than both.
 std::span<const Preset> presets();
 
 /// The preset of that name; throws Error listing the names.

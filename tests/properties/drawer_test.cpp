@@ -147,7 +147,7 @@ TEST(Drawer, AFinishedPictureIsFollowedByFinishedOnesOfTheSameView) {
         drawer.ask(request);
         EXPECT_TRUE(only_finished());
         request.plain = false;
-        request.settings = preset_named("balanced").settings;
+        request.settings.sheet_spacing = 1;
         ++request.scene_number;
         drawer.ask(request);
         EXPECT_TRUE(only_finished());

@@ -149,7 +149,6 @@ std::vector<Method> compared_methods() {
     return {{"default (cubic, faces)", Settings{}},
             {"off", with(E::Off, F::Isotropic)},
             {"draft", preset_named("draft").settings},
-            {"balanced", preset_named("balanced").settings},
             {"accurate", preset_named("accurate").settings},
             {"taylor", with(E::Taylor, F::Procedural)},
             {"march", with(E::March, F::Procedural)},

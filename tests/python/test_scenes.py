@@ -109,7 +109,7 @@ def test_none_leaves_as_it_is():
 
 
 def test_a_preset_before_single_steps():
-    for preset in ("draft", "balanced", "accurate"):
+    for preset in ("draft", "accurate"):
         one = Scene({"quality.sheet_spacing": 0.75, "quality.preset": preset})
         other = Scene({"quality.preset": preset, "quality.sheet_spacing": 0.75})
         assert one == other and one["quality.sheet_spacing"] == 0.75

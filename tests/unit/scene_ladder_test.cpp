@@ -160,7 +160,7 @@ TEST(Ladder, EveryCombinationOfStepsIsValid) {
 }
 
 TEST(Presets, AreValidOrderedAndFoundByName) {
-    ASSERT_EQ(presets().size(), 3U);
+    ASSERT_EQ(presets().size(), 2U);
     std::vector<std::string_view> names;
     for (const Preset& preset : presets()) {
         names.push_back(preset.name);
@@ -168,8 +168,8 @@ TEST(Presets, AreValidOrderedAndFoundByName) {
         EXPECT_FALSE(preset.help.empty());
         EXPECT_EQ(&preset_named(preset.name), &preset);
     }
-    EXPECT_THAT(names, testing::ElementsAre("draft", "balanced", "accurate"));
-    EXPECT_THAT(refusal([] { preset_named("best"); }), AllOf(HasSubstr("'best'"), HasSubstr("balanced")));
+    EXPECT_THAT(names, testing::ElementsAre("draft", "accurate"));
+    EXPECT_THAT(refusal([] { preset_named("best"); }), AllOf(HasSubstr("'best'"), HasSubstr("accurate")));
     // Cheapest first: no knob of a later preset stands on a cheaper step than that of an earlier one.
     for (std::size_t i = 1; i < presets().size(); ++i) {
         EXPECT_NE(difference(presets()[i].settings, presets()[i - 1].settings), "");
