@@ -22,36 +22,25 @@ enum class Tier { Cheap, Dear };
 /// Methods that were on or near the front of measured volumes; the base's own is always the first of the cheap ones.
 std::vector<Settings> candidates(const Settings& base, Tier tier) {
     struct Row {
-        FootprintMode footprints;
         SheetCut sheets;
-        double spacing, saturation;
-        SheetFormat format;
+        double spacing;
     };
-    using F = FootprintMode;
     using S = SheetCut;
-    const std::vector<Row> cheap{{F::Warp2d, S::Whole, 2, 0.98, SheetFormat::Tiles},
-                                 {F::Warp2d, S::Whole, 1, 0.98, SheetFormat::Tiles},
-                                 {F::Warp2d, S::Whole, 0.5, 0.98, SheetFormat::Tiles},
-                                 {F::Procedural, S::Whole, 1, 0.98, SheetFormat::Tiles},
-                                 {F::Procedural, S::Whole, 0.5, 0.99, SheetFormat::Tiles},
-                                 {F::Procedural, S::Whole, 0.25, 0.999, SheetFormat::Tiles},
-                                 {F::Procedural, S::Sliced, 2, 0.999, SheetFormat::Tiles}};
-    const std::vector<Row> dear{{F::Procedural, S::Sliced, 1, 0.999, SheetFormat::Tiles},
-                                {F::Procedural, S::Sliced, 0.5, 0.999, SheetFormat::Tiles},
-                                {F::Procedural, S::Sliced, 0.25, 0.999, SheetFormat::Tiles},
-                                {F::Procedural, S::Sliced, 0.25, 0.9999, SheetFormat::Tiles},
-                                {F::Procedural, S::Sliced, 0.1, 0.9999, SheetFormat::Tiles}};
+    const std::vector<Row> cheap{{S::Whole, 2}, {S::Whole, 1}, {S::Whole, 0.5}};
+    const std::vector<Row> dear{{S::Sliced, 1}, {S::Sliced, 0.5}, {S::Sliced, 0.25}, {S::Sliced, 0.1}};
     std::vector<Settings> list;
     if (tier == Tier::Cheap) list.push_back(base);
     std::vector<std::string> known{settings_key(base)};
     for (const Row& row : tier == Tier::Cheap ? cheap : dear) {
         Settings s = base;
-        s.footprints = row.footprints;
+        s.footprints = FootprintMode::Procedural;
         s.sheets = row.sheets;
         s.sheet_spacing = row.spacing;
-        s.saturation = row.saturation;
-        s.sheet_format = row.format;
-        if (tier == Tier::Dear) s.pixels = PixelChoice::Every;
+        s.sheet_format = SheetFormat::Tiles;
+        if (tier == Tier::Dear) {
+            s.saturation = preset_named("accurate").settings.saturation;
+            s.pixels = PixelChoice::Every;
+        }
         const std::string key = settings_key(s);
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;
         known.push_back(key);

@@ -20,17 +20,15 @@ class Combinations {
     Combinations(const Settings& base, std::vector<Configuration>& rows)
         : base_(base), rows_(rows), seen_{settings_key(base)} {}
 
-    void add(Names footprints, Names sheets, Names spacings, Names formats, Names saturations) {
-        for (const auto footprint : footprints)
-            for (const auto sheet : sheets)
-                for (const auto spacing : spacings)
-                    for (const auto format : formats)
-                        for (const auto saturation : saturations)
-                            add({{"footprints", footprint},
-                                 {"sheets", sheet},
-                                 {"sheet-spacing", spacing},
-                                 {"sheet-format", format},
-                                 {"saturation", saturation}});
+    void add(Names sheets, Names spacings, Names formats, Names saturations) {
+        for (const auto sheet : sheets)
+            for (const auto spacing : spacings)
+                for (const auto format : formats)
+                    for (const auto saturation : saturations)
+                        add({{"sheets", sheet},
+                             {"sheet-spacing", spacing},
+                             {"sheet-format", format},
+                             {"saturation", saturation}});
     }
 
   private:
@@ -51,11 +49,9 @@ class Combinations {
 
 void add_combinations(const Settings& base, std::vector<Configuration>& rows) {
     Combinations combinations(base, rows);
-    combinations.add({"warp2d", "procedural"}, {"whole"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999"});
-    combinations.add({"procedural"}, {"sliced"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999"});
-    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"layers"}, {"0.98"});
-    combinations.add({"warp2d", "procedural"}, {"whole"}, {"1", "0.5"}, {"tiles"}, {"0.98"});
-    combinations.add({"procedural"}, {"sliced"}, {"1", "0.5"}, {"tiles"}, {"0.98", "0.9999"});
+    combinations.add({"whole"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999"});
+    combinations.add({"sliced"}, {"2", "1", "0.5", "0.25"}, {"tiles"}, {"0.999", "0.9999"});
+    combinations.add({"whole"}, {"1", "0.5"}, {"layers"}, {"0.999"});
 }
 
 }  // namespace

@@ -116,7 +116,7 @@ std::vector<Knob> make_ladder() {
     knobs.push_back({.name = "saturation",
                      .help = "Opacity at which a pixel is finished; 1: never",
                      .kind = KnobKind::Method,
-                     .steps = {"0.98", "0.99", "0.999", "0.9999"},
+                     .steps = {"0.999", "0.9999"},
                      .others = {},
                      .number = true,
                      .low = 0,
