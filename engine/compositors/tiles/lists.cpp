@@ -146,8 +146,8 @@ namespace {
 /// So many entries of tiles have room in every buffer that says something of each. Earlier pictures, which had other
 /// entries or did without some of the buffers, may have left one larger than another.
 std::uint64_t pairs_with_room(const TargetResources& targets) {
-    const std::uint64_t marked = std::min(targets.tile_entries.bytes() / sizeof(glm::uvec2),
-                                          targets.tile_marks.bytes() / sizeof(std::uint32_t));
+    const std::uint64_t marked =
+        std::min(targets.tile_entries.bytes() / sizeof(glm::uvec2), targets.tile_marks.bytes() / sizeof(std::uint32_t));
     const std::uint64_t traced = targets.traced_entries.bytes() / sizeof(std::uint32_t) * shader::MARKED_AT_ONCE;
     return targets.traced_entries ? std::min(marked, traced) : marked;
 }
