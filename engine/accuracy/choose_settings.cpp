@@ -28,6 +28,7 @@ std::vector<Settings> candidates(const Settings& base, Tier tier) {
     using S = SheetCut;
     const std::vector<Row> cheap{{S::Whole, 2}, {S::Whole, 1}, {S::Whole, 0.5}};
     const std::vector<Row> dear{{S::Sliced, 1}, {S::Sliced, 0.5}, {S::Sliced, 0.25}, {S::Sliced, 0.1}};
+    const Settings& accurate = preset_named("accurate").settings;
     std::vector<Settings> list;
     if (tier == Tier::Cheap) list.push_back(base);
     std::vector<std::string> known{settings_key(base)};
@@ -38,8 +39,8 @@ std::vector<Settings> candidates(const Settings& base, Tier tier) {
         s.sheet_spacing = row.spacing;
         s.sheet_format = SheetFormat::Tiles;
         if (tier == Tier::Dear) {
-            s.saturation = preset_named("accurate").settings.saturation;
-            s.pixels = PixelChoice::Every;
+            s.saturation = accurate.saturation;
+            s.pixels = accurate.pixels;
         }
         const std::string key = settings_key(s);
         if (std::find(known.begin(), known.end(), key) != known.end()) continue;

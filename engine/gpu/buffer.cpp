@@ -91,11 +91,12 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
 }
 
 void Buffer::check_guard() const {
-    const auto* end = guard_ + kGuardBytes;
-    const auto* written = std::find_if(guard_, guard_ + kGuardBytes, [](unsigned char byte) { return byte != kGuard; });
-    if (written != end)
+    if (guard_ == nullptr) return;
+    const std::span<const unsigned char> guard(guard_, kGuardBytes);
+    const auto written = std::ranges::find_if(guard, [](unsigned char byte) { return byte != kGuard; });
+    if (written != guard.end())
         device_->report(fmt::format("{}: something was written {} bytes behind its end; it has {}", name_,
-                                    written - guard_, bytes_));
+                                    written - guard.begin(), bytes_));
 }
 
 void Buffer::too_small(std::size_t count, std::size_t of_bytes) const {
@@ -104,8 +105,7 @@ void Buffer::too_small(std::size_t count, std::size_t of_bytes) const {
 
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
-    if (guard_ != nullptr) check_guard();
-    guard_ = nullptr;
+    check_guard();
     if (allocated_ > 0) device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
     of_host_ = nullptr;
     texels_ = nullptr;
