@@ -84,7 +84,9 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
       half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))),
       share_(cut.share),
       crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
-      facing_(cut.crease.facing) {
+      facing_(cut.crease.facing),
+      phi_(ray.phi),
+      thickness_(cut.thickness) {
     const bool wall = cut.thickness < kInfinity;
     const FaceRoots face = face_roots(ray.phi, 0);
     const FaceRoots behind = wall ? face_roots(ray.phi, cut.thickness) : FaceRoots{};
@@ -107,9 +109,7 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
         const double from = std::max(low, begin);
         pieces_.at(count_++) = {from,
                                 std::max(std::min(high, end), from),
-                                entry.side < 0 && begin <= low,
                                 begin > low,
-                                leave.side < 0 && end >= high,
                                 end < high,
                                 plane_at(ray, cut.depth, held(meets ? low : turn), entry),
                                 plane_at(ray, cut.depth, held(meets ? high : turn), leave)};
@@ -124,6 +124,11 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
 
 double FacePath::overlap(const FacePiece& piece) const {
     return std::min(piece.high, half_chord_) - std::max(piece.low, -half_chord_);
+}
+
+FaceEnd FacePath::end_at(double z, bool crease) const {
+    const double held = std::clamp(z, -half_chord_, half_chord_);
+    return {held, !crease && phi_.at(held) < -kBesideOther * thickness_, crease};
 }
 
 double FacePath::sampled_at(const FacePiece& piece, double z) const {
@@ -158,11 +163,10 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
         // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where
         // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
         const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();
-        const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
         if (first ? last || overlap(piece) > 0 : !(overlap(pieces().front()) > 0))
-            out.entry = {held(piece.low), piece.from_behind && piece.low > -half_chord_, piece.from_crease};
+            out.entry = end_at(piece.low, piece.from_crease);
         if (first || overlap(piece) > 0 || !(overlap(pieces().front()) > 0))
-            out.leave = {held(piece.high), piece.to_behind && piece.high < half_chord_, piece.to_crease};
+            out.leave = end_at(piece.high, piece.to_crease);
     }
     return out;
 }

@@ -69,6 +69,8 @@ struct FaceCut {
 inline constexpr double kFaceDepth = 0.8, kDeepFaceDepth = 1.4;
 
 /// Nodes of a piece of such a kernel, likewise; one of the paper's profile has as many as the second.
+/// What lies deeper in a wall than this share of it shows the other face.
+inline constexpr double kBesideOther = 0.8;
 inline constexpr int kFewNodes = 6, kManyNodes = 10;
 
 /// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn
@@ -93,8 +95,7 @@ struct FacePlane {
 /// by the face behind; or nowhere (at -1e9).
 struct FacePiece {
     double low = 0, high = 0;
-    bool from_behind = false, from_crease = false;
-    bool to_behind = false, to_crease = false;
+    bool from_crease = false, to_crease = false;
     FacePlane entry, leave;
     /// The plane that the point z of the ray is sampled by: that of the nearer end.
     const FacePlane& plane(double z) const { return z > 0.5 * (low + high) ? leave : entry; }
@@ -103,7 +104,7 @@ struct FacePiece {
 /// An end of the ray's way through a kernel's matter: at a face, or where it comes within the kernel's reach.
 struct FaceEnd {
     double z = 0;
-    bool behind = false;  ///< the wall's other face
+    bool behind = false;  ///< the wall's other face, or within the reach, beside it
     bool crease = false;  ///< the crease's plane
 };
 
@@ -134,12 +135,16 @@ class FacePath {
 
   private:
     double overlap(const FacePiece& piece) const;
+    /// The point z of the ray, held within the reach, as an end of its way.
+    FaceEnd end_at(double z, bool crease) const;
     /// |x|^2 of where the kernel is sampled for the point z of the ray.
     double sampled_at(const FacePiece& piece, double z) const;
 
     double rho2_, half_chord_, share_;
     FacePlane crease_;
     double facing_;  ///< of the crease with the face
+    Quadratic phi_;
+    double thickness_;
     std::array<FacePiece, 2> pieces_;
     std::size_t count_ = 0;
 };

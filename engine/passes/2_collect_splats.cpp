@@ -20,7 +20,9 @@ gpu::Specialization collect_constants(const CollectSplats& in) {
 }
 
 gpu::Specialization finish_constants(const CollectSplats& in) {
-    return {{shader::SPEC_ISO_COUNT, in.iso_count}, {shader::SPEC_FACES, in.faces ? 1 : 0}};
+    return {{shader::SPEC_ISO_COUNT, in.iso_count},
+            {shader::SPEC_ESTIMATOR, static_cast<std::uint32_t>(in.estimator)},
+            {shader::SPEC_FACES, in.faces ? 1 : 0}};
 }
 
 std::uint64_t collect_runs(const glm::ivec3& core_size) {

@@ -3,14 +3,16 @@
 
 #include "engine/gpu/commands.h"
 #include "engine/passes/clip_count.h"
+#include "engine/scene/settings.h"
 
 namespace edgesplat::passes {
 
 struct CollectSplats {
     glm::ivec3 core_size;  ///< voxels that become splats, along each axis
     std::uint32_t iso_count = 1;
-    bool edges = true;      ///< the edge field exists
-    bool buried = true;     ///< the buried mask exists: `mark_buried` has run
+    bool edges = true;   ///< the edge field exists
+    bool buried = true;  ///< the buried mask exists: `mark_buried` has run
+    EdgeEstimator estimator = EdgeEstimator::Cubic;
     bool faces = false;     ///< splats get the faces that fit the surface around them
     ClipCount clip{};       ///< voxels whose kernels are cut away whole are dropped
     bool transfer = false;  ///< splats are classified by a transfer function

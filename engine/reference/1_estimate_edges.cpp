@@ -107,7 +107,7 @@ std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene
         if (!draws_faces(settings)) return edges[field.offset(i)];
         const VoxelEdge face = fit_face(field, scene, edges, i);
         const bool near = face.has_edge && std::abs(face.D) <= edge_reach(settings);
-        return near ? face : normal_only(voxel_gradient(field, i));
+        return near ? face : normal_only(field_gradient(field, i));
     });
 }
 

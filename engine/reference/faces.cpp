@@ -27,6 +27,8 @@ constexpr auto kBadly = static_cast<double>(shader::FIT_BADLY);
 constexpr auto kWell = static_cast<double>(shader::FIT_WELL);
 constexpr auto kWallShare = static_cast<double>(shader::FIT_WALL);
 constexpr auto kWallLevel = static_cast<double>(shader::WALL_LEVEL);
+constexpr auto kWallTilted = static_cast<double>(shader::WALL_TILTED);
+constexpr auto kTurnFrom = static_cast<double>(shader::TURN_FROM);
 constexpr auto kWallBent = static_cast<double>(shader::WALL_BENT);
 constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
 
@@ -197,22 +199,39 @@ std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, c
     return edge;
 }
 
-/// Where matter ends along -n, by surfels that the fit does not look at and that are level with the face.
+/// Where matter ends along -n, by surfels that the fit does not look at: level with the face, or, where it is the same
+/// end of the interval, tilted against it.
 struct FaceBehind {
     double away = std::numeric_limits<double>::infinity();
+    dvec3 n{0};
     bool upper = false;
 };
 FaceBehind face_behind(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                       const glm::ivec3& i, const dvec3& n) {
+                       const glm::ivec3& i, const dvec3& n, bool upper) {
     FaceBehind behind;
     for (int step = 1; step <= shader::WALL_STEPS; ++step) {
         const glm::ivec3 j = i + glm::ivec3(glm::roundEven(-static_cast<double>(step) * n));
         const auto s = surfel_of(field, scene, surfels, i, j, scene.material(field.at(i)));
-        if (!s || s->border || !(glm::dot(s->n, n) < -kWallLevel)) continue;
-        const double away = glm::dot(s->at, s->n) / -glm::dot(s->n, n);
-        if (away > 0 && away < behind.away) behind = {away, s->upper};
+        if (!s || s->border) continue;
+        const double facing = -glm::dot(s->n, n), away = glm::dot(s->at, s->n) / facing;
+        if (!(facing > (s->upper == upper ? kWallTilted : kWallLevel))) continue;
+        if (away > 0 && away < behind.away) behind = {away, s->n, s->upper};
     }
     return behind;
+}
+
+/// Of a face with the normal n: what lies across n of H n moved to `turn`, by a share. By so much its slope turns a
+/// voxel along n; on the face itself that is of third order.
+dmat3 turned(const dmat3& h, const dvec3& n, const dvec3& turn, double share) {
+    dvec3 change = share * (turn - h * n);
+    change -= glm::dot(change, n) * n;
+    return h + glm::outerProduct(n, change) + glm::outerProduct(change, n);
+}
+
+/// How the field's slope turns from a face, d away along n, to voxel i, along the gradient g.
+dvec3 turn_of(const dvec3& g, double d) {
+    const double length = glm::length(g), depth = std::max(d, 0.0);
+    return length > 0 ? -g / length * depth / (depth * depth + kTurnFrom) : dvec3(0);
 }
 
 }  // namespace
@@ -325,12 +344,19 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
-    if (foot.real && !is_wall) {
-        const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n);
-        if (std::isfinite(behind.away) && norm_of(edge.bending) * (edge.D + behind.away) < kWallBent) {
-            edge.D2 = behind.away;
-            edge.mixed = behind.upper != nearest.upper;
-        }
+    if (!foot.real || is_wall) return edge;
+    const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n, nearest.upper);
+    const double thickness = edge.D + behind.away;
+    // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side,
+    // into the field's at the voxel. Where that is shallow it changes its direction fast.
+    if (std::isfinite(behind.away) && norm_of(edge.bending) * thickness < kWallBent) {
+        edge.D2 = behind.away;
+        edge.mixed = behind.upper != nearest.upper;
+        edge.bending = turned(edge.bending, edge.n, behind.n / (-glm::dot(behind.n, edge.n) * thickness), 1);
+    } else if (!is_own && opposite == 0) {
+        const dvec3 g = (nearest.upper ? 1.0 : -1.0) * field_gradient(field, i);
+        const double share = std::clamp(2 * glm::length(own.g) - 1, 0.0, 1.0);
+        edge.bending = turned(edge.bending, edge.n, turn_of(g, edge.D), share);
     }
     return edge;
 }

@@ -105,6 +105,10 @@ glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i) {
     return g;
 }
 
+glm::dvec3 field_gradient(const Field& field, const glm::ivec3& i) {
+    return field.coefficients.empty() ? voxel_gradient(field, i) : spline_gradient(field, glm::dvec3(i));
+}
+
 glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic) {
     // Differences along the three axes alone turn the normal of a blurred edge by up to 5 degrees, because each of them
     // flattens the edge's profile by a different amount. The 14 directions of a Lebedev rule flatten it evenly.

@@ -47,6 +47,9 @@ glm::dvec3 spline_gradient(const Field& field, const glm::dvec3& p);
 /// g(i): central differences, one-sided at a border, 0 along an axis of one voxel.
 glm::dvec3 voxel_gradient(const Field& field, const glm::ivec3& i);
 
+/// The field's own at voxel i: the spline's where there are coefficients, else g(i).
+glm::dvec3 field_gradient(const Field& field, const glm::ivec3& i);
+
 /// G(p): mean slope over the unit sphere around p, by the 14-point Lebedev rule; p is moved to at least one
 /// voxel inside the border.
 glm::dvec3 point_gradient(const Field& field, const glm::dvec3& p, bool cubic = false);

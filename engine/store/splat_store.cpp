@@ -38,6 +38,7 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .iso_count = plan.params.iso_count,
             .edges = plan.edge_field,
             .buried = plan.buried,
+            .estimator = plan.estimator,
             .faces = plan.faces,
             .clip = plan.clip,
             .transfer = !plan.transfer.empty()};

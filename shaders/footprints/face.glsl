@@ -6,6 +6,7 @@
 #include "shaders/footprints/face_cut.glsl"
 
 const float FACE_STRAIGHT = 1e-6;
+const float BESIDE_OTHER = 0.8;  // kBesideOther
 const float FACE_NOWHERE = 1e9;  // voxels along a ray: out of every kernel's reach
 
 // c + z (b + z a).
@@ -27,7 +28,7 @@ struct FaceRay {
 // Where a ray enters a kernel's matter, or leaves it.
 struct FaceEnd {
     float z;
-    float side;   // -1: by the wall's other face, else 1
+    float side;   // -1: by the wall's other face, or beside it, else 1
     bool crease;  // by the crease's plane
 };
 
@@ -91,6 +92,11 @@ CreaseEnds crease_ends(FaceCrease crease) {
     ends.low = u < 0.0 ? z : -FACE_NOWHERE;
     ends.high = u < 0.0 ? FACE_NOWHERE : z;
     return ends;
+}
+
+// The point z of the ray as an end of its way. What lies deeper in a wall than BESIDE_OTHER of it shows the other face.
+FaceEnd face_end(FaceRay ray, FaceCut cut, float z, bool crease) {
+    return FaceEnd(z, !crease && quadratic_at(ray.phi, z) < -BESIDE_OTHER * cut.thickness ? -1.0 : 1.0, crease);
 }
 
 // The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
@@ -183,22 +189,19 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease 
         result.integral += first && has_inner ? other : 0.0;
     }
     result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
-    result.entry = FaceEnd(from, from_behind && from > -half_chord ? -1.0 : 1.0, false);
     // Where a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last piece.
     bool last = FACE_PIECES == 2u && first && has_inner && after > 0.0;
     to = last ? outer_high : to;
-    to_behind = last ? outer_behind : to_behind;
-    result.leave = FaceEnd(to, to_behind && to < half_chord ? -1.0 : 1.0, false);
+    bool from_crease = false;
+    bool to_crease = false;
     if (creased) {
-        result.entry.crease = ends.low > from;
-        result.leave.crease = ends.high < to;
-        result.entry.side = result.entry.crease ? 1.0 : result.entry.side;
-        result.leave.side = result.leave.crease ? 1.0 : result.leave.side;
-        result.entry.z = max(from, ends.low);
-        result.leave.z = max(min(to, ends.high), result.entry.z);
+        from_crease = ends.low > from;
+        to_crease = ends.high < to;
+        from = max(from, ends.low);
+        to = max(min(to, ends.high), from);
     }
-    result.entry.z = clamp(result.entry.z, -half_chord, half_chord);
-    result.leave.z = clamp(result.leave.z, -half_chord, half_chord);
+    result.entry = face_end(ray, cut, clamp(from, -half_chord, half_chord), from_crease);
+    result.leave = face_end(ray, cut, clamp(to, -half_chord, half_chord), to_crease);
     return result;
 }
 #endif

@@ -19,8 +19,10 @@ EDGESPLAT_CONSTANT float FIT_RADIUS = 1.5f;     // voxels around it from which a
 EDGESPLAT_CONSTANT float FIT_RIDGE = 1e-3f;     // voxels^2: weight of H = 0 against the scatter of what is fitted
 EDGESPLAT_CONSTANT float FIT_WALL = 0.49f;      // a wall's two faces must leave less of the squared error than one quadric
 EDGESPLAT_CONSTANT int WALL_STEPS = 4;          // along the normal the other face of a wall is looked for, voxels
-EDGESPLAT_CONSTANT float WALL_LEVEL = 0.99f;    // cosine of its two faces' normals at least
+EDGESPLAT_CONSTANT float WALL_TILTED = 0.6f;    // cosine of its two faces' normals at least
+EDGESPLAT_CONSTANT float WALL_LEVEL = 0.99f;    // the same in a layer, whose faces are different ends of an interval
 EDGESPLAT_CONSTANT float WALL_BENT = 0.5f;      // and thickness times second derivatives (Frobenius) at most
+EDGESPLAT_CONSTANT float TURN_FROM = 0.1f;      // voxels^2 of depth, from which on a quadric turns as the field does
 EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
 EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
 EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept

@@ -9,6 +9,7 @@
 #include "shaders/shared/scene_params.h"
 
 layout(local_size_x = 64) in;
+layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
@@ -20,6 +21,12 @@ ivec3 dims;
 #include "shaders/common/volume_sampling.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
+
+// The field's own at a voxel, as surfels are found in it.
+vec3 field_gradient(ivec3 p) {
+    if (ESTIMATOR == CUBIC) return bspline_slope(p, vec3(0.0)).xyz;
+    return voxel_gradient(p);
+}
 #include "shaders/splats/fit_face.glsl"
 
 void main() {
@@ -40,7 +47,7 @@ void main() {
             // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.
             Face face = fit_face(p, material);
             bool cut = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
-            vec3 g = cut ? vec3(0.0) : voxel_gradient(p);
+            vec3 g = cut ? vec3(0.0) : field_gradient(p);
             float slope = length(g);
             e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);

@@ -1,6 +1,6 @@
 // A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
-// faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims` and
-// `material_at(ivec3)`.
+// faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
+// `material_at(ivec3)` and `field_gradient(ivec3)`.
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
@@ -204,22 +204,34 @@ Foot foot_of(Quadric q, vec3 voxel_at, vec3 at) {
     return Foot(at, slope, length(slope) >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS);
 }
 
-// Where matter ends along -n, by surfels that the fit does not look at and that are level with the face.
+// Where matter ends along -n, by surfels that the fit does not look at: level with the face, or, where it is the same end of the
+// interval, tilted against it.
 struct FaceBehind {
     float away;  // 1e9: none is known
+    vec3 n;
     uint state;
 };
 
-FaceBehind face_behind(ivec3 p, uint material, vec3 n) {
-    FaceBehind behind = FaceBehind(1e9, EDGE_NONE);
+FaceBehind face_behind(ivec3 p, uint material, vec3 n, uint state) {
+    FaceBehind behind = FaceBehind(1e9, -n, EDGE_NONE);
     for (int i = 1; i <= WALL_STEPS; ++i) {
         Surfel s = surfel_at(p, p + ivec3(roundEven(-float(i) * n)), material);
         float facing = dot(s.n, n), away = dot(s.at, s.n) / -facing;
-        bool nearer = s.there && !s.border && facing < -WALL_LEVEL && away > 0.0 && away < behind.away;
+        bool faces = facing < (s.state == state ? -WALL_TILTED : -WALL_LEVEL);
+        bool nearer = s.there && !s.border && faces && away > 0.0 && away < behind.away;
         behind.away = nearer ? away : behind.away;
+        behind.n = nearer ? s.n : behind.n;
         behind.state = nearer ? s.state : behind.state;
     }
     return behind;
+}
+
+// Of a face with the normal n: what lies across n of H n moved to `turn`, by a share. By so much its slope turns a voxel along n;
+// on the face itself that is of third order.
+Bending turned(Bending h, vec3 n, vec3 turn, float share) {
+    vec3 hn = bent(h, n), change = share * (turn - hn);
+    change -= dot(change, n) * n;
+    return Bending(h.diagonal + 2.0 * n * change, h.mixed + n.yxx * change.zzy + change.yxx * n.zzy);
 }
 
 // By how much samples around lie on the wrong side of each of three quadrics about `middle`, squared: of `one`, of the wall
@@ -357,10 +369,23 @@ Face fit_face(ivec3 p, uint material) {
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
         // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
-        FaceBehind behind = face_behind(p, material, face.edge.n);
-        bool thick = foot.real && !is_wall && behind.away < 1e9 && bending_norm(face.h) * (face.edge.d + behind.away) < WALL_BENT;
+        vec3 out_of = face.edge.n;
+        float d = max(face.edge.d, 0.0);
+        FaceBehind behind = face_behind(p, material, out_of, state);
+        bool one_sided = foot.real && !is_wall;
+        bool thick = one_sided && behind.away < 1e9 && bending_norm(face.h) * (face.edge.d + behind.away) < WALL_BENT;
         face.edge.d2 = thick ? behind.away : face.edge.d2;
         face.mixed = thick ? behind.state != state : face.mixed;
+        // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side, into
+        // the field's at the voxel. Where that is shallow it changes its direction fast.
+        bool alone = one_sided && !thick && !is_own && e.opposite == 0.0;
+        vec3 turn = behind.n / (-dot(behind.n, out_of) * (face.edge.d + behind.away));
+        IF_ANY(alone) {
+            vec3 g = (upper ? 1.0 : -1.0) * field_gradient(p);
+            if (alone) turn = -g / max(length(g), 1e-30) * d / (d * d + TURN_FROM);
+        }
+        float steep = clamp(2.0 * length(centred.g) - 1.0, 0.0, 1.0);
+        if (thick || alone) face.h = turned(face.h, out_of, turn, thick ? 1.0 : steep);
     }
     return face;
 }

@@ -55,19 +55,26 @@ TEST_P(Surfels, AgreeWithTheReference) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Surfels, testing::Values(EdgeEstimator::March, EdgeEstimator::Cubic),
-                         [](const auto& test) { return std::string(name_of(test.param)); });
+std::string estimator_of(const testing::TestParamInfo<EdgeEstimator>& test) {
+    return std::string(name_of(test.param));
+}
 
-TEST(Faces, RecordsHoldTheQuadricsThatFit) {
+INSTANTIATE_TEST_SUITE_P(All, Surfels, testing::Values(EdgeEstimator::March, EdgeEstimator::Cubic), estimator_of);
+
+class FaceRecords : public testing::TestWithParam<EdgeEstimator> {};
+
+TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
     for (const PassScene& plain : pass_scenes()) {
-        PassScene s = with_faces(plain);
+        PassScene s = with_faces(plain, GetParam());
         SCOPED_TRACE(s.name);
         const bool is_wall = s.name == "wall from inside";
         // Of thinner ones a single quadric often fits both faces, of thicker ones a voxel sees one.
         if (is_wall) s.volume = sample(slab_scene({24, 24, 24}, {0.3, 1, 0.2}, {11.5, 13, 11.5}, 2.5));
         DeviceUnderTest& state = prepared(s);
         const auto values = scaled_field(s.volume);
-        const reference::Field field{s.volume.geometry.dims, values, {}};
+        std::vector<float> coefficients;
+        if (GetParam() == EdgeEstimator::Cubic) coefficients = bspline_coefficients(values, s.volume.geometry.dims);
+        const reference::Field field{s.volume.geometry.dims, values, coefficients};
         const auto surfels = device_surfels(state);
         std::size_t faces = 0, walls = 0, differ = 0;
         double most_bent = 0;
@@ -92,11 +99,84 @@ TEST(Faces, RecordsHoldTheQuadricsThatFit) {
         EXPECT_GT(faces, 500U);
         EXPECT_GT(most_bent, is_wall ? 1e-4 : 0.1);
         if (is_wall) std::printf("%zu of %zu are walls\n", walls, faces);
-        EXPECT_TRUE(!is_wall || 2 * walls > faces);
+        // On the trilinear field one quadric holds both faces.
+        EXPECT_TRUE(!is_wall || GetParam() == EdgeEstimator::March || 2 * walls > faces);
         // Which of two surfels is nearer, or of two fits better, may be a matter of rounding.
         EXPECT_LE(static_cast<double>(differ), 0.01 * static_cast<double>(faces)) << differ << " of " << faces;
     }
 }
+
+TEST_P(FaceRecords, TurnUnderTheFaceAsTheFieldDoes) {
+    // Below a plane surface the gradient turns, by up to 5 degrees: light that falls in the depth of matter follows it.
+    constexpr double kTurn = 0.02;
+    const glm::dvec3 center(11.5);
+    AnalyticScene scene;
+    scene.dims = glm::ivec3(24);
+    scene.iso_values = {0};
+    scene.value = [&](const glm::dvec3& x) { return (x.z - center.z) * (1 + kTurn * (x.x - center.x)); };
+    PassScene s = with_faces(pass_scenes()[0], GetParam());
+    s.volume = sample(scene);
+    s.scene.iso_values = {0};
+    s.settings.cull_buried = false;
+    DeviceUnderTest& state = prepared(s);
+    int deep = 0;
+    for (const auto& record : device_records(state)) {
+        const auto& edge = record.edge;
+        const auto v = static_cast<int>(record.voxel);
+        const glm::dvec3 x(v % 24, v / 24 % 24, v / (24 * 24));
+        const glm::dvec3 of_border = glm::min(x + 0.5, 23.5 - x);
+        if (!edge.has_edge || edge.D < 1 || std::min({of_border.x, of_border.y, of_border.z}) < 4) continue;
+        const glm::dvec3 g(-kTurn * (x.z - center.z), 0, -1 - kTurn * (x.x - center.x));
+        const glm::dvec3 slope = edge.n - edge.D * (edge.bending * edge.n);
+        const auto off = [&](const glm::dvec3& n) {
+            return glm::length(glm::cross(n, g)) / glm::length(n) / glm::length(g);
+        };
+        EXPECT_LE(off(slope), 0.35 * off(edge.n) + 2e-3) << "D " << edge.D;
+        ++deep;
+    }
+    EXPECT_GT(deep, 500);
+}
+
+TEST(Faces, AWedgeHasBothItsFaces) {
+    // Between two planes that are 25 degrees off parallel, 3.4 voxels apart in the middle.
+    const glm::dvec3 center(11.5), a(0, 0.216440, 0.976296), b(0, 0.216440, -0.976296);
+    const auto inside_of = [&](const glm::dvec3& n, const glm::dvec3& x) { return 1.66 - glm::dot(n, x - center); };
+    AnalyticScene scene;
+    scene.dims = glm::ivec3(24);
+    scene.iso_values = {0};
+    scene.value = [&](const glm::dvec3& x) {
+        return std::clamp(std::min(inside_of(a, x), inside_of(b, x)), -2.0, 2.0);
+    };
+    PassScene s = with_faces(pass_scenes()[0]);
+    s.volume = sample(scene);
+    s.scene.iso_values = {0};
+    s.settings.cull_buried = false;
+    DeviceUnderTest& state = prepared(s);
+    int walls = 0, all = 0;
+    std::vector<double> off, turned;
+    for (const auto& record : device_records(state)) {
+        const auto& edge = record.edge;
+        const auto v = static_cast<int>(record.voxel);
+        const glm::dvec3 x(v % 24, v / 24 % 24, v / (24 * 24)), from = glm::abs(x - center);
+        if (!edge.has_edge || edge.D < 0 || from.x > 7 || from.y > 1) continue;
+        ++all;
+        if (!(edge.D2 < 3)) continue;
+        ++walls;
+        const glm::dvec3 other = edge.n.z > 0 ? b : a, at = x - edge.D2 * edge.n;
+        off.push_back(std::abs(inside_of(other, at)));
+        const glm::dvec3 slope = edge.n - (edge.D + edge.D2) * (edge.bending * edge.n);
+        turned.push_back(glm::length(glm::cross(glm::normalize(slope), other)));
+    }
+    ASSERT_GT(all, 100);
+    EXPECT_GT(walls, all * 9 / 10);
+    std::ranges::sort(off);
+    std::ranges::sort(turned);
+    EXPECT_LE(off[off.size() * 9 / 10], 0.1);
+    // Taken for level it would be .42.
+    EXPECT_LE(turned[turned.size() * 9 / 10], 0.05);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, FaceRecords, testing::Values(EdgeEstimator::March, EdgeEstimator::Cubic), estimator_of);
 
 TEST(Faces, ASphereIsFoundExactly) {
     // What its samples say of a ball is a ball, but for the spline: distances to .01 voxel, curvature to a tenth.

@@ -178,7 +178,6 @@ TEST(Face, AWallIsEnteredFromEitherSide) {
     const auto pieces = path.pieces();
     ASSERT_EQ(pieces.size(), 2);
     // The piece between both faces; the one beyond phi's second zero lies out of reach.
-    EXPECT_TRUE(pieces[1].from_behind);
     EXPECT_NEAR(pieces[1].low, -0.9, 1e-5);
     const FaceCut cut = face_cut(0.6, 0, 0, 1.5);
     const FaceFootprint out = FacePath(through, cut).footprint(8), in = FacePath(back, cut).footprint(8);
@@ -186,6 +185,16 @@ TEST(Face, AWallIsEnteredFromEitherSide) {
     EXPECT_NEAR(std::min(out.entry.z, in.entry.z), -0.9, 1e-4);
     EXPECT_NEAR(std::max(out.entry.z, in.entry.z), -0.6, 1e-4);
     EXPECT_NEAR(out.integral, in.integral, 1e-6);
+}
+
+TEST(Face, WhatLiesDeepInAWallShowsItsOtherFace) {
+    // Rays along a wall of 2 voxels meet neither face: they show the near one, but beside the other.
+    const FaceCut cut = face_cut(0.6, 0, 0, 2);
+    for (const double depth : {0.1, 0.9, 1.5, 1.7, 1.9}) {
+        const FaceFootprint seen = FacePath(plane_ray(0.6, 0, 0.6 - depth, 0), cut).footprint(8);
+        EXPECT_EQ(seen.entry.behind, depth > 1.6) << depth;
+        EXPECT_EQ(seen.leave.behind, depth > 1.6) << depth;
+    }
 }
 
 TEST(Face, DegenerateFacesAreFinite) {
