@@ -151,8 +151,11 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
     for (const FacePiece& piece : pieces()) {
         // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-        const double low = piece.entry.is_deep(-plain) && crease_.is_deep(-plain) ? -plain : -half_chord_;
-        const double high = piece.leave.is_deep(plain) && crease_.is_deep(plain) ? plain : half_chord_;
+        const auto deep = [&](const FacePlane& plane, double side) {
+            return plane.is_deep(side * plain, side * half_chord_) && crease_.is_deep(side * plain, side * half_chord_);
+        };
+        const double low = deep(piece.entry, -1) ? -plain : -half_chord_;
+        const double high = deep(piece.leave, 1) ? plain : half_chord_;
         const double begin = std::max({piece.low, low, slice.low}), end = std::min({piece.high, high, slice.high});
         double sum = 0;
         for (std::size_t k = 0; begin < end && k < rule.size(); ++k) {

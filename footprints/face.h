@@ -86,7 +86,8 @@ void add_crease(FaceCut& cut, const FaceCut::Crease& crease);
 struct FacePlane {
     double p = 0, u = 0, level = std::numeric_limits<double>::infinity();
     double at(double z) const { return p + z * u; }
-    bool is_deep(double z) const { return at(z) <= level; }
+    /// Whether nothing is moved between two points of the ray.
+    bool is_deep(double z, double other) const { return at(z) <= level && at(other) <= level; }
     /// |x|^2 of where a point of the ray is sampled, less rho2.
     double beyond(double z) const;
 };

@@ -228,6 +228,12 @@ dmat3 turned(const dmat3& h, const dvec3& n, const dvec3& turn, double share) {
     return h + glm::outerProduct(n, change) + glm::outerProduct(change, n);
 }
 
+/// The larger of both curvatures, where H n is small; outwards is positive.
+double largest_bend(const dmat3& h) {
+    const double norm = norm_of(h), sum = h[0][0] + h[1][1] + h[2][2];
+    return 0.5 * (sum + std::sqrt(std::max(2 * norm * norm - sum * sum, 0.0)));
+}
+
 /// How the field's slope turns from a face, d away along n, to voxel i, along the gradient g.
 dvec3 turn_of(const dvec3& g, double d) {
     const double length = glm::length(g), depth = std::max(d, 0.0);
@@ -343,13 +349,13 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
-    // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
+    // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
     if (!foot.real || is_wall) return edge;
     const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n, nearest.upper);
     const double thickness = edge.D + behind.away;
     // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side,
     // into the field's at the voxel. Where that is shallow it changes its direction fast.
-    if (std::isfinite(behind.away) && norm_of(edge.bending) * thickness < kWallBent) {
+    if (std::isfinite(behind.away) && largest_bend(edge.bending) * thickness < kWallBent) {
         edge.D2 = behind.away;
         edge.mixed = behind.upper != nearest.upper;
         edge.bending = turned(edge.bending, edge.n, behind.n / (-glm::dot(behind.n, edge.n) * thickness), 1);

@@ -77,7 +77,8 @@ FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side)
     return plane;
 }
 
-bool is_deep(FacePlane plane, float z) { return plane.p + z * plane.u <= plane.level; }
+// Nothing is moved on the ray between two points that are both deep.
+bool is_deep(FacePlane plane, float z, float other) { return plane.p + max(z * plane.u, other * plane.u) <= plane.level; }
 
 // Where a ray enters and leaves what lies inside of a crease's plane.
 struct CreaseEnds {
@@ -122,8 +123,8 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
     }
     float middle = 0.5 * (from + to);
     // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-    bool deep_before = is_deep(entry, -plain) && (!creased || is_deep(edge, -plain));
-    bool deep_behind = is_deep(leave, plain) && (!creased || is_deep(edge, plain));
+    bool deep_before = is_deep(entry, -plain, -half_chord) && (!creased || is_deep(edge, -plain, -half_chord));
+    bool deep_behind = is_deep(leave, plain, half_chord) && (!creased || is_deep(edge, plain, half_chord));
     float begin = max(max(from, deep_before ? -plain : -half_chord), slice.low);
     float len = max(min(min(to, deep_behind ? plain : half_chord), slice.high) - begin, 0.0);
     float sum = 0.0;

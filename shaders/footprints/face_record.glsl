@@ -15,6 +15,12 @@ vec3 bent(Bending h, vec3 v) {
 
 float bending_norm(Bending h) { return sqrt(dot(h.diagonal, h.diagonal) + 2.0 * dot(h.mixed, h.mixed)); }
 
+// The larger of both curvatures, where H n is small; outwards is positive.
+float largest_bend(Bending h) {
+    float norm = bending_norm(h), sum = h.diagonal.x + h.diagonal.y + h.diagonal.z;
+    return 0.5 * (sum + sqrt(max(2.0 * norm * norm - sum * sum, 0.0)));
+}
+
 // The root is stored, so that what is nearly plane is as exact as it is flat.
 uint pack_bending(vec3 v) {
     ivec3 code = ivec3(round(clamp(sign(v) * sqrt(abs(v) / BENDING_UNIT), -1.0, 1.0) * 511.0));

@@ -368,12 +368,12 @@ Face fit_face(ivec3 p, uint material) {
         face.edge.state = is_own && !foot.real ? EDGE_NONE : state;
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
-        // Of a thicker wall the fit sees one face. What bends much over its thickness is none.
+        // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
         vec3 out_of = face.edge.n;
         float d = max(face.edge.d, 0.0);
         FaceBehind behind = face_behind(p, material, out_of, state);
         bool one_sided = foot.real && !is_wall;
-        bool thick = one_sided && behind.away < 1e9 && bending_norm(face.h) * (face.edge.d + behind.away) < WALL_BENT;
+        bool thick = one_sided && behind.away < 1e9 && largest_bend(face.h) * (face.edge.d + behind.away) < WALL_BENT;
         face.edge.d2 = thick ? behind.away : face.edge.d2;
         face.mixed = thick ? behind.state != state : face.mixed;
         // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side, into

@@ -64,7 +64,12 @@ INSTANTIATE_TEST_SUITE_P(All, Surfels, testing::Values(EdgeEstimator::March, Edg
 class FaceRecords : public testing::TestWithParam<EdgeEstimator> {};
 
 TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
-    for (const PassScene& plain : pass_scenes()) {
+    std::vector<PassScene> scenes = pass_scenes();
+    scenes.push_back(scenes[0]);
+    scenes.back().name = "cube with a hole";
+    scenes.back().volume = sample(resized(analytic_scene("cube-hole"), glm::ivec3(20)));
+    scenes.back().scene.iso_values = {0.5};
+    for (const PassScene& plain : scenes) {
         PassScene s = with_faces(plain, GetParam());
         SCOPED_TRACE(s.name);
         const bool is_wall = s.name == "wall from inside";
@@ -160,7 +165,7 @@ TEST(Faces, AWedgeHasBothItsFaces) {
         const glm::dvec3 x(v % 24, v / 24 % 24, v / (24 * 24)), from = glm::abs(x - center);
         if (!edge.has_edge || edge.D < 0 || from.x > 7 || from.y > 1) continue;
         ++all;
-        if (!(edge.D2 < 3)) continue;
+        if (!(edge.D2 < 4)) continue;
         ++walls;
         const glm::dvec3 other = edge.n.z > 0 ? b : a, at = x - edge.D2 * edge.n;
         off.push_back(std::abs(inside_of(other, at)));

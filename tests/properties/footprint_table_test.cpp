@@ -50,9 +50,11 @@ TEST_P(TableOfBuiltins, QuadsInLayersAndTilesAreOnePicture) {
         std::printf("%-10s %-8s layers against tiles %.1f dB\n", GetParam(), view, same);
         EXPECT_GE(same, 60);
         EXPECT_GT(evenness(tiles).mean * evenness(tiles).variation, 0.01) << "an empty picture shows nothing";
-        // Walls and faces that bend much are not in the table; of these scenes the last three have nothing else.
+        // Walls and faces that bend much are not in the table; of these scenes the last three have nothing else, and
+        // nor has the cube beside its hole.
         const std::string_view name = GetParam();
-        const bool looked_up = name == "box" || name == "cube-hole" || name == "ellipsoid";
+        const bool far_cube = name == "cube-hole" && view == std::string_view("oblique");
+        const bool looked_up = name == "box" || far_cube || name == "ellipsoid";
         const double as_integrated = psnr(tiles, render(integrated(shot)).color);
         EXPECT_EQ(as_integrated < 90, looked_up) << as_integrated << " dB from what is integrated";
     }
