@@ -45,7 +45,7 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
     vec3 to_eye = -normalize(params.frame.index_to_world * u);
-    return shade(Surface(matter, number_material.y, number_material.x, true, world_normal, false, entry, to_eye, depth));
+    return shade(Surface(matter, number_material.y & MATERIAL_BITS, number_material.x, true, world_normal, false, entry, to_eye, depth));
 }
 
 // What a ray sees of the splat's face. z counts from p, its point nearest to the voxel.

@@ -129,6 +129,9 @@ std::vector<ImageCase> clip_cases() {
     cases.push_back({"cut-out box, sliced", sliced(orbital, 0.5)});
     cases.push_back({"cut-out box, optical depth", orbital, Output::Tau});
     cases.push_back({"cut-out box, normals", orbital, Output::Normal});
+    Shot glossy = cavity;
+    glossy.scene.materials[1].response = {.ambient = 1, .diffuse = 0.8, .specular = 0.6, .shininess = 40};
+    cases.push_back({"cut cavity, glossy", glossy});
     Shot both = cavity;
     both.scene.effects.clip.remove = {{{12, 0, 0}, {-1, 0, 0}}, {{12.4, 0, 0}, {1, 0, 0}}};
     cases.push_back({"cut cavity, a slit under one voxel", both});
