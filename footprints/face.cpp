@@ -151,8 +151,9 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
     for (const FacePiece& piece : pieces()) {
         // Deeper than what is moved there is nothing beyond the plain kernel's reach.
+        const double far = thickness_ < kInfinity ? half_chord_ : plain;
         const auto deep = [&](const FacePlane& plane, double side) {
-            return plane.is_deep(side * plain, side * half_chord_) && crease_.is_deep(side * plain, side * half_chord_);
+            return plane.is_deep(side * plain, side * far) && crease_.is_deep(side * plain, side * far);
         };
         const double low = deep(piece.entry, -1) ? -plain : -half_chord_;
         const double high = deep(piece.leave, 1) ? plain : half_chord_;

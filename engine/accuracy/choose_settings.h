@@ -30,7 +30,7 @@ struct ChosenSettings {
 };
 
 /// What is expected of a large picture is the small one's error times this (docs/accuracy_report.md says from what).
-inline constexpr double kErrorMargin = 2.5;
+inline constexpr double kErrorMargin = 3;
 
 /// The volume must be set in the renderer. Throws Error naming the best that can be had where nothing is good enough.
 ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const Scene& scene, const Camera& camera,

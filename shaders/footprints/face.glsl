@@ -123,8 +123,9 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
     }
     float middle = 0.5 * (from + to);
     // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-    bool deep_before = is_deep(entry, -plain, -half_chord) && (!creased || is_deep(edge, -plain, -half_chord));
-    bool deep_behind = is_deep(leave, plain, half_chord) && (!creased || is_deep(edge, plain, half_chord));
+    float far = cut.thickness < FACE_NO_WALL ? half_chord : plain;
+    bool deep_before = is_deep(entry, -plain, -far) && (!creased || is_deep(edge, -plain, -far));
+    bool deep_behind = is_deep(leave, plain, far) && (!creased || is_deep(edge, plain, far));
     float begin = max(max(from, deep_before ? -plain : -half_chord), slice.low);
     float len = max(min(min(to, deep_behind ? plain : half_chord), slice.high) - begin, 0.0);
     float sum = 0.0;

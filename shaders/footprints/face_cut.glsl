@@ -42,7 +42,7 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     cut.reach2 = min(max(KERNEL_R2, max(face.reach2, other)), most * most);
     // The sphere through the rim of what is moved that holds the plain kernel, too.
     float shift = max(face.reach2 - KERNEL_R2, 0.0) / (2.0 * (face.along + KERNEL_R));
-    bool shifted = !wall && KERNEL_R + shift < most;
+    bool shifted = !wall && deepest <= FACE_DEPTH && KERNEL_R + shift < most;
     cut.shift = shifted ? shift : 0.0;
     cut.radius = shifted ? KERNEL_R + shift : sqrt(cut.reach2);
     return cut;
