@@ -149,12 +149,13 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     FaceFootprint out;
     const double plain = std::sqrt(std::max(kKernelRadius * kKernelRadius - rho2_, 0.0));
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
+    // Deeper than what is moved there is nothing beyond the plain kernel's reach. Of a wall that must be so all the
+    // way: its other face may be tilted.
+    const double far = thickness_ < kInfinity ? half_chord_ : plain;
+    const auto deep = [&](const FacePlane& plane, double side) {
+        return plane.is_deep(side * plain, side * far) && crease_.is_deep(side * plain, side * far);
+    };
     for (const FacePiece& piece : pieces()) {
-        // Deeper than what is moved there is nothing beyond the plain kernel's reach.
-        const double far = thickness_ < kInfinity ? half_chord_ : plain;
-        const auto deep = [&](const FacePlane& plane, double side) {
-            return plane.is_deep(side * plain, side * far) && crease_.is_deep(side * plain, side * far);
-        };
         const double low = deep(piece.entry, -1) ? -plain : -half_chord_;
         const double high = deep(piece.leave, 1) ? plain : half_chord_;
         const double begin = std::max({piece.low, low, slice.low}), end = std::min({piece.high, high, slice.high});

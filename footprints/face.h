@@ -68,9 +68,10 @@ struct FaceCut {
 /// (.999 at least). Faces further away than R + that cut nothing.
 inline constexpr double kFaceDepth = 0.8, kDeepFaceDepth = 1.4;
 
-/// Nodes of a piece of such a kernel, likewise; one of the paper's profile has as many as the second.
 /// What lies deeper in a wall than this share of it shows the other face.
 inline constexpr double kBesideOther = 0.8;
+
+/// Nodes of a piece of such a kernel, likewise; one of the paper's profile has as many as the second.
 inline constexpr int kFewNodes = 6, kManyNodes = 10;
 
 /// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn

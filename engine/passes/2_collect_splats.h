@@ -10,12 +10,12 @@ namespace edgesplat::passes {
 struct CollectSplats {
     glm::ivec3 core_size;  ///< voxels that become splats, along each axis
     std::uint32_t iso_count = 1;
-    bool edges = true;   ///< the edge field exists
-    bool buried = true;  ///< the buried mask exists: `mark_buried` has run
-    EdgeEstimator estimator = EdgeEstimator::Cubic;
-    bool faces = false;     ///< splats get the faces that fit the surface around them
-    ClipCount clip{};       ///< voxels whose kernels are cut away whole are dropped
-    bool transfer = false;  ///< splats are classified by a transfer function
+    bool edges = true;                               ///< the edge field exists
+    bool buried = true;                              ///< the buried mask exists: `mark_buried` has run
+    EdgeEstimator estimator = EdgeEstimator::Cubic;  ///< whose field has the gradients
+    bool faces = false;                              ///< splats get the faces that fit the surface around them
+    ClipCount clip{};                                ///< voxels whose kernels are cut away whole are dropped
+    bool transfer = false;                           ///< splats are classified by a transfer function
 };
 
 /// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.

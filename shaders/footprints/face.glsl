@@ -122,7 +122,8 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
         to = max(min(to, ends.high), from);
     }
     float middle = 0.5 * (from + to);
-    // Deeper than what is moved there is nothing beyond the plain kernel's reach.
+    // Deeper than what is moved there is nothing beyond the plain kernel's reach. Of a wall that must be so all the way: its other
+    // face may be tilted.
     float far = cut.thickness < FACE_NO_WALL ? half_chord : plain;
     bool deep_before = is_deep(entry, -plain, -far) && (!creased || is_deep(edge, -plain, -far));
     bool deep_behind = is_deep(leave, plain, far) && (!creased || is_deep(edge, plain, far));

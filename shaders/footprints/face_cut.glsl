@@ -40,7 +40,8 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     float other = wall ? face_reach(thickness - distance, cut.depth, norm).reach2 : 0.0;
     float most = KERNEL_R + cut.depth;
     cut.reach2 = min(max(KERNEL_R2, max(face.reach2, other)), most * most);
-    // The sphere through the rim of what is moved that holds the plain kernel, too.
+    // The sphere through the rim of what is moved that holds the plain kernel, too. Where one sees through, a face that turns under
+    // itself moves more than that.
     float shift = max(face.reach2 - KERNEL_R2, 0.0) / (2.0 * (face.along + KERNEL_R));
     bool shifted = !wall && deepest <= FACE_DEPTH && KERNEL_R + shift < most;
     cut.shift = shifted ? shift : 0.0;

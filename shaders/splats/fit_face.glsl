@@ -1,5 +1,5 @@
 // A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
-// faces; mirrored by engine/reference/fit_face.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
+// faces; mirrored by engine/reference/faces.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
 // `material_at(ivec3)` and `field_gradient(ivec3)`.
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"

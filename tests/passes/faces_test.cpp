@@ -19,6 +19,11 @@ PassScene with_faces(PassScene s, EdgeEstimator edges = EdgeEstimator::Cubic) {
     return s;
 }
 
+/// Where a record's voxel lies.
+glm::dvec3 place_of(std::uint32_t voxel, const glm::ivec3& dims) {
+    return reference::Field{dims, {}, {}}.voxel(voxel);
+}
+
 std::vector<reference::VoxelEdge> device_surfels(DeviceUnderTest& state) {
     std::vector<reference::VoxelEdge> edges;
     for (const auto& words : download<glm::uvec2>(state, state.lists().edges)) {
@@ -127,8 +132,7 @@ TEST_P(FaceRecords, TurnUnderTheFaceAsTheFieldDoes) {
     int deep = 0;
     for (const auto& record : device_records(state)) {
         const auto& edge = record.edge;
-        const auto v = static_cast<int>(record.voxel);
-        const glm::dvec3 x(v % 24, v / 24 % 24, v / (24 * 24));
+        const glm::dvec3 x = place_of(record.voxel, scene.dims);
         const glm::dvec3 of_border = glm::min(x + 0.5, 23.5 - x);
         if (!edge.has_edge || edge.D < 1 || std::min({of_border.x, of_border.y, of_border.z}) < 4) continue;
         const glm::dvec3 g(-kTurn * (x.z - center.z), 0, -1 - kTurn * (x.x - center.x));
@@ -161,8 +165,7 @@ TEST(Faces, AWedgeHasBothItsFaces) {
     std::vector<double> off, turned;
     for (const auto& record : device_records(state)) {
         const auto& edge = record.edge;
-        const auto v = static_cast<int>(record.voxel);
-        const glm::dvec3 x(v % 24, v / 24 % 24, v / (24 * 24)), from = glm::abs(x - center);
+        const glm::dvec3 x = place_of(record.voxel, scene.dims), from = glm::abs(x - center);
         if (!edge.has_edge || edge.D < 0 || from.x > 7 || from.y > 1) continue;
         ++all;
         if (!(edge.D2 < 4)) continue;
@@ -193,8 +196,7 @@ TEST(Faces, ASphereIsFoundExactly) {
     int count = 0;
     for (const auto& record : device_records(state)) {
         if (!record.edge.has_edge) continue;
-        const auto v = static_cast<int>(record.voxel);
-        const glm::dvec3 x(v % 28, v / 28 % 26, v / (28 * 26));
+        const glm::dvec3 x = place_of(record.voxel, s.volume.geometry.dims);
         const double error = record.edge.D - (6.3 - glm::length(x - center));
         worst = std::max(worst, std::abs(error));
         sum2 += error * error;
@@ -222,8 +224,7 @@ TEST(Faces, ABoxHasItsEdges) {
     for (const auto& record : device_records(state)) {
         const auto& edge = record.edge;
         if (!edge.has_edge || !(edge.crease.D < 2)) continue;
-        const auto v = static_cast<int>(record.voxel);
-        const glm::dvec3 x(v % dims.x, v / dims.x % dims.y, v / (dims.x * dims.y));
+        const glm::dvec3 x = place_of(record.voxel, dims);
         // A point of the second plane that lies well inside of the first is a point of the surface.
         const glm::dvec3 along = edge.n - glm::dot(edge.n, edge.crease.n) * edge.crease.n;
         const glm::dvec3 at = x + edge.crease.D * edge.crease.n - 2.0 * glm::normalize(along);
