@@ -71,7 +71,7 @@ void add_crease(FaceCut& cut, const FaceCut::Crease& crease) {
     cut.crease = crease;
     // As far as what is moved by one and the other may come from.
     const double further = std::max((2 * crease.distance - cut.depth) * cut.depth, 0.0);
-    cut.reach = std::min(std::sqrt(cut.reach * cut.reach + further), kKernelRadius + kDeepFaceDepth);
+    cut.reach = std::min(std::sqrt(cut.reach * cut.reach + further), kFaceFarthest);
 }
 
 double FacePlane::beyond(double z) const {
@@ -82,7 +82,6 @@ double FacePlane::beyond(double z) const {
 FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     : rho2_(ray.rho2),
       half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))),
-      share_(cut.share),
       crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
       facing_(cut.crease.facing),
       phi_(ray.phi),
@@ -141,7 +140,7 @@ double FacePath::sampled_at(const FacePiece& piece, double z) const {
 double FacePath::kernel_at(double z) const {
     if (!(std::abs(z) < half_chord_)) return 0;
     for (const FacePiece& piece : pieces())
-        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z)) / share_;
+        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z));
     return 0;
 }
 
@@ -164,7 +163,7 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
             const double z = begin + (end - begin) * rule.nodes[k];
             sum += rule.weights[k] * kernel(sampled_at(piece, z));
         }
-        out.integral += std::max(end - begin, 0.0) * sum / share_;
+        out.integral += std::max(end - begin, 0.0) * sum;
         // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where
         // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
         const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();

@@ -54,7 +54,6 @@ struct FaceCut {
     double depth = 0.8;                                          ///< where it is sampled at least, > 0
     double thickness = std::numeric_limits<double>::infinity();  ///< of the wall, > 0
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
-    double share = 1;  ///< that matter holds of it, which it is divided by (face_share)
     /// Another plane that ends the matter; none at infinity.
     struct Crease {
         double distance = std::numeric_limits<double>::infinity();  ///< from the voxel's centre
@@ -63,10 +62,14 @@ struct FaceCut {
     Crease crease;
 };
 
-/// How deep under a face kernels are sampled where there is room. Of opaque matter most of the sum of kernels is enough
-/// (.8 of a voxel behind a lattice plane .82 at least, .966 in the mean); where one sees through it, it is all but 1
-/// (.999 at least). Faces further away than R + that cut nothing.
-inline constexpr double kFaceDepth = 0.8, kDeepFaceDepth = 1.4;
+/// How deep under a face kernels of matter that hides what is behind it are sampled where there is room: most of the
+/// sum of kernels is enough there (.8 of a voxel behind a lattice plane .82 at least, .966 in the mean). Where one sees
+/// through matter they are sampled where they are, since voxels beside it carry it, too: the sum is 1 up to the face.
+/// Faces further away than R + that cut nothing.
+inline constexpr double kFaceDepth = 0.8;
+
+/// No kernel reaches further from its voxel, whatever cuts it.
+inline constexpr double kFaceFarthest = 3;
 
 /// What lies deeper in a wall than this share of it shows the other face.
 inline constexpr double kBesideOther = 0.8;
@@ -75,7 +78,7 @@ inline constexpr double kBesideOther = 0.8;
 inline constexpr int kFewNodes = 6, kManyNodes = 10;
 
 /// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn
-/// there, `norm` the Frobenius norm of H, 1/voxel, `deepest` kFaceDepth or kDeepFaceDepth.
+/// there, `norm` the Frobenius norm of H, 1/voxel, `deepest` kFaceDepth or 0.
 FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth);
 
 /// Adds a plane that may cut the kernel, and by as much as it is moved along it lets the kernel reach further: no
@@ -142,7 +145,7 @@ class FacePath {
     /// |x|^2 of where the kernel is sampled for the point z of the ray.
     double sampled_at(const FacePiece& piece, double z) const;
 
-    double rho2_, half_chord_, share_;
+    double rho2_, half_chord_;
     FacePlane crease_;
     double facing_;  ///< of the crease with the face
     Quadratic phi_;

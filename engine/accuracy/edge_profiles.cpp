@@ -53,6 +53,9 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
         for (int y = low.y; y <= high.y; ++y) {
             for (int x = low.x; x <= high.x; ++x) {
                 const std::size_t i = field.offset({x, y, z});
+                for (const reference::CarriedEdge& c : prepared.carried_by(i))
+                    if (c.material >= 1 && c.edge.D > -kKernelRadius)
+                        splats.push_back({&c.edge, {x, y, z}, footprints.reach(c.edge)});
                 if (prepared.scaled_scene().material(static_cast<double>(field.values[i])) < 1) continue;
                 const reference::VoxelEdge& edge = prepared.edges()[i];
                 splats.push_back({&edge, {x, y, z}, footprints.reach(edge)});
@@ -147,7 +150,7 @@ EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<co
                          const ProfileRange& range) {
     Settings settings = prepared.settings();
     settings.footprints = FootprintMode::Procedural;  // points need no table
-    const reference::Footprints footprints(settings, face_depth(prepared.scene(), prepared.volume().geometry));
+    const reference::Footprints footprints(settings, table_depth(prepared.scene(), prepared.volume().geometry));
     return figures_of(points, range,
                       [&](const SurfacePoint& point) { return two_tone(prepared, footprints, point, range); });
 }

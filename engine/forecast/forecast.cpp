@@ -1,6 +1,8 @@
 #include "engine/forecast/forecast.h"
 
 #include <algorithm>
+#include <bit>
+#include <numeric>
 
 #include "engine/passes/2_collect_splats.h"
 #include "engine/store/light.h"
@@ -49,10 +51,32 @@ bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& cli
     return beyond || within;
 }
 
+/// Bits of a voxel's own material and of those between the samples around it, as values_around() of find_surfel.glsl.
+std::uint32_t materials_around(std::span<const std::uint8_t> materials, const glm::ivec3& dims, const glm::ivec3& p) {
+    const auto material = [&](const glm::ivec3& o) {
+        const glm::ivec3 q = glm::clamp(p + o, glm::ivec3(0), dims - 1);
+        return materials[static_cast<std::size_t>(q.x) +
+                         static_cast<std::size_t>(dims.x) *
+                             (static_cast<std::size_t>(q.y) +
+                              static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(q.z))];
+    };
+    std::uint8_t least = material(glm::ivec3(0)), most = least;
+    for (int i = 0; i < 33; ++i) {
+        glm::ivec3 o = i < 27 ? glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1 : glm::ivec3(0);
+        if (i >= 27) o[(i - 27) / 2] = i % 2 == 1 ? -2 : 2;
+        least = std::min(least, material(o));
+        most = std::max(most, material(o));
+    }
+    return (2U << most) - (1U << least);
+}
+
 }  // namespace
 
-SplatCount most_splats(const VolumeGeometry& geometry) {
-    return {SplatCount::From::Voxels, {geometry.voxel_count(), glm::ivec3(0), geometry.dims - 1}};
+SplatCount most_splats(const CollectionPlan& plan) {
+    const glm::dvec3 dims(plan.dims);
+    const auto voxels = static_cast<std::uint64_t>(dims.x * dims.y * dims.z);
+    const auto carried = static_cast<std::uint64_t>(std::popcount(plan.params.seen_through));
+    return {SplatCount::From::Voxels, {voxels * std::max<std::uint64_t>(carried, 1), glm::ivec3(0), plan.dims - 1}};
 }
 
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
@@ -60,23 +84,26 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const glm::ivec3 dims = plan.dims;
     const auto voxels = static_cast<std::uint64_t>(volume.values.size());
     const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
-    std::vector<std::uint8_t> visible(voxels), opaque(plan.buried ? voxels : 0);
+    std::vector<std::uint8_t> materials(voxels), splats(voxels), opaque(plan.buried ? voxels : 0);
     for (std::uint64_t i = 0; i < voxels; ++i) {
         const auto scaled = static_cast<float>(scaled_value(volume, static_cast<double>(volume.values[i])));
-        std::uint32_t material = 0;
         for (std::uint32_t j = 0; j < params.iso_count; ++j)
-            material += params.iso[j] <= scaled ? 1U : 0U;
-        visible[i] = params.visible_mask >> material & 1U;
-        if (plan.buried) opaque[i] = params.opaque_mask >> material & 1U;
-        if (!plan.clip.any()) continue;
+            materials[i] += params.iso[j] <= scaled ? 1U : 0U;
+    }
+    for (std::uint64_t i = 0; i < voxels; ++i) {
         const glm::ivec3 at(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny));
+        const std::uint32_t carried =
+            params.seen_through == 0 ? 0 : params.seen_through & materials_around(materials, dims, at);
+        splats[i] = static_cast<std::uint8_t>(std::popcount(carried | (params.visible_mask & 1U << materials[i])));
+        if (plan.buried) opaque[i] = params.opaque_mask >> materials[i] & 1U;
+        if (!plan.clip.any()) continue;
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
-        if (is_cut_away(params, plan.clip, at, params.reach)) visible[i] = 0;
+        if (is_cut_away(params, plan.clip, at, params.reach)) splats[i] = 0;
     }
     if (plan.buried) {
         const auto buried = buried_voxels(std::move(opaque), dims, params.bury_distance);
         for (std::uint64_t i = 0; i < voxels; ++i)
-            visible[i] &= buried[i] == 0 ? 1U : 0U;
+            splats[i] = buried[i] == 0 ? splats[i] : 0;
     }
     SplatExtent out;
     VoxelBox box;
@@ -85,9 +112,8 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
             std::uint64_t count = 0;
             for (int y = brick.low.y; y <= brick.high.y; ++y) {
                 const std::uint64_t row = (static_cast<std::uint64_t>(z) * ny + static_cast<std::uint64_t>(y)) * nx;
-                const auto at = visible.begin() + static_cast<std::ptrdiff_t>(row);
-                count +=
-                    static_cast<std::uint64_t>(std::count(at + brick.low.x, at + brick.high.x + 1, std::uint8_t{1}));
+                const auto at = splats.begin() + static_cast<std::ptrdiff_t>(row);
+                count = std::accumulate(at + brick.low.x, at + brick.high.x + 1, count);
             }
             out.count += count;
             if (count > 0) box.add(brick.slice(z));

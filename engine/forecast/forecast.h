@@ -18,8 +18,8 @@ struct SplatCount {
     SplatExtent extent;
 };
 
-/// As if every voxel were a splat.
-SplatCount most_splats(const VolumeGeometry& geometry);
+/// As if every voxel were a splat, and one more of each other material that one sees through.
+SplatCount most_splats(const CollectionPlan& plan);
 
 /// The voxels that pass 2 keeps, counted on the host, pass 1a included: about 10 ns per voxel.
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan);

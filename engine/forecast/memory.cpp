@@ -72,7 +72,7 @@ class Fit {
                 return memory_need(*device_, forecast_frame(request, plan, splats, reach, device_->profile()), budget_)
                     .fits();
             };
-            if (fits(most_splats(request.volume->geometry))) return true;
+            if (fits(most_splats(plan))) return true;
             return fits(count_splats(*request.volume, plan));
         } catch (const Error&) {
             return false;  // too many sheets

@@ -66,7 +66,7 @@ void Targets::provide_images(const FramePlan& plan) {
         fresh.push_back(&image);
     }
     if (fresh.empty()) return;
-    if (std::ranges::find(fresh, &resources_.footprint_table) != fresh.end()) table_depth_ = 0;
+    if (std::ranges::find(fresh, &resources_.footprint_table) != fresh.end()) table_depth_ = -1;
     session_->commands().run([&] {
         for (const gpu::GpuImage* image : fresh)
             session_->commands().prepare({image});
@@ -80,7 +80,7 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats) {
     for (const TargetBufferRow& row : target_buffer_rows())
         if (row.bytes(plan, profile) == 0) resources_.*row.buffer = {};
     provide_images(plan);
-    if (resources_.footprint_table) fill_table(p.face_depth);
+    if (resources_.footprint_table) fill_table(p.table_depth > 0 ? kFaceDepth : 0);
     p.tile_blocks = tile_blocks(p.tiles, profile);
     p.chunk_pairs = static_cast<std::uint32_t>(chunk_pairs(p.tiles, profile));
     p.prepared_mask = passes::prepared_slots(std::uint64_t{p.splat_count} * plan.sheets_per_splat) - 1;
@@ -102,8 +102,7 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats) {
     session_->bindings().write_targets(resources_);
 }
 
-void Targets::fill_table(float face_depth) {
-    const double depth = face_depth > static_cast<float>(kFaceDepth) ? kDeepFaceDepth : kFaceDepth;
+void Targets::fill_table(double depth) {
     if (table_depth_ == depth) return;
     upload_image(session_->commands(), session_->device(), resources_.footprint_table,
                  kept_footprint_table(depth).texels().data(), sizeof(std::uint16_t));

@@ -32,11 +32,11 @@ class Targets {
     void grow(const TargetBufferRow& row, std::uint64_t bytes);
     void provide_images(const FramePlan& plan);
     /// The footprints of kernels at faces, in the table.
-    void fill_table(float face_depth);
+    void fill_table(double depth);
 
     DeviceSession* session_;
     TargetResources resources_;
-    double table_depth_ = 0;  ///< what the footprint table was made for, voxels
+    double table_depth_ = -1;  ///< what the footprint table was made for, voxels; below 0: it was not
 };
 
 }  // namespace edgesplat

@@ -190,9 +190,9 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
            faces == other.faces && std::ranges::equal(transfer, other.transfer) && a.estimate_mask == b.estimate_mask &&
            a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
-           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
-           a.reach == b.reach && clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
-           std::ranges::equal(a.clip_remove, b.clip_remove);
+           a.seen_through == b.seen_through && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
+           a.band == b.band && a.reach == b.reach && clip == other.clip &&
+           std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -227,6 +227,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
     params.reach = static_cast<float>(kernel_reach(settings));
+    params.seen_through = plan.faces ? materials_seen_through(scene, volume.geometry) : 0;
     // Faces are of both sides of a surface, drawn or not.
     params.estimate_mask = plan.faces ? ~0U : params.visible_mask;
     return plan;
@@ -332,7 +333,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(edge_reach(settings));
-    p.face_depth = static_cast<float>(face_depth(scene, geometry));
+    p.seen_through = materials_seen_through(scene, geometry);
+    p.table_depth = static_cast<float>(table_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);

@@ -8,6 +8,7 @@
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
@@ -101,13 +102,58 @@ std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& sce
     });
 }
 
+VoxelEdge finished_face(const Field& field, const ScaledScene& scene, const Settings& settings,
+                        const std::vector<VoxelEdge>& edges, const glm::ivec3& i, int m) {
+    const bool through = scene.seen_through[static_cast<std::size_t>(m)];
+    VoxelEdge face = fit_face(field, scene, edges, i, m);
+    VoxelEdge plain = normal_only(field_gradient(field, i));
+    if (scene.material(field.at(i)) != m) {
+        plain = {};
+        plain.n = {0, 0, 1};
+        plain.D = static_cast<double>(shader::CARRIES_NOTHING);
+        plain.has_edge = plain.has_normal = true;
+    }
+    if (!face.has_edge || !(std::abs(face.D) <= edge_reach(settings))) return plain;
+    face.deepest = through ? 0 : kFaceDepth;
+    if (!through || std::abs(face.D) < kKernelRadius) return face;
+    if (plain.has_edge) return plain;
+    // What a face but for the reach would cut is lit as under it.
+    const glm::dvec3 under = glm::normalize(face.n - face.D * (face.bending * face.n));
+    VoxelEdge lit;
+    lit.n = glm::mix((face.upper ? -1.0 : 1.0) * under, plain.n, plain.has_normal ? face.steep : 0);
+    if (!(glm::dot(lit.n, lit.n) > 1e-6)) return plain;
+    lit.n = glm::normalize(lit.n);
+    lit.has_normal = true;
+    return lit;
+}
+
 std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                     const std::vector<VoxelEdge>& edges) {
     return per_drawn_voxel(field, scene, [&](const glm::ivec3& i) {
         if (!draws_faces(settings)) return edges[field.offset(i)];
-        const VoxelEdge face = fit_face(field, scene, edges, i);
-        const bool near = face.has_edge && std::abs(face.D) <= edge_reach(settings);
-        return near ? face : normal_only(field_gradient(field, i));
+        return finished_face(field, scene, settings, edges, i, scene.material(field.at(i)));
+    });
+}
+
+std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& scene) {
+    std::vector<CarriedEdge> carried;
+    for (std::size_t at = 0; at < field.values.size(); ++at) {
+        const glm::ivec3 i = field.voxel(at);
+        const auto [least, most] = values_around(field, i);
+        const int own = scene.material(field.at(i)), last = scene.material(most);
+        for (int m = scene.material(least); m <= last; ++m)
+            if (m != own && scene.seen_through[static_cast<std::size_t>(m)]) carried.push_back({at, m, {}});
+    }
+    return carried;
+}
+
+void finish_carried(const Field& field, const ScaledScene& scene, const Settings& settings,
+                    const std::vector<VoxelEdge>& edges, std::vector<CarriedEdge>& carried) {
+    parallel_for(static_cast<int>(carried.size()), [&](int begin, int end) {
+        for (int k = begin; k < end; ++k) {
+            CarriedEdge& c = carried[static_cast<std::size_t>(k)];
+            c.edge = finished_face(field, scene, settings, edges, field.voxel(c.voxel), c.material);
+        }
     });
 }
 

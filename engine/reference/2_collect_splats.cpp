@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "footprints/kernel.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
@@ -55,23 +57,48 @@ std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geom
     return rule;
 }
 
+double border_weight(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i,
+                     int m) {
+    double weight = 1;
+    if (!draws_faces(settings) || !scene.seen_through[static_cast<std::size_t>(m)]) return weight;
+    for (int axis = 0; axis < 3; ++axis)
+        if (field.dims[axis] > 1 && (i[axis] == 0 || i[axis] == field.dims[axis] - 1))
+            weight *= static_cast<double>(shader::BORDER_WEIGHT);
+    return weight;
+}
+
 std::vector<double> classified_values(const Field& field, const ScaledScene& scaled,
                                       const std::vector<VoxelEdge>& edges) {
     std::vector<double> values(field.values.begin(), field.values.end());
     for (std::size_t at = 0; at < values.size(); ++at) {
         const VoxelEdge& edge = edges[at];
         const double way = std::max(1.0, 1 - edge.D);
-        if (!edge.has_edge || !(std::abs(edge.D) < 1) || !(way < edge.D2)) continue;
+        if (!edge.has_edge || !(std::abs(edge.D) < 1)) continue;
         const double further = sample(field, glm::dvec3(field.voxel(at)) - way * edge.n);
         if (scaled.material(further) == scaled.material(values[at])) values[at] = further;
     }
     return values;
 }
 
+double carried_value(const Field& field, const ScaledScene& scaled, const std::vector<VoxelEdge>& edges,
+                     const CarriedEdge& carried) {
+    const VoxelEdge& edge = edges[carried.voxel];
+    const glm::ivec3 i = field.voxel(carried.voxel);
+    const int own = scaled.material(field.at(i)), m = carried.material, last = static_cast<int>(scaled.iso.size());
+    if (edge.has_edge && edge.upper == (m > own)) {
+        const double further = sample(field, glm::dvec3(i) + (edge.D + 1) * edge.n);
+        if (scaled.material(further) == m) return further;
+    }
+    const auto [least, most] = values_around(field, i);
+    if (m == 0) return least;
+    return m == last ? most : 0.5 * (scaled.lower(m) + scaled.upper(m));
+}
+
 std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& scaled,
                                         const std::vector<VoxelEdge>& edges, const Scene& scene,
                                         const VolumeGeometry& geometry, const Settings& settings, const glm::dvec3& eye,
-                                        bool for_tau, std::span<const double> values) {
+                                        bool for_tau, std::span<const double> values,
+                                        std::span<const CarriedEdge> carried) {
     std::optional<BuryRule> rule = for_tau ? std::nullopt : bury_rule(scene, geometry, settings);
     std::vector<char> opaque(field.values.size(), 0);
     const IndexClip clip = index_clip(scene.effects.clip, geometry);
@@ -99,15 +126,20 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
 
     std::vector<SplatRecord> records;
     for (std::size_t at = 0; at < edges.size(); ++at) {
-        const int m = scaled.material(static_cast<double>(field.values[at]));
-        if (!scaled.drawn[static_cast<std::size_t>(m)] || buried[at] != 0) continue;
-        if (rule && clip.cuts_away(glm::dvec3(field.voxel(at)), reach)) continue;
-        SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edges[at]};
-        if (!scaled.transfer.empty()) {
-            record.classified = transfer_at(scaled.transfer, values[at]);
-            if (!(record.classified->extinction > 0)) continue;
-        }
-        records.push_back(record);
+        const int own = scaled.material(static_cast<double>(field.values[at]));
+        const bool there = buried[at] == 0 && !(rule && clip.cuts_away(glm::dvec3(field.voxel(at)), reach));
+        const auto add = [&](int m, const VoxelEdge& edge, double value) {
+            SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
+            record.weight = border_weight(field, scaled, settings, field.voxel(at), m);
+            if (!scaled.transfer.empty()) record.classified = transfer_at(scaled.transfer, value);
+            if (there && (!record.classified || record.classified->extinction > 0)) records.push_back(record);
+        };
+        for (; !carried.empty() && carried.front().voxel == at && carried.front().material < own;
+             carried = carried.subspan(1))
+            add(carried.front().material, carried.front().edge, carried.front().value);
+        if (scaled.drawn[static_cast<std::size_t>(own)]) add(own, edges[at], values.empty() ? 0 : values[at]);
+        for (; !carried.empty() && carried.front().voxel == at; carried = carried.subspan(1))
+            add(carried.front().material, carried.front().edge, carried.front().value);
     }
     return records;
 }

@@ -118,7 +118,6 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
     for (std::size_t i = 0; i < records.size(); ++i) {
         Selected& s = selected[i];
         const glm::dvec3 x(field.voxel(records[i].voxel));
-        s.z = view.depth(x);
         s.support = {x, footprints.reach(records[i].edge)};
         SplatSupport drawn = s.support;
         if (draws_table(settings)) std::tie(s.layer, s.axis) = footprints.select(records[i].edge, x - view.eye_index);
@@ -128,9 +127,14 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);
         const bool sliced = settings.sheets == SheetCut::Sliced;
-        s.sheet = sliced ? std::max(sheet_of(middle - extent), 0) : sheet_of(s.z);
+        // What a voxel beside matter has of it lies behind the face: another material's splats are not to come between.
+        const VoxelEdge& edge = records[i].edge;
+        const double beside = settings.warp == WarpFamily::Face && edge.has_edge ? std::min(edge.D, 0.0) : 0;
+        s.z = view.depth(x + beside * edge.n);
+        s.sheet = std::max(sheet_of(sliced ? middle - extent : s.z), 0);
         s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
-        s.kept = middle > -extent && !s.box.empty() && !clip.cuts_away(drawn.center, drawn.radius);
+        s.kept = beside > -kKernelRadius && middle > -extent && !s.box.empty() &&
+                 !clip.cuts_away(drawn.center, drawn.radius);
     }
     return selected;
 }

@@ -54,7 +54,7 @@ struct Selected {
     bool kept = false;
     int sheet = 0;       ///< from the first sheet that can occur
     int last_sheet = 0;  ///< the same as `sheet` where kernels lie in sheets whole
-    double z = 0;        ///< of the voxel centre, mm
+    double z = 0;        ///< depth that it is sorted by, mm: of the voxel's centre, or of the face before it
     SplatSupport support;
     PixelFilter filter;
     PixelBox box;

@@ -158,9 +158,10 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const bool at_border = inside.low > std::max(f.entry.z, eye);
     const glm::dvec3 normal = at_border ? inside.normal : glm::dvec3(0);
     if (at_border) f.entry.z = inside.low;
-    if (payload != Payload::Color || !footprints.lit_in_depth()) return seen.at(f.entry, normal, payload);
-    // The nearer half of the way is lit as where it begins, the farther as where it ends.
-    const double half_chord = std::sqrt(std::max(kKernelRadius * kKernelRadius - glm::dot(p, p), 0.0));
+    if (payload != Payload::Color || !footprints.lit_in_depth(edge)) return seen.at(f.entry, normal, payload);
+    // The nearer half of the way is lit as where it begins, the farther as where it ends, of what holds most of it.
+    const double half_chord = static_cast<double>(shader::LIT_WITHIN) *
+                              std::sqrt(std::max(kKernelRadius * kKernelRadius - glm::dot(p, p), 0.0));
     const bool to_border = inside.high < f.leave.z;
     f.leave.z = std::max(std::min(std::min(inside.high, f.leave.z), half_chord), f.entry.z);
     if (!at_border) f.entry.z = std::min(std::max(f.entry.z, -half_chord), f.leave.z);

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "engine/reference/faces.h"
-#include "footprints/face_share.h"
 #include "shaders/shared/footprint_table.h"
 #include "shaders/shared/limits.h"
 
@@ -17,14 +16,6 @@ namespace {
 
 constexpr auto kCreaseReach = static_cast<double>(shader::CREASE_REACH);
 constexpr auto kBendingUnit = static_cast<double>(shader::BENDING_UNIT);
-
-FaceBody body_of(const VoxelEdge& edge, double bend, double thickness) {
-    const dmat3& h = edge.bending;
-    const dvec3 hn = h * edge.n;
-    const double mean = 0.5 * (h[0][0] + h[1][1] + h[2][2] - bend), norm = norm_of(h);
-    const double across2 = norm * norm - 2 * glm::dot(hn, hn) + bend * bend;  // of both principal curvatures
-    return {bend, mean, std::sqrt(std::max(0.5 * across2 - mean * mean, 0.0)), thickness};
-}
 
 }  // namespace
 
@@ -48,14 +39,11 @@ dmat3 quantise_bending(const dmat3& bending) {
     return stored;
 }
 
-FaceCut cut_of(const VoxelEdge& edge, double deepest) {
-    const bool wall = edge.D2 < kKernelRadius + kDeepFaceDepth;
+FaceCut cut_of(const VoxelEdge& edge) {
+    const bool wall = edge.D2 < kFaceFarthest;
     const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
     const double bend = glm::dot(edge.n, edge.bending * edge.n);
-    FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, deepest);
-    // Of opaque matter most of the sum of kernels is enough.
-    const bool thin = wall || norm_of(edge.bending) > kThinBending;
-    if (deepest > kFaceDepth && thin) cut.share = face_share(body_of(edge, bend, thickness), cut.depth);
+    FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, edge.deepest);
     const dvec3 own = edge.n - edge.bending * (edge.D * edge.n);
     add_crease(cut, {edge.crease.D, glm::dot(own, edge.crease.n)});
     return cut;

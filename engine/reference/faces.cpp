@@ -7,6 +7,7 @@
 #include <span>
 
 #include "engine/reference/creases.h"
+#include "engine/reference/quadrics.h"
 #include "engine/reference/traced_face.h"
 #include "shaders/shared/limits.h"
 
@@ -19,7 +20,6 @@ using glm::dvec3;
 
 // The shaders' numbers.
 constexpr auto kFitRadius = static_cast<double>(shader::FIT_RADIUS);
-constexpr auto kFitRidge = static_cast<double>(shader::FIT_RIDGE);
 constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
 constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
 constexpr auto kOwnShare = static_cast<double>(shader::FIT_OWN);
@@ -54,71 +54,9 @@ double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
     return std::max(w, 0.0) * std::max(w, 0.0);
 }
 
-struct Moments {
-    double weight = 0;
-    dvec3 r{0}, m{0};
-    dmat3 places{0}, turns{0};
-    void add(const dvec3& at, const dvec3& normal, double w) {
-        weight += w;
-        r += w * at;
-        m += w * normal;
-        places += w * glm::outerProduct(at, at);
-        turns += w * glm::outerProduct(normal, at);
-    }
-};
-
-struct Quadric {
-    double c = 0;
-    dvec3 g{0};
-    dmat3 h{0};
-    double at(const dvec3& r) const { return c + glm::dot(g, r) + 0.5 * glm::dot(r, h * r); }
-    dvec3 slope(const dvec3& r) const { return g + h * r; }
-};
-
-/// Axes of a symmetric matrix by Jacobi's rotations, which leave its eigenvalues on the diagonal.
-dmat3 axes_of(dmat3& a) {
-    dmat3 axes(1);
-    for (int sweep = 0; sweep < 12; ++sweep) {
-        for (int p = 0; p < 2; ++p) {
-            for (int q = p + 1; q < 3; ++q) {
-                if (a[p][q] == 0) continue;
-                const double theta = 0.5 * (a[q][q] - a[p][p]) / a[p][q];
-                const double t = std::copysign(1.0, theta) / (std::abs(theta) + std::hypot(theta, 1.0));
-                const double c = 1 / std::hypot(t, 1.0), s = t * c;
-                dmat3 turn(1);
-                turn[p][p] = turn[q][q] = c;
-                turn[q][p] = s;
-                turn[p][q] = -s;
-                a = glm::transpose(turn) * a * turn;
-                axes = axes * turn;
-            }
-        }
-    }
-    return axes;
-}
-
-Quadric quadric_of(const Moments& sums) {
-    const double share = 1 / std::max(sums.weight, 1e-20);
-    const dvec3 r = share * sums.r, m = share * sums.m;
-    const dmat3 turns = share * sums.turns - glm::outerProduct(m, r);
-    dmat3 scatter = share * sums.places - glm::outerProduct(r, r);
-    const dmat3 axes = axes_of(scatter);
-    dmat3 turned = glm::transpose(axes) * (turns + glm::transpose(turns)) * axes;
-    for (int i = 0; i < 3; ++i)
-        for (int j = 0; j < 3; ++j)
-            turned[i][j] /= std::max(scatter[i][i], 0.0) + std::max(scatter[j][j], 0.0) + 2.0 * kFitRidge;
-    Quadric q;
-    q.h = axes * turned * glm::transpose(axes);
-    q.g = m - q.h * r;
-    double bent = 0;
-    for (int i = 0; i < 3; ++i)
-        bent += share * glm::dot(q.h[i], sums.places[i]);
-    q.c = -glm::dot(q.g, r) - 0.5 * bent;
-    return q;
-}
-
-/// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13).
-Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
+/// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13). Of
+/// about unit slope where it is 0, and the field's there.
+std::pair<Quadric, double> field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
     const auto at = [&](int x, int y, int z) { return field.at(i + glm::ivec3(x, y, z)); };
     const double f = at(0, 0, 0), off = iso - f;
     const dvec3 low(at(-1, 0, 0), at(0, -1, 0), at(0, 0, -1)), high(at(1, 0, 0), at(0, 1, 0), at(0, 0, 1));
@@ -127,8 +65,9 @@ Quadric field_quadric(const Field& field, const glm::ivec3& i, double iso, doubl
     const double xz = 0.25 * (at(1, 0, 1) - at(1, 0, -1) - at(-1, 0, 1) + at(-1, 0, -1));
     const double xy = 0.25 * (at(1, 1, 0) - at(1, -1, 0) - at(-1, 1, 0) + at(-1, -1, 0));
     const double norm = std::sqrt(glm::dot(diagonal, diagonal) + 2 * (yz * yz + xz * xz + xy * xy));
-    const double scale = side / std::sqrt(std::max(glm::dot(g, g) + 2 * std::abs(off) * norm, 1e-12));
-    return {scale * off, -scale * g, -scale * dmat3(diagonal.x, xy, xz, xy, diagonal.y, yz, xz, yz, diagonal.z)};
+    const double slope = std::sqrt(std::max(glm::dot(g, g) + 2 * std::abs(off) * norm, 1e-12)), scale = side / slope;
+    return {{scale * off, -scale * g, -scale * dmat3(diagonal.x, xy, xz, xy, diagonal.y, yz, xz, yz, diagonal.z)},
+            slope};
 }
 
 struct Foot {
@@ -166,8 +105,7 @@ double off_of(const Quadric& q, const dvec3& r) {
 
 /// By how much samples around voxel i lie on the wrong side of what `off` says, squared.
 template <typename Off>
-double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec3& i, const Off& off) {
-    const int m = scene.material(field.at(i));
+double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m, const Off& off) {
     double wrong = 0;
     for (int k = 0; k < 27; ++k) {
         const glm::ivec3 o = glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1, j = i + o;
@@ -180,12 +118,12 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
 
 /// What planes at a crease make of a voxel whose best quadric leaves `error`; nothing unless they leave less
 /// than half of it, or a fifth where two planes meet at a blunt angle and might be a narrow ridge.
-std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i,
+std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m,
                                  std::span<const Surfel> surfels, const Surfel& nearest, double error) {
     if (!(error > kCreaseFrom)) return std::nullopt;
     const CreasePlanes planes = crease_planes(surfels, nearest.at, nearest.n, nearest.upper);
     if (planes.count < 2) return std::nullopt;
-    double off = wrong_sides(field, scene, i, [&](const dvec3& r) { return planes.off(r); });
+    double off = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return planes.off(r); });
     for (const Surfel& s : surfels)
         off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * std::pow(planes.off(s.at), 2);
     const bool blunt = glm::dot(planes.planes[0].n, planes.planes[1].n) > static_cast<double>(shader::CREASE_BLUNT);
@@ -207,11 +145,11 @@ struct FaceBehind {
     bool upper = false;
 };
 FaceBehind face_behind(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                       const glm::ivec3& i, const dvec3& n, bool upper) {
+                       const glm::ivec3& i, int m, const dvec3& n, bool upper) {
     FaceBehind behind;
     for (int step = 1; step <= shader::WALL_STEPS; ++step) {
         const glm::ivec3 j = i + glm::ivec3(glm::roundEven(-static_cast<double>(step) * n));
-        const auto s = surfel_of(field, scene, surfels, i, j, scene.material(field.at(i)));
+        const auto s = surfel_of(field, scene, surfels, i, j, m);
         if (!s || s->border) continue;
         const double facing = -glm::dot(s->n, n), away = glm::dot(s->at, s->n) / facing;
         if (!(facing > (s->upper == upper ? kWallTilted : kWallLevel))) continue;
@@ -236,15 +174,47 @@ double largest_bend(const dmat3& h) {
 
 /// How the field's slope turns from a face, d away along n, to voxel i, along the gradient g.
 dvec3 turn_of(const dvec3& g, double d) {
-    const double length = glm::length(g), depth = std::max(d, 0.0);
-    return length > 0 ? -g / length * depth / (depth * depth + kTurnFrom) : dvec3(0);
+    const double length = glm::length(g);
+    return length > 0 ? -g / length * d / (d * d + kTurnFrom) : dvec3(0);
+}
+
+/// Whether samples next to a voxel are of materials below m, above it.
+struct Crossed {
+    bool down = false, up = false;
+};
+Crossed crossed_beside(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m) {
+    Crossed crossed;
+    for (int k = 0; k < 27; ++k) {
+        const int other = scene.material(field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1));
+        crossed.down = crossed.down || other < m;
+        crossed.up = crossed.up || other > m;
+    }
+    return crossed;
+}
+
+/// The face on the voxel's side of a layer comes first.
+VoxelEdge near_face_first(VoxelEdge edge) {
+    if (!(edge.D2 < 0)) return edge;
+    edge.n = -edge.n;
+    std::swap(edge.D, edge.D2);
+    edge.bending = -edge.bending;
+    edge.upper = !edge.upper;
+    return edge;
+}
+
+/// How much of the field's direction at a voxel is believed: by its slope there over that on the way to the face.
+double steep_of(double slope, double way, double d) {
+    const double on_the_way = way / std::max(std::abs(d), 1e-6);
+    const double times = slope / std::max(on_the_way, 1e-6);
+    return std::clamp((times - static_cast<double>(shader::STEEP_FROM)) / static_cast<double>(shader::STEEP_OVER), 0.0,
+                      1.0);
 }
 
 }  // namespace
 
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                   const glm::ivec3& i) {
-    const int m = scene.material(field.at(i));
+                   const glm::ivec3& i, int m) {
+    const bool beside = scene.material(field.at(i)) != m;
     const auto around = [&](const glm::ivec3& center, const auto& take) {
         for (int k = 0; k < 125; ++k) {
             const glm::ivec3 j = center + glm::ivec3(k % 5, k / 5 % 5, k / 25) - 2;
@@ -254,6 +224,11 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     Surfel nearest;
     double distance = std::numeric_limits<double>::infinity();
     around(i, [&](const Surfel& s) {
+        // What is behind the outermost samples no voxel beside it knows.
+        const dvec3 at = dvec3(i) + s.at;
+        if (beside && (s.border || glm::any(glm::lessThan(at, dvec3(0))) ||
+                       glm::any(glm::greaterThan(at, dvec3(field.dims - 1)))))
+            return;
         // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
         const double rank = glm::length(s.at) + (s.border ? static_cast<double>(shader::BORDER_BEHIND) : 0);
         // Of what is equally far the first is taken, whichever way numbers are rounded.
@@ -271,17 +246,10 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         return edge;
     }
     const bool found = std::isfinite(distance);
+    const Crossed crossed = crossed_beside(field, scene, i, m);
     if (!found) {
-        struct {
-            bool down = false, up = false;
-        } crossed;
-        for (int k = 0; k < 27; ++k) {
-            const int other = scene.material(field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1));
-            crossed.down = crossed.down || other < m;
-            crossed.up = crossed.up || other > m;
-        }
         if (!crossed.down && !crossed.up) return normal_alone(field, i);
-        nearest.upper = !crossed.down;
+        nearest.upper = beside ? scene.material(field.at(i)) > m : !crossed.down;
     }
     const dvec3 middle = nearest.at, n = nearest.n;
     const glm::ivec3 center = i + glm::ivec3(glm::roundEven(middle));
@@ -300,7 +268,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     }
     const Quadric one = quadric_of(all), wall = quadric_of(same);
     const double iso = nearest.upper ? scene.upper(m) : scene.lower(std::max(m, 1));
-    const Quadric own = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
+    const auto [own, slope_there] = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
     double of_one = 0, of_own = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
     for (const Surfel& s : seen) {
         const dvec3 r = s.at - middle;
@@ -318,12 +286,12 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const double level = sum / std::max(opposite, 1e-20);
     const double of_wall = of_same + std::max(sum2 - sum * level, 0.0);
     bool is_wall = opposite > 0 && level < -kThinnest && of_wall < kWallShare * of_one;
-    const double wrong = wrong_sides(field, scene, i, [&](const dvec3& r) {
+    const double wrong = wrong_sides(field, scene, i, m, [&](const dvec3& r) {
         const double to_wall = wall.at(r - middle);
         return is_wall ? std::max(to_wall, level - to_wall) : off_of(one, r - middle);
     });
     const double error = (is_wall ? of_wall : of_one) + wrong;
-    const double own_wrong = wrong_sides(field, scene, i, [&](const dvec3& r) { return off_of(own, r); });
+    const double own_wrong = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return off_of(own, r); });
     const double own_error = of_own + own_wrong;
     // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
     // voxel.
@@ -332,7 +300,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
                         (!fitted.real && from_voxel.real);
     is_wall = is_wall && !is_own;
     if (found) {
-        if (const auto edge = creased(field, scene, i, seen, nearest, is_own ? own_error : error)) return *edge;
+        if (const auto edge = creased(field, scene, i, m, seen, nearest, is_own ? own_error : error)) return *edge;
     }
     const Quadric& q = is_own ? own : (is_wall ? wall : one);
     const Foot& foot = is_own ? from_voxel : fitted;
@@ -346,25 +314,36 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     edge.n = foot.real ? foot.slope / steep : n;
     edge.D = glm::dot((is_own ? dvec3(0) : middle) + (foot.real ? foot.at : dvec3(0)), edge.n);
     if (foot.real) edge.bending = q.h / steep;
+    // Beside matter an expansion may make up a surface where the field has none.
+    const double off = std::abs(sample(field, dvec3(i) + edge.D * edge.n) - iso);
+    if (is_own && beside && !(off < static_cast<double>(shader::MADE_UP) * slope_there)) return normal_alone(field, i);
     if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
+    if (is_wall) return edge;
+    // Of a layer so thin that samples around have both of its sides, and perhaps none of it, the fit may see one face.
+    const bool layer = beside && crossed.down && crossed.up;
+    if (layer) {
+        edge.D2 = (scene.upper(m) - scene.lower(m)) / slope_there - edge.D;
+        edge.mixed = true;
+    }
     // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
-    if (!foot.real || is_wall) return edge;
-    const FaceBehind behind = face_behind(field, scene, surfels, i, edge.n, nearest.upper);
+    if (!foot.real) return near_face_first(edge);
+    const FaceBehind behind = face_behind(field, scene, surfels, i, m, edge.n, nearest.upper);
     const double thickness = edge.D + behind.away;
     // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side,
     // into the field's at the voxel. Where that is shallow it changes its direction fast.
+    const dvec3 g = (nearest.upper ? 1.0 : -1.0) * field_gradient(field, i);
+    if (!is_own) edge.steep = steep_of(glm::length(g), std::abs(field.at(i) - iso), edge.D);
     if (std::isfinite(behind.away) && largest_bend(edge.bending) * thickness < kWallBent) {
         edge.D2 = behind.away;
         edge.mixed = behind.upper != nearest.upper;
         edge.bending = turned(edge.bending, edge.n, behind.n / (-glm::dot(behind.n, edge.n) * thickness), 1);
     } else if (!is_own && opposite == 0) {
-        const dvec3 g = (nearest.upper ? 1.0 : -1.0) * field_gradient(field, i);
         const double share = std::clamp(2 * glm::length(own.g) - 1, 0.0, 1.0);
-        edge.bending = turned(edge.bending, edge.n, turn_of(g, edge.D), share);
+        edge.bending = turned(edge.bending, edge.n, turn_of(g, beside ? edge.D : std::max(edge.D, 0.0)), share);
     }
-    return edge;
+    return near_face_first(edge);
 }
 
 }  // namespace edgesplat::reference

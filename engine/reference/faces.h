@@ -11,13 +11,16 @@ namespace edgesplat::reference {
 /// one a normal alone. By Newton's method on the trilinear field, or with `cubic` on the spline.
 VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic);
 
+/// The least and the largest sample around a voxel: no surface that it finds passes between samples further off.
+std::pair<double, double> values_around(const Field& field, const glm::ivec3& i);
+
 /// Of voxel i without a surface in reach: along the gradient, where there is one.
 VoxelEdge normal_alone(const Field& field, const glm::ivec3& i);
 
-/// The face of voxel i: n, D, D2 and second derivatives of the quadric that fits the surfels around the nearest best.
-/// Without one in reach a normal alone.
+/// The face of material m next to voxel i, which is of it or lies beside it: n, D, D2 and second derivatives of the
+/// quadric that fits the surfels around the nearest best. Without one in reach a normal alone.
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                   const glm::ivec3& i);
+                   const glm::ivec3& i, int m);
 
 /// How much a face bends: the Frobenius norm of its second derivatives.
 double norm_of(const glm::dmat3& bending);
@@ -25,10 +28,10 @@ double norm_of(const glm::dmat3& bending);
 /// The second derivatives after their way through the 60 stored bits.
 glm::dmat3 quantise_bending(const glm::dmat3& bending);
 
-/// How the edge's face cuts its kernel; the edge has one. `deepest` as in face_cut().
-FaceCut cut_of(const VoxelEdge& edge, double deepest);
+/// How the edge's face cuts its kernel; the edge has one.
+FaceCut cut_of(const VoxelEdge& edge);
 
-/// Whether the table has the edge's face: one, and bent so little that it is taken for plane.
+/// Whether the edge's face is as those of the table: one, and bent so little that it is taken for plane.
 bool is_in_table(const VoxelEdge& edge, const Settings& settings);
 
 /// The edge as the settings draw it: in the table faces are plane.

@@ -66,6 +66,9 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
         scaled.iso.push_back(static_cast<double>(static_cast<float>(scaled_iso_value(volume, iso))));
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         scaled.drawn.push_back(extinctions_of(scene, m).most > 0);
+    const std::uint32_t seen_through = materials_seen_through(scene, volume.geometry);
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        scaled.seen_through.push_back((seen_through >> m & 1U) != 0);
     scaled.transfer = scaled_transfer(scene, volume);
     scaled.light = !scene.lights.empty() || scene.effects.silhouette;
     return scaled;

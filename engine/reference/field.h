@@ -27,6 +27,7 @@ struct Field {
 struct ScaledScene {
     std::vector<double> iso;              ///< J_j, ascending; float32 precision, as the GPU compares them
     std::vector<bool> drawn;              ///< per material: extinction > 0 somewhere in its interval
+    std::vector<bool> seen_through;       ///< per material: it does not hide what is behind it (materials_seen_through)
     std::vector<TransferPoint> transfer;  ///< values scaled alike; empty without a transfer function
     bool light = false;                   ///< splats want normals, for light or silhouettes
     int material(double f) const;         ///< number of iso-values <= f

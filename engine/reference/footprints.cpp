@@ -17,12 +17,12 @@ PaperEdge paper_edge(const VoxelEdge& edge) {
 
 }  // namespace
 
-Footprints::Footprints(const Settings& settings, double face_depth, FacePieces pieces)
-    : settings_(settings), face_depth_(face_depth), pieces_(pieces) {}
+Footprints::Footprints(const Settings& settings, double table_depth, FacePieces pieces)
+    : settings_(settings), table_depth_(table_depth), pieces_(pieces) {}
 
 bool Footprints::warped(const VoxelEdge& edge) const {
     if (!edge.has_edge || settings_.footprints == FootprintMode::Isotropic) return false;
-    if (settings_.warp == WarpFamily::Face) return std::abs(edge.D) < kKernelRadius + face_depth_;
+    if (settings_.warp == WarpFamily::Face) return edge.D < kKernelRadius + kFaceDepth;
     return edge.D < kKernelRadius;
 }
 
@@ -59,33 +59,33 @@ bool Footprints::cuts(const VoxelEdge& edge) const {
 
 FacePath Footprints::face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
     const VoxelEdge drawn = drawn_edge(edge, settings_);
-    return {face_sight(drawn, p, u).ray, cut_of(drawn, face_depth_), pieces_};
+    return {face_sight(drawn, p, u).ray, cut_of(drawn), pieces_};
 }
 
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                   const Slice& slice) const {
-    return face_path(edge, p, u).footprint(face_depth_ > kFaceDepth ? kManyNodes : kFewNodes, slice);
+    return face_path(edge, p, u).footprint(table_depth_ != kFaceDepth ? kManyNodes : kFewNodes, slice);
 }
 
 bool Footprints::tabulated(const VoxelEdge& edge) const {
-    return draws_table(settings_) && (!warped(edge) || is_in_table(edge, settings_));
+    return draws_table(settings_) && (!warped(edge) || (edge.deepest == table_depth_ && is_in_table(edge, settings_)));
 }
 
 std::pair<FootprintLayer, glm::dvec3> Footprints::select(const VoxelEdge& edge, const glm::dvec3& to_voxel) const {
-    if (!warped(edge)) return {plain_footprint_layer(face_depth_), glm::dvec3(0)};
+    if (!warped(edge)) return {plain_footprint_layer(table_depth_), glm::dvec3(0)};
     const double length = glm::length(to_voxel);
     const glm::dvec3 u = length > 1e-6 ? to_voxel / length : glm::dvec3(0);
     const double cosine = glm::dot(edge.n, u);
     const glm::dvec3 across = edge.n - cosine * u;
     const double sine = glm::length(across);
     // Seen along its normal a footprint is the same all around.
-    return {select_footprint_layer(edge.D, std::abs(cosine), face_depth_),
+    return {select_footprint_layer(edge.D, std::abs(cosine), table_depth_),
             sine > 1e-4 ? across / sine : glm::dvec3(1, 0, 0)};
 }
 
 double Footprints::looked_up(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const {
     const double x = glm::dot(p, axis);
-    return kept_footprint_table(face_depth_).lookup(layer, x, std::sqrt(std::max(glm::dot(p, p) - x * x, 0.0)));
+    return kept_footprint_table(table_depth_).lookup(layer, x, std::sqrt(std::max(glm::dot(p, p) - x * x, 0.0)));
 }
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, double z) const {
@@ -99,7 +99,7 @@ double Footprints::reach(const VoxelEdge& edge) const {
     // Where the surface cuts it only rays will see.
     if (edge.traced) return static_cast<double>(shader::TRACE_REACH);
     if (!warped(edge)) return kKernelRadius;
-    return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), face_depth_).reach : kPaperReach;
+    return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_)).reach : kPaperReach;
 }
 
 }  // namespace edgesplat::reference

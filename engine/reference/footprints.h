@@ -14,8 +14,9 @@ namespace edgesplat::reference {
 /// What the settings make of a voxel's edge. Lengths in voxels, index space; positions relative to the voxel centre.
 class Footprints {
   public:
-    /// `face_depth`: no deeper under a face kernels are sampled, voxels.
-    explicit Footprints(const Settings& settings, double face_depth = kFaceDepth, FacePieces pieces = FacePieces::Both);
+    /// `table_depth`: no deeper under faces that are in the table kernels are sampled, voxels.
+    explicit Footprints(const Settings& settings, double table_depth = kFaceDepth,
+                        FacePieces pieces = FacePieces::Both);
 
     /// Whether the kernel is warped at all; otherwise the closed-form isotropic footprint holds in every mode.
     bool warped(const VoxelEdge& edge) const;
@@ -36,7 +37,7 @@ class Footprints {
     FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
     /// Whether light falls in the depth of what a ray passes: where one sees through matter, and both pieces of it
     /// count.
-    bool lit_in_depth() const { return face_depth_ > kFaceDepth && pieces_ == FacePieces::Both; }
+    bool lit_in_depth(const VoxelEdge& edge) const { return edge.deepest != kFaceDepth && pieces_ == FacePieces::Both; }
     FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
     /// Whether the table has it: whole kernels, plain or cut at one face. Then its layers, and the axis (unit, across
@@ -57,7 +58,7 @@ class Footprints {
 
   private:
     Settings settings_;
-    double face_depth_;
+    double table_depth_;
     FacePieces pieces_;
 };
 

@@ -14,9 +14,12 @@ double PixelFilter::rho2(double rho2_of_ray, const glm::dvec2& at) const {
 }
 
 double matter_of_voxel(const VoxelEdge& edge, const Footprints& footprints) {
-    if (!footprints.warped(edge) || edge.D + edge.D2 < 1) return 1;
-    const auto behind_face = [](double distance) { return distance < 1 ? std::max(distance + 0.5, 0.0) : 1.0; };
-    return behind_face(edge.D) + behind_face(edge.D2) - 1;
+    const bool carried = edge.deepest != kFaceDepth;  // by voxels beside the matter, too
+    if (!footprints.warped(edge) || (!carried && edge.D + edge.D2 < 1)) return 1;
+    const auto behind_face = [&](double distance) {
+        return distance < (carried ? 0.5 : 1) ? std::max(distance + 0.5, 0.0) : 1.0;
+    };
+    return std::max(behind_face(edge.D) + behind_face(edge.D2) - 1, 0.0);
 }
 
 PixelFilter pixel_filter(const View& view, const SplatRecord& record, const glm::dvec3& x,

@@ -51,7 +51,7 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
       settings_((validate(settings), drawn_as(settings, scene))),
       scaled_(scale_scene(scene, volume)),
       values_(scaled_field(volume)),
-      footprints_(settings_, face_depth(scene_, volume.geometry)) {
+      footprints_(settings_, table_depth(scene_, volume.geometry)) {
     if (settings_.edges == EdgeEstimator::Cubic) {
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
@@ -61,10 +61,30 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     const std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
     edges_ = finish_edges(field(), scaled_, settings_, edges);
+    if (draws_faces(settings_)) {
+        carried_ = voxels_beside(field(), scaled_);
+        finish_carried(field(), scaled_, settings_, edges, carried_);
+    }
+    for (CarriedEdge& carried : carried_) {
+        if (quantised) carried.edge = quantise(carried.edge);
+        if (!scaled_.transfer.empty()) carried.value = carried_value(field(), scaled_, edges, carried);
+        carried.edge.traced.reset();
+    }
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
     if (!traced_material(settings_, scene_, volume.geometry))
         for (VoxelEdge& edge : edges_)
             edge.traced.reset();
+}
+
+std::span<const CarriedEdge> PreparedVolume::carried_by(std::size_t voxel) const {
+    const auto range = std::ranges::equal_range(carried_, voxel, {}, &CarriedEdge::voxel);
+    return {range.begin(), range.end()};
+}
+
+void PreparedVolume::replace_edge(std::size_t voxel, int material, const VoxelEdge& edge) {
+    if (scaled_.material(field().at(field().voxel(voxel))) == material) edges_[voxel] = edge;
+    for (CarriedEdge& carried : std::ranges::equal_range(carried_, voxel, {}, &CarriedEdge::voxel))
+        if (carried.material == material) carried.edge = edge;
 }
 
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
@@ -85,8 +105,8 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const int width = view.width, height = view.height;
-    std::vector<SplatRecord> records =
-        collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye, output == Output::Tau, classified_);
+    std::vector<SplatRecord> records = collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye,
+                                                      output == Output::Tau, classified_, carried_);
     // Optical depth is of all that is on a ray.
     for (SplatRecord& record : records)
         if (output == Output::Tau) record.edge.traced.reset();
@@ -94,7 +114,7 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
         select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);
     const bool one_piece = output != Output::Tau && one_piece_is_enough(settings_, scene_, geometry);
-    const Footprints drawn(settings_, face_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
+    const Footprints drawn(settings_, table_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
     const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn);
 
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);

@@ -25,11 +25,14 @@ class PreparedVolume {
     const Footprints& footprints() const { return footprints_; }
     Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }
     const std::vector<VoxelEdge>& edges() const { return edges_; }
+    /// What voxels beside matter that one sees through carry of it, in their order.
+    const std::vector<CarriedEdge>& carried() const { return carried_; }
+    std::span<const CarriedEdge> carried_by(std::size_t voxel) const;
     /// classified_values() of the voxels; empty without a transfer function.
     const std::vector<double>& classified() const { return classified_; }
 
-    /// Draws with these, one per voxel, instead of its own.
-    void replace_edges(std::vector<VoxelEdge> edges) { edges_ = std::move(edges); }
+    /// Draws with the edge of that voxel and material instead of its own.
+    void replace_edge(std::size_t voxel, int material, const VoxelEdge& edge);
 
     /// Passes 2 to 7. 4 channels (Color), 3 (Normal) or 1, as engine/renderer.h says of each. Throws Error for an
     /// invalid camera or a picture without pixels.
@@ -45,6 +48,7 @@ class PreparedVolume {
     ScaledScene scaled_;
     std::vector<float> values_, coefficients_;
     std::vector<VoxelEdge> edges_;
+    std::vector<CarriedEdge> carried_;
     std::vector<double> classified_;
     Footprints footprints_;
 };

@@ -4,20 +4,21 @@
 #include <cmath>
 
 #include "engine/scene/transfer_function.h"
+#include "footprints/kernel.h"
 
 namespace edgesplat::reference {
 
 SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const Footprints& footprints)
     : field_(prepared.field()), splat_of_(field_.values.size(), -1), low_(INFINITY), high_(-INFINITY) {
     const Scene& scene = prepared.scene();
-    for (std::size_t at = 0; at < field_.values.size(); ++at) {
-        const int m = prepared.scaled_scene().material(static_cast<double>(field_.values[at]));
-        const VoxelEdge& edge = prepared.edges()[at];
+    const auto& transfer = prepared.scaled_scene().transfer;
+    const auto add = [&](std::size_t at, int m, const VoxelEdge& edge, const double* classified) {
         SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
-        const auto& transfer = prepared.scaled_scene().transfer;
-        if (!transfer.empty()) record.classified = transfer_at(transfer, prepared.classified()[at]);
+        if (!transfer.empty()) record.classified = transfer_at(transfer, *classified);
+        record.weight = border_weight(field_, prepared.scaled_scene(), prepared.settings(), field_.voxel(at), m);
         const double extinction = record.extinction(scene);
-        if (!(extinction > 0)) continue;
+        const bool nothing = edge.has_edge && edge.D <= -kKernelRadius;
+        if (!(extinction > 0) || nothing) return;
         ModelSplat splat;
         splat.center = glm::dvec3(field_.voxel(at));
         splat.reach = footprints.reach(edge);
@@ -26,11 +27,17 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
         splat.material = record.material;
         splat.edge = &edge;
         splat.record = record;
-        splat_of_[at] = static_cast<std::int32_t>(splats_.size());
+        if (splat_of_[at] < 0) splat_of_[at] = static_cast<std::int32_t>(splats_.size());
         splats_.push_back(splat);
         reach_ = std::max(reach_, splat.reach);
         low_ = glm::min(low_, splat.center - splat.reach);
         high_ = glm::max(high_, splat.center + splat.reach);
+    };
+    for (std::size_t at = 0; at < field_.values.size(); ++at) {
+        const int m = prepared.scaled_scene().material(static_cast<double>(field_.values[at]));
+        add(at, m, prepared.edges()[at], transfer.empty() ? nullptr : &prepared.classified()[at]);
+        for (const CarriedEdge& c : prepared.carried_by(at))
+            add(at, c.material, c.edge, &c.value);
     }
     measure_emptiness();
 }
@@ -95,13 +102,14 @@ void SplatCloud::gather(const glm::dvec3& a, const glm::dvec3& b, std::vector<co
             if (dy * dy + dz * dz >= reach_ * reach_) continue;
             const std::size_t row = field_.offset({0, j, k});
             for (int i = low.x; i <= high.x; ++i) {
-                const std::int32_t id = splat_of_[row + static_cast<std::size_t>(i)];
-                if (id < 0) continue;
-                const ModelSplat& splat = splats_[static_cast<std::size_t>(id)];
-                const glm::dvec3 v = splat.center - a;
+                const std::size_t at = row + static_cast<std::size_t>(i);
+                if (splat_of_[at] < 0) continue;
+                const glm::dvec3 v = glm::dvec3(i, j, k) - a;
                 const double t = length2 > 0 ? std::clamp(glm::dot(v, along) / length2, 0.0, 1.0) : 0.0;
                 const glm::dvec3 d = v - t * along;
-                if (glm::dot(d, d) < splat.reach * splat.reach) found.push_back(&splat);
+                for (auto id = static_cast<std::size_t>(splat_of_[at]);
+                     id < splats_.size() && splats_[id].record.voxel == at; ++id)
+                    if (glm::dot(d, d) < splats_[id].reach * splats_[id].reach) found.push_back(&splats_[id]);
             }
         }
     }

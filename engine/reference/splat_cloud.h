@@ -9,7 +9,7 @@
 
 namespace edgesplat::reference {
 
-/// One visible voxel. Lengths in voxels, index space.
+/// What one voxel has of one material. Lengths in voxels, index space.
 struct ModelSplat {
     glm::dvec3 center{0};
     double reach = 0;        ///< from there on the kernel is 0
@@ -20,7 +20,7 @@ struct ModelSplat {
     SplatRecord record;
 };
 
-/// Every voxel that absorbs, buried or not. `prepared` must outlive it.
+/// Every voxel that absorbs, or lies beside what does, buried or not. `prepared` must outlive it.
 class SplatCloud {
   public:
     SplatCloud(const PreparedVolume& prepared, const View& view, const Footprints& footprints);
@@ -39,7 +39,7 @@ class SplatCloud {
 
     Field field_;
     std::vector<ModelSplat> splats_;
-    std::vector<std::int32_t> splat_of_;   ///< per voxel, -1: absorbs nothing
+    std::vector<std::int32_t> splat_of_;   ///< per voxel the first of its splats, -1: it has none
     std::vector<std::uint8_t> clearance_;  ///< per voxel: Chebyshev distance to the nearest splat, at most 255
     double reach_ = 0;                     ///< from a voxel to where its kernel is 0, largest
     glm::dvec3 low_{0}, high_{0};          ///< box of the splats' reach

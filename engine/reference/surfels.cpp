@@ -13,38 +13,15 @@ using glm::dvec3;
 
 constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
 
-struct Crossed {
-    bool down = false, up = false;
-};
-
-/// Whether samples around a voxel leave its interval.
-Crossed crossed_around(const Field& field, const glm::ivec3& i, double low, double high) {
-    Crossed crossed;
-    const auto look = [&](const glm::ivec3& o) {
-        const double f = field.at(i + o);
-        crossed.down = crossed.down || f < low;
-        crossed.up = crossed.up || f >= high;
-    };
-    for (int k = 0; k < 27; ++k)
-        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 o(0);
-        o[axis] = 2;
-        look(o);
-        look(-o);
-    }
-    return crossed;
-}
-
 /// The point of the field's surface.
 VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
     const VoxelEdge none = normal_alone(field, i);
     const double f = field.at(i);
     const int m = scene.material(f);
     const double low = scene.lower(m), high = scene.upper(m);
-    const Crossed crossed = crossed_around(field, i, low, high);
-    if (!crossed.down && !crossed.up) return none;
-    const bool upper = crossed.up && (!crossed.down || high - f < f - low);
+    const auto [least, most] = values_around(field, i);
+    if (least >= low && most < high) return none;
+    const bool upper = most >= high && (least >= low || high - f < f - low);
     const double iso = upper ? high : low;
     const dvec3 x(i);
     dvec3 at = x, n(0);
@@ -87,6 +64,23 @@ dvec3 border_beside(const Field& field, const glm::ivec3& i) {
 }
 
 }  // namespace
+
+std::pair<double, double> values_around(const Field& field, const glm::ivec3& i) {
+    std::pair around(field.at(i), field.at(i));
+    const auto look = [&](const glm::ivec3& o) {
+        const double f = field.at(i + o);
+        around = {std::min(around.first, f), std::max(around.second, f)};
+    };
+    for (int k = 0; k < 27; ++k)
+        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 o(0);
+        o[axis] = 2;
+        look(o);
+        look(-o);
+    }
+    return around;
+}
 
 VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
     VoxelEdge edge;

@@ -72,7 +72,7 @@ std::optional<MemoryNeed> SplatProvider::beyond_memory(const FrameRequest& reque
     const double reach = kernel_reach(drawn_settings(request));
     const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
-    const SplatCount splats = known.value_or(most_splats(request.volume->geometry));
+    const SplatCount splats = known.value_or(most_splats(wanted));
     FrameForecast forecast = forecast_frame(request, wanted, splats, reach, session_->profile());
     std::vector<std::pair<std::string, std::uint64_t>> asked;
     for (const PlannedResource& resource : forecast.resources)

@@ -113,12 +113,12 @@ bool draws_table(const Settings& settings) {
 }
 
 double edge_reach(const Settings& settings) {
-    return kKernelRadius + (settings.warp == WarpFamily::Face ? kDeepFaceDepth : 0);
+    return settings.warp == WarpFamily::Face ? kFaceFarthest : kKernelRadius;
 }
 
 double kernel_reach(const Settings& settings) {
     if (!draws_warped(settings)) return kKernelRadius;
-    return settings.warp == WarpFamily::Face ? kKernelRadius + kDeepFaceDepth : kPaperReach;
+    return settings.warp == WarpFamily::Face ? kFaceFarthest : kPaperReach;
 }
 
 Settings papers_own(Settings base) {

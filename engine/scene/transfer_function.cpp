@@ -41,18 +41,24 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
     return range;
 }
 
-bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
+std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& geometry) {
     constexpr double kPerVoxel = 4;
     const glm::dvec3 spacing = geometry.spacing();
+    std::uint32_t seen_through = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const ExtinctionRange range = extinctions_of(scene, m);
-        if (range.most > 0 && !(range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel)) return false;
+        const bool hides = range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel;
+        if (range.most > 0 && !hides) seen_through |= 1U << m;
     }
-    return true;
+    return seen_through;
 }
 
-double face_depth(const Scene& scene, const VolumeGeometry& geometry) {
-    return hides_what_is_behind(scene, geometry) ? kFaceDepth : kDeepFaceDepth;
+bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
+    return materials_seen_through(scene, geometry) == 0;
+}
+
+double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
+    return hides_what_is_behind(scene, geometry) ? kFaceDepth : 0;
 }
 
 namespace {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -25,9 +26,12 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
 /// Whether all matter that is seen lets at most 2 % of light through a voxel.
 bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry);
 
-/// No deeper under a face kernels are sampled, voxels: `kFaceDepth` where matter hides what is behind, else
-/// `kDeepFaceDepth`.
-double face_depth(const Scene& scene, const VolumeGeometry& geometry);
+/// Bit m: material m has matter that does not hide what is behind it. Faces of that are not gone under: voxels beside
+/// it carry it, too.
+std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& geometry);
+
+/// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth` or 0.
+double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 
 /// Whether of two pieces of a ray in one kernel the longer is enough: in whole kernels, uncut, that hide what is
 /// behind.

@@ -58,14 +58,19 @@ std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, cons
                 block.size = glm::min(block.core_low + block.core_size + kBorder, dims) - block.low;
                 const std::uint32_t inside =
                     materials_between(params, source.range(block.core_low, block.core_size), volume);
-                if ((inside & params.visible_mask) == 0) continue;
+                // Voxels up to two beside matter that one sees through carry it, too.
+                const glm::ivec3 beside_low = glm::max(block.core_low - 2, 0);
+                const glm::ivec3 beside = glm::min(block.core_low + block.core_size + 2, dims) - beside_low;
+                const std::uint32_t around =
+                    params.seen_through == 0 ? 0 : materials_between(params, source.range(beside_low, beside), volume);
+                if ((inside & params.visible_mask) == 0 && (around & params.seen_through) == 0) continue;
                 // Outside the volume nothing is opaque, and what is cut away hides nothing.
-                const glm::ivec3 around_low = block.core_low - params.bury_distance;
-                const glm::ivec3 around = block.core_size + 2 * params.bury_distance;
-                const bool within = glm::all(glm::greaterThanEqual(around_low, glm::ivec3(0))) &&
-                                    glm::all(glm::lessThanEqual(around_low + around, dims));
+                const glm::ivec3 buried_low = block.core_low - params.bury_distance;
+                const glm::ivec3 buried = block.core_size + 2 * params.bury_distance;
+                const bool within = glm::all(glm::greaterThanEqual(buried_low, glm::ivec3(0))) &&
+                                    glm::all(glm::lessThanEqual(buried_low + buried, dims));
                 if (plan.buried && !plan.clip.any() && within &&
-                    (materials_between(params, source.range(around_low, around), volume) & ~params.opaque_mask) == 0)
+                    (materials_between(params, source.range(buried_low, buried), volume) & ~params.opaque_mask) == 0)
                     continue;
                 blocks.push_back(block);
             }

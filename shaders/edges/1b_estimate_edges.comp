@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+const bool SURFELS = ESTIMATOR == MARCH || ESTIMATOR == CUBIC;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
@@ -76,20 +77,26 @@ void main() {
         float high = params.scene.iso[material];
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR) e = extrapolate(p, value, low, high, params.scene.band);
-        if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) e = find_surfel(p, value, low, high);
+        Beside beside = Beside(0u, 0u);
+        if (SURFELS || params.scene.seen_through != 0u) {
+            vec2 around = values_around(p);
+            beside = Beside(material - material_of(around.x), material_of(around.y) - material);
+            if (SURFELS) e = find_surfel(p, value, low, high, around);
+        }
         if (e.state == EDGE_NONE) {
             vec3 g = voxel_gradient(p);
             float slope = length(g);
             if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
         }
         uint border = 0u;
-        if (ESTIMATOR == MARCH || ESTIMATOR == CUBIC) {
+        if (SURFELS) {
             vec3 out_of = border_beside(p);
             bool ends = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
             if (ends) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);
             border = ends ? EDGE_BORDER : 0u;
         }
-        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e) | border);
+        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e) & ~BESIDE_BITS | border);
+        code.y |= pack_beside(beside);
         imageStore(edges, p, uvec4(code, 0u, 0u));
     }
 }

@@ -1,4 +1,5 @@
-// Packing of a voxel's edge: the edge field (64 bits) and the splat record share it. docs/method.md, pass 1.
+// Packing of a voxel's edge: the edge field (64 bits) and the splat record share it, but for D2, in whose bits the field says what
+// matter there is beside the voxel. docs/method.md, pass 1.
 #ifndef EDGE_RECORD_GLSL
 #define EDGE_RECORD_GLSL
 #include "shaders/shared/scene_params.h"
@@ -41,4 +42,13 @@ Edge unpack_edge(uint normal_code, uint code) {
     e.d2 = d2 == FACE_NONE ? 1e9 : float(d2) / 1022.0 * FACE_DISTANCE_UNIT;
     return e;
 }
+
+// How many materials below a voxel's own, and above it, there are between the samples around it.
+struct Beside {
+    uint below;
+    uint above;
+};
+const uint BESIDE_BITS = 0x3ffu << 16;  // D2's
+uint pack_beside(Beside b) { return b.below << 16 | b.above << 20; }
+Beside unpack_beside(uint code) { return Beside(code >> 16 & 15u, code >> 20 & 15u); }
 #endif

@@ -2,23 +2,11 @@
 // docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(ivec3, vec3) and what finds voxels.
 
 #include "shaders/drivers/if_any.glsl"
+#include "shaders/edges/values_around.glsl"
 
-// Whether samples around leave [low, high) downwards, upwards. No surface within SURFEL_REACH passes between samples further off.
-bvec2 crossed_around(ivec3 p, float low, float high) {
-    bvec2 crossed = bvec2(false);
-    for (int i = 0; i < 33; ++i) {
-        ivec3 o = i < 27 ? ivec3(i % 3, i / 3 % 3, i / 9) - 1 : ivec3(0);
-        if (i >= 27) o[(i - 27) >> 1] = (i & 1) == 1 ? -2 : 2;
-        float value = voxel(clamp(p + o, ivec3(0), dims - 1));
-        crossed.x = crossed.x || value < low;
-        crossed.y = crossed.y || value >= high;
-    }
-    return crossed;
-}
-
-Edge find_surfel(ivec3 p, float value, float low, float high) {
+Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
     Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
-    bvec2 crossed = crossed_around(p, low, high);
+    bvec2 crossed = bvec2(around.x < low, around.y >= high);
     bool upper = crossed.y && (!crossed.x || high - value < value - low);
     float iso = upper ? high : low;
     vec3 at = vec3(0.0), n = vec3(0.0);  // from the voxel

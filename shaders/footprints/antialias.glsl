@@ -32,11 +32,12 @@ LowPass low_pass(vec3 across, vec3 down, vec3 u, float support) {
 }
 
 // What a voxel's kernel holds when it is drawn unwarped: its share of the matter between the faces around it. Summed
-// over the layers behind a face this is the distance to that face.
-float matter_of_voxel(float d, float d2) {
-    float near = d < 1.0 ? max(d + 0.5, 0.0) : 1.0;
-    float far = d2 < 1.0 ? max(d2 + 0.5, 0.0) : 1.0;
-    return d + d2 < 1.0 ? 1.0 : near + far - 1.0;
+// over the layers at a face this is the distance to that face; voxels beside it have some of it where they `carry` it.
+float matter_of_voxel(float d, float d2, bool carried) {
+    float whole = carried ? 0.5 : 1.0;
+    float near = d < whole ? max(d + 0.5, 0.0) : 1.0;
+    float far = d2 < whole ? max(d2 + 0.5, 0.0) : 1.0;
+    return !carried && d + d2 < 1.0 ? 1.0 : max(near + far - 1.0, 0.0);
 }
 
 #endif

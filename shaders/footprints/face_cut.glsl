@@ -3,8 +3,8 @@
 #ifndef EDGESPLAT_FACE_CUT_GLSL
 #define EDGESPLAT_FACE_CUT_GLSL
 
-const float FACE_FARTHEST = KERNEL_R + 1.4;  // R + kDeepFaceDepth: no kernel reaches further
-const float FACE_DEPTH = 0.8;  // kFaceDepth: no deeper where nothing is seen through
+const float FACE_DEPTH = 0.8;     // kFaceDepth: of matter that hides what is behind
+const float FACE_FARTHEST = 3.0;  // kFaceFarthest: no kernel reaches further
 const float FACE_NO_WALL = 1e8;  // a face without another behind it has a larger thickness
 
 struct FaceCut {
@@ -30,7 +30,7 @@ FaceReach face_reach(float distance, float depth, float norm) {
     return r;
 }
 
-// `deepest`: kFaceDepth or kDeepFaceDepth.
+// `deepest`: as FaceCut::depth, at most.
 FaceCut face_cut(float distance, float bend, float norm, float thickness, float deepest) {
     FaceCut cut;
     cut.thickness = thickness;
@@ -40,10 +40,9 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     float other = wall ? face_reach(thickness - distance, cut.depth, norm).reach2 : 0.0;
     float most = KERNEL_R + cut.depth;
     cut.reach2 = min(max(KERNEL_R2, max(face.reach2, other)), most * most);
-    // The sphere through the rim of what is moved that holds the plain kernel, too. Where one sees through, a face that turns under
-    // itself moves more than that.
+    // The sphere through the rim of what is moved that holds the plain kernel, too.
     float shift = max(face.reach2 - KERNEL_R2, 0.0) / (2.0 * (face.along + KERNEL_R));
-    bool shifted = !wall && deepest <= FACE_DEPTH && KERNEL_R + shift < most;
+    bool shifted = !wall && KERNEL_R + shift < most;
     cut.shift = shifted ? shift : 0.0;
     cut.radius = shifted ? KERNEL_R + shift : sqrt(cut.reach2);
     return cut;

@@ -15,7 +15,6 @@ struct FaceForm {
     Bending h;
     FaceCut cut;  // depth < 0: the kernel is plain
     vec4 crease;  // normal and distance of another plane that cuts it, CREASE_NONE without
-    float share;  // that matter holds of the kernel, which it is divided by; 1 unless FACE_PIECES is 2: of opaque matter most is enough
 };
 
 const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // of SplatInputs::number_material.y

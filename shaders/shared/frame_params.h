@@ -105,7 +105,8 @@ struct FrameParams {
     uint sort_segment;      // slots of a block that are sorted at once
     Address batches;        // (slot_count / SPLAT_BATCH) uvec2: first splat and how many; where bricks are culled
     uint slot_count;        // splats that may show: all, or SPLAT_BATCH for each batch
-    float face_depth;       // no deeper under a face kernels are sampled, voxels
+    uint seen_through;      // bit m: material m does not hide what is behind it
+    float table_depth;      // of the faces of BIND_TABLE: no deeper under them kernels are sampled, voxels
     uint chunk_pairs;       // of a chunk that the device plans, at most; its splats are prepared, too
     uint chunk_slots;       // chunks that it plans, at most
     vec2 traced_interval;   // where the field is matter, half open, scaled; with traced faces only, as the next two
@@ -122,7 +123,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1560);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1564);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

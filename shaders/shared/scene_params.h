@@ -15,6 +15,7 @@ struct SceneParams {
     Address run_offsets;  // (runs) uint: splats of each run, then where it writes
     Address splats;       // (splat_count) Splat
     Address traits;       // (splat_count) uvec2: second derivatives of its face (face_record.glsl); with faces only
+    uint seen_through;    // bit m: voxels beside matter of material m carry it, too
     uint estimate_mask;   // bit m: edges of material m are estimated
     float reach;          // no kernel reaches further, voxels
     vec4 clip_keep[8];    // normal (unit) and offset, index space: above 0 is beyond; where buried voxels are found
@@ -47,7 +48,7 @@ EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 460);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 464);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

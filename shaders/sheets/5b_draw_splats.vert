@@ -36,7 +36,7 @@ layout(location = 8) flat out vec4 filtered;       // share, weights of distance
 layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
 layout(location = 10) flat out vec4 face_diagonal; // depth last
 layout(location = 11) flat out vec4 face_mixed;    // thickness last
-layout(location = 12) flat out vec2 face_reach2_share;
+layout(location = 12) flat out float face_reach2;
 layout(location = 13) flat out vec4 first_selected;   // with a table only, SelectedFootprint in two parts
 layout(location = 14) flat out vec4 second_selected;
 layout(location = 15) flat out vec4 crease;
@@ -48,7 +48,7 @@ void main() {
     uint number = UintsRef(params.frame.order).at[sheets.first + min(nth, sheets.count - 1u)];
     Splat splat = SplatsRef(params.frame.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = place_splat(number, splat.voxel, e);
+    Projection p = place_splat(number, splat, e);
     uint layer = 0u;
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
@@ -81,7 +81,7 @@ void main() {
         face_slope = vec4(s.face.slope, s.face.value);
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
-        face_reach2_share = vec2(s.face.cut.reach2, s.face.share);
+        face_reach2 = s.face.cut.reach2;
         if (CREASES == 1u) crease = s.face.crease;
     }
     if (FOOTPRINTS == TABLE) {

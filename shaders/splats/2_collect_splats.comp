@@ -1,4 +1,4 @@
-// Compacts the voxels that can be seen into splat records, brick by brick (engine/culling/brick_runs.h). Each invocation owns a
+// Compacts the voxels that can be seen, or lie beside matter that one sees through, into splat records, brick by brick (engine/culling/brick_runs.h). Each invocation owns a
 // slice of a brick; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
 // 2a_finish_splats gives them their edges.
 #version 460
@@ -44,23 +44,31 @@ void main() {
     ivec3 p = low;
     uint out_at = write == 1u ? offsets.at[run] : 0u;
     for (int v = 0; v < extent.x * extent.y; ++v) {
-        uint material = material_at(p);
-        bool visible = in_mask(params.scene.visible_mask, material);
-        if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
-        if (CLIP_KEEP + CLIP_REMOVE > 0u) visible = visible && !is_cut_away(vec3(p), params.scene.reach);
-        float value = 0.0;
-        if (TRANSFER == 1u) {
-            uvec2 code = EDGES == 1u && visible ? imageLoad(edges, p).xy : uvec2(0u);
-            value = classified_value(p, voxel(p), material, unpack_edge(code.x, code.y));
-            visible = visible && transfer_at(TransferRef(params.scene.transfer), value).a > 0.0;
-        }
-        if (visible) {
-            if (write == 1u) {
-                if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
-                uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
-                splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), 0u, material << 28);
+        uint own = material_at(p);
+        bool there = true;
+        if (BURIED == 1u) there = imageLoad(buried, p).r == 0u;
+        if (CLIP_KEEP + CLIP_REMOVE > 0u) there = there && !is_cut_away(vec3(p), params.scene.reach);
+        uvec2 code = uvec2(0u);
+        IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.seen_through != 0u)) code = imageLoad(edges, p).xy;
+        Beside beside = unpack_beside(code.y);
+        for (uint material = 0u; material <= ISO_COUNT; ++material) {
+            bool carried = material + beside.below >= own && material <= own + beside.above;
+            bool visible = there && (material == own ? in_mask(params.scene.visible_mask, own)
+                                                     : carried && in_mask(params.scene.seen_through, material));
+            float value = 0.0;
+            if (TRANSFER == 1u) {
+                Edge e = unpack_edge(code.x, code.y);
+                IF_ANY(visible) value = material == own ? classified_value(p, voxel(p), own, e) : carried_value(p, own, material, e);
+                visible = visible && transfer_at(TransferRef(params.scene.transfer), value).a > 0.0;
             }
-            ++out_at;
+            if (visible) {
+                if (write == 1u) {
+                    if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
+                    uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
+                    splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), 0u, material << 28);
+                }
+                ++out_at;
+            }
         }
         if (++p.x == low.x + extent.x) {
             p.x = low.x;

@@ -42,16 +42,26 @@ void main() {
         uint material = splat.edge >> 28;
         uvec2 code = imageLoad(edges, p).xy;
         Edge e = unpack_edge(code.x, code.y);
+        e.d2 = 1e9;
         uint normal = code.x;
         if (FACES == 1u) {
             // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.
             Face face = fit_face(p, material);
-            bool cut = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
+            bool near = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
+            bool through = in_mask(params.scene.seen_through, material);
+            bool cut = near && (!through || abs(face.edge.d) < KERNEL_RADIUS);
             vec3 g = cut ? vec3(0.0) : field_gradient(p);
             float slope = length(g);
-            e = cut ? face.edge : Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
+            Edge plain = Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
+            // What a face but for the reach would cut is lit as under it.
+            vec3 under = (face.edge.state == EDGE_UPPER ? -1.0 : 1.0) * (face.edge.n - face.edge.d * bent(face.h, face.edge.n));
+            vec3 lit = mix(normalize(under), plain.n, slope >= GRADIENT_MIN ? face.steep : 0.0);
+            if (near && dot(lit, lit) > 1e-6) plain = Edge(normalize(lit), 1e9, 1e9, EDGE_NORMAL);
+            if (material_at(p) != material) plain = Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER);
+            e = cut ? face.edge : plain;
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
-            uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
+            uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u),
+                               pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
             BendingsRef(params.scene.traits).at[i] = cut ? face.creased ? pack_crease(face.crease) : bent : uvec2(0u);
             with_crease = cut && face.creased;
             traced = cut && face.traced;

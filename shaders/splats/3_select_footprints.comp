@@ -57,14 +57,16 @@ void main() {
     }
     Splat splat = SplatsRef(params.frame.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = place_splat(i, splat.voxel, e);
+    Projection p = place_splat(i, splat, e);
     project_support(p);
     ivec4 box = pixel_box(p);
-    bool drawn = there && p.visible && box.x < box.z && box.y < box.w;
+    // Beside matter a kernel's own middle is on the face's far side, and further off it has nothing of it.
+    float beside = WARP == FACE && e.state >= EDGE_LOWER ? min(e.d, 0.0) : 0.0;
+    bool drawn = there && beside > -params.frame.support && p.visible && box.x < box.z && box.y < box.w;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
     if (FOOTPRINTS == TABLE && drawn)
         PairsRef(params.frame.footprints).at[i] =
-            select_footprint(e, is_in_table(i, e), p.position - params.frame.eye, params.frame.face_depth);
+            select_footprint(e, is_in_table(i, e, splat.edge >> 28), p.position - params.frame.eye, params.frame.table_depth);
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
         // Depths relative to the first sheet, where a far eye costs no digits.
@@ -75,7 +77,9 @@ void main() {
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
         if (drawn) note(i, uint(first), uint(last), box);
     } else {
-        int sheet = max(int(floor(p.view.z / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
+        // What it has lies behind the face: another material's splats are not to come between.
+        float depth = p.view.z + beside * dot(params.frame.view_z, e.n);
+        int sheet = max(int(floor(depth / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;
         if (drawn) note(i, uint(sheet), uint(sheet), box);

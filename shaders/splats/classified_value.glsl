@@ -2,13 +2,32 @@
 // docs/method.md, Transfer functions. The including shader includes common/trilinear.glsl, common/material.glsl and
 // edges/edge_record.glsl.
 #include "shaders/drivers/if_any.glsl"
+#include "shaders/edges/values_around.glsl"
 
 float classified_value(ivec3 p, float own, uint material, Edge e) {
     float value = own, way = max(1.0, 1.0 - e.d);
-    bool mixed = e.state >= EDGE_LOWER && abs(e.d) < 1.0 && way < e.d2;
+    bool mixed = e.state >= EDGE_LOWER && abs(e.d) < 1.0;
     IF_ANY(mixed) {
         float further = trilinear(p, -way * e.n);
         value = material_of(further) == material ? further : own;
+    }
+    return value;
+}
+
+// What a voxel beside matter of another material carries of that: the value a voxel behind the edge, or where there is less of it the
+// middle of the material's interval; of an outermost one the outermost sample around.
+float carried_value(ivec3 p, uint own, uint material, Edge e) {
+    bool outermost = material == 0u || material == ISO_COUNT;
+    float value = 0.0;
+    if (!outermost) value = 0.5 * (params.scene.iso[material - 1u] + params.scene.iso[material]);
+    IF_ANY(outermost) {
+        vec2 around = values_around(p);
+        value = material == 0u ? around.x : outermost ? around.y : value;
+    }
+    bool ahead = e.state >= EDGE_LOWER && (e.state == EDGE_UPPER) == (material > own);
+    IF_ANY(ahead) {
+        float further = trilinear(p, (e.d + 1.0) * e.n);
+        value = ahead && material_of(further) == material ? further : value;
     }
     return value;
 }

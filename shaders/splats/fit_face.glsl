@@ -1,10 +1,12 @@
 // A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
 // faces; mirrored by engine/reference/faces.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
-// `material_at(ivec3)` and `field_gradient(ivec3)`.
+// `material_at(ivec3)`, `field_gradient(ivec3)` and
+// `trilinear(ivec3, vec3)`.
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
 #include "shaders/footprints/face_record.glsl"
+#include "shaders/splats/quadric.glsl"
 
 struct Surfel {
     bool there;
@@ -49,75 +51,6 @@ float surfel_weight(vec3 r, vec3 n, vec3 other) {
     return w * w;
 }
 
-// Sums over surfels at r with normals m, by weight.
-struct Moments {
-    float weight;
-    vec3 r, m;
-    vec3 squares, products;  // of r: xx yy zz, yz xz xy
-    mat3 turns;              // m r'
-};
-
-Moments no_moments() { return Moments(0.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), mat3(0.0)); }
-
-void add_surfel(inout Moments sums, vec3 r, vec3 m, float w) {
-    sums.weight += w;
-    sums.r += w * r;
-    sums.m += w * m;
-    sums.squares += w * r * r;
-    sums.products += w * r.yxx * r.zzy;
-    sums.turns += outerProduct(w * m, r);
-}
-
-struct Quadric {
-    float c;
-    vec3 g;
-    Bending h;
-};
-
-float quadric_at(Quadric q, vec3 r) { return q.c + dot(q.g, r) + 0.5 * dot(r, bent(q.h, r)); }
-vec3 quadric_slope(Quadric q, vec3 r) { return q.g + bent(q.h, r); }
-
-// One of Jacobi's rotations: pq becomes 0.
-void rotate(inout float pp, inout float qq, inout float pq, inout float rp, inout float rq, inout vec3 p, inout vec3 q) {
-    float theta = (qq - pp) * 0.5;
-    float t = pq / (abs(theta) + sqrt(theta * theta + pq * pq) + 1e-30) * (theta < 0.0 ? -1.0 : 1.0);
-    float c = inversesqrt(t * t + 1.0), s = t * c;
-    pp -= t * pq;
-    qq += t * pq;
-    pq = 0.0;
-    float old_rp = rp;
-    rp = c * rp - s * rq;
-    rq = s * old_rp + c * rq;
-    vec3 old_p = p;
-    p = c * p - s * q;
-    q = s * old_p + c * q;
-}
-
-// Normals are linear in place: H is the symmetric matrix that fits them best, which solves H C + C H = D + D', C and D the
-// covariances of places, and of normals with places. g follows, and c from the places, which lie on the surface.
-Quadric quadric_of(Moments sums) {
-    float share = 1.0 / max(sums.weight, 1e-20);
-    vec3 r = share * sums.r, m = share * sums.m, squares = share * sums.squares, products = share * sums.products;
-    vec3 own = squares - r * r, mixed = products - r.yxx * r.zzy;
-    mat3 turns = share * sums.turns - outerProduct(m, r);
-    mat3 both = turns + transpose(turns);
-    mat3 axes = mat3(1.0);
-    for (int sweep = 0; sweep < 4; ++sweep) {
-        rotate(own.x, own.y, mixed.z, mixed.y, mixed.x, axes[0], axes[1]);
-        rotate(own.x, own.z, mixed.y, mixed.z, mixed.x, axes[0], axes[2]);
-        rotate(own.y, own.z, mixed.x, mixed.z, mixed.y, axes[1], axes[2]);
-    }
-    mat3 turned = transpose(axes) * both * axes;
-    own = max(own, vec3(0.0)) + FIT_RIDGE;
-    for (int i = 0; i < 3; ++i) turned[i] /= own + own[i];
-    mat3 h = axes * turned * transpose(axes);
-    Quadric q;
-    q.h = Bending(vec3(h[0][0], h[1][1], h[2][2]), vec3(h[1][2], h[0][2], h[0][1]));
-    q.g = m - bent(q.h, r);
-    q.c = -dot(q.g, r) - 0.5 * dot(q.h.diagonal, squares) - dot(q.h.mixed, products);
-    return q;
-}
-
 struct Face {
     Edge edge;
     Bending h;
@@ -125,6 +58,7 @@ struct Face {
     bool creased;
     vec4 crease;
     bool traced;  // it fits badly: rays are to find the surface
+    float steep;  // how much of the field's direction at the voxel is believed, 0 to 1
 };
 
 // How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
@@ -165,8 +99,8 @@ FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Q
 }
 
 // The field's own expansion around voxel p, negative where the field is on the voxel's side of `iso`; design (13). Of about
-// unit slope where it is 0.
-Quadric field_quadric(ivec3 p, float iso, float side) {
+// unit slope where it is 0; `slope` is the field's there.
+Quadric field_quadric(ivec3 p, float iso, float side, out float slope) {
     ivec3 l = max(p - 1, ivec3(0)), h = min(p + 1, dims - 1);
     float f = voxel(p), off = iso - f;
     vec3 low = vec3(voxel(ivec3(l.x, p.yz)), voxel(ivec3(p.x, l.y, p.z)), voxel(ivec3(p.xy, l.z)));
@@ -176,7 +110,8 @@ Quadric field_quadric(ivec3 p, float iso, float side) {
                              voxel(ivec3(h.x, p.y, h.z)) - voxel(ivec3(h.x, p.y, l.z)) - voxel(ivec3(l.x, p.y, h.z)) + voxel(ivec3(l.x, p.y, l.z)),
                              voxel(ivec3(h.xy, p.z)) - voxel(ivec3(h.x, l.y, p.z)) - voxel(ivec3(l.x, h.y, p.z)) + voxel(ivec3(l.xy, p.z)));
     float norm = sqrt(dot(diagonal, diagonal) + 2.0 * dot(mixed, mixed));
-    float scale = side * inversesqrt(max(dot(g, g) + 2.0 * abs(off) * norm, 1e-12));
+    slope = sqrt(max(dot(g, g) + 2.0 * abs(off) * norm, 1e-12));
+    float scale = side / slope;
     return Quadric(scale * off, -scale * g, Bending(-scale * diagonal, -scale * mixed));
 }
 
@@ -270,14 +205,15 @@ bool has_two_values(ivec3 p) {
 
 #include "shaders/splats/fit_crease.glsl"
 
-// Without a surface in reach: no edge.
+// The face of voxel p's kernel, of its own material or of matter that it lies beside. Without a surface in reach: no edge.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, false);
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, false, 0.0);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = 1e9;
     uint state = EDGE_LOWER;
     bvec2 crossed = bvec2(false);
-    bool border = false;
+    uint own_material = material_at(p);
+    bool border = false, beside = own_material != material;
     for (int i = 0; i < 125; ++i) {
         ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
         Surfel s = surfel_at(p, q, material);
@@ -285,16 +221,19 @@ Face fit_face(ivec3 p, uint material) {
         // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
         float rank = away + (s.border ? BORDER_BEHIND : 0.0);
         // Of what is equally far the first is taken, whichever way numbers are rounded.
-        bool nearer = away < FACE_SEARCH && rank < nearest - 1e-4;
+        // What is behind the outermost samples no voxel beside it knows.
+        vec3 at = vec3(p) + s.at;
+        bool known = !beside || (!s.border && all(greaterThanEqual(at, vec3(0.0))) && all(lessThanEqual(at, vec3(dims - 1))));
+        bool nearer = away < FACE_SEARCH && known && rank < nearest - 1e-4;
         nearest = nearer ? rank : nearest;
         middle = nearer ? s.at : middle;
         n = nearer ? s.n : n;
         state = nearer ? s.state : state;
         border = nearer ? s.border : border;
         uint other = material_at(clamp(q, ivec3(0), dims - 1));
-        bool beside = all(lessThanEqual(abs(o), ivec3(1)));
-        crossed.x = crossed.x || (beside && other < material);
-        crossed.y = crossed.y || (beside && other > material);
+        bool next = all(lessThanEqual(abs(o), ivec3(1)));
+        crossed.x = crossed.x || (next && other < material);
+        crossed.y = crossed.y || (next && other > material);
     }
     bool found = nearest < 1e9;
     if (border) {
@@ -303,7 +242,7 @@ Face fit_face(ivec3 p, uint material) {
         face.edge = Edge(n, d, dot(abs(n), vec3(params.scene.volume_dims)) - d, EDGE_LOWER);
         return face;
     }
-    if (!found) state = crossed.x ? EDGE_LOWER : EDGE_UPPER;
+    if (!found) state = (beside ? own_material < material : crossed.x) ? EDGE_LOWER : EDGE_UPPER;
     IF_ANY(found || crossed.x || crossed.y) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
@@ -322,7 +261,9 @@ Face fit_face(ivec3 p, uint material) {
         face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
         Quadric one = quadric_of(all), wall = quadric_of(same);
         bool upper = state == EDGE_UPPER;
-        Quadric centred = field_quadric(p, params.scene.iso[upper ? material : max(material, 1u) - 1u], upper ? -1.0 : 1.0);
+        float iso = params.scene.iso[upper ? material : max(material, 1u) - 1u];
+        float slope_there;
+        Quadric centred = field_quadric(p, iso, upper ? -1.0 : 1.0, slope_there);
         Quadric own = quadric_about(centred, middle);
         FitErrors e = fit_errors(p, material, middle, n, one, wall, own);
         // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
@@ -366,26 +307,43 @@ Face fit_face(ivec3 p, uint material) {
         face.edge.n = foot.real ? scale * foot.slope : n;
         face.edge.d = dot(about + (foot.real ? foot.at : vec3(0.0)), face.edge.n);
         face.edge.state = is_own && !foot.real ? EDGE_NONE : state;
+        // Beside matter an expansion may make up a surface where the field has none.
+        IF_ANY(is_own && beside) {
+            float off = abs(trilinear(p, face.edge.d * face.edge.n) - iso);
+            if (is_own && beside && !(off < MADE_UP * slope_there)) face.edge.state = EDGE_NONE;
+        }
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
+        // Of a layer so thin that samples around have both of its sides, and perhaps none of it, the fit may see one face.
+        bool layer = beside && crossed.x && crossed.y && !is_wall;
+        if (layer) face.edge.d2 = (params.scene.iso[material] - params.scene.iso[material - 1u]) / slope_there - face.edge.d;
         // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
         vec3 out_of = face.edge.n;
-        float d = max(face.edge.d, 0.0);
+        float d = face.edge.d;
         FaceBehind behind = face_behind(p, material, out_of, state);
         bool one_sided = foot.real && !is_wall;
-        bool thick = one_sided && behind.away < 1e9 && largest_bend(face.h) * (face.edge.d + behind.away) < WALL_BENT;
+        bool thick = one_sided && behind.away < 1e9 && largest_bend(face.h) * (d + behind.away) < WALL_BENT;
         face.edge.d2 = thick ? behind.away : face.edge.d2;
-        face.mixed = thick ? behind.state != state : face.mixed;
+        face.mixed = thick ? behind.state != state : layer || face.mixed;
         // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side, into
         // the field's at the voxel. Where that is shallow it changes its direction fast.
         bool alone = one_sided && !thick && !is_own && e.opposite == 0.0;
-        vec3 turn = behind.n / (-dot(behind.n, out_of) * (face.edge.d + behind.away));
-        IF_ANY(alone) {
+        vec3 turn = behind.n / (-dot(behind.n, out_of) * (d + behind.away));
+        IF_ANY(one_sided && !is_own) {
             vec3 g = (upper ? 1.0 : -1.0) * field_gradient(p);
-            if (alone) turn = -g / max(length(g), 1e-30) * d / (d * d + TURN_FROM);
+            float slope = length(g), on_the_way = abs(voxel(p) - iso) / max(abs(d), 1e-6);
+            float depth = beside ? d : max(d, 0.0);
+            if (alone) turn = -g / max(slope, 1e-30) * depth / (depth * depth + TURN_FROM);
+            face.steep = one_sided && !is_own ? clamp((slope / max(on_the_way, 1e-6) - STEEP_FROM) / STEEP_OVER, 0.0, 1.0) : 0.0;
         }
-        float steep = clamp(2.0 * length(centred.g) - 1.0, 0.0, 1.0);
-        if (thick || alone) face.h = turned(face.h, out_of, turn, thick ? 1.0 : steep);
+        float share = thick ? 1.0 : clamp(2.0 * length(centred.g) - 1.0, 0.0, 1.0);
+        if (thick || alone) face.h = turned(face.h, out_of, turn, share);
+        // The face on the voxel's side of the layer comes first.
+        bool far = layer && face.edge.state != EDGE_NONE && face.edge.d2 < 0.0;
+        if (far) {
+            face.edge = Edge(-out_of, face.edge.d2, d, upper ? EDGE_LOWER : EDGE_UPPER);
+            face.h = Bending(-face.h.diagonal, -face.h.mixed);
+        }
     }
     return face;
 }

@@ -20,7 +20,7 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     PreparedSplat s;
     Splat splat = SplatsRef(params.frame.splats).at[number];
     Edge e = unpack_edge(splat.normal, splat.edge);
-    Projection p = place_splat(number, splat.voxel, e);
+    Projection p = place_splat(number, splat, e);
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
         float near = params.frame.sheet_zero + float(sheet) * params.frame.sheet_thickness - dot(params.frame.view_z, p.position);
@@ -63,7 +63,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 1u), vec4(f.h.diagonal, f.cut.depth));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 2u), vec4(f.h.mixed, f.cut.thickness));
         imageStore(prepared, prepared_texel(at + PREPARED_KERNEL + 3u),
-                   vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), f.share));
+                   vec4(f.cut.reach2, uintBitsToFloat(s.inputs.number_material.x), uintBitsToFloat(s.inputs.number_material.y), 0.0));
         if (CREASES == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CREASE), f.crease);
     }
     if (FOOTPRINTS != ISOTROPIC && !FACES) {
@@ -103,8 +103,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     if (FACES) {
         vec4 a = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL)), b = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 1u));
         vec4 c = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 2u)), d = imageLoad(prepared, prepared_texel(at + PREPARED_KERNEL + 3u));
-        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0),
-                                 CREASE_NONE, d.w);
+        s.inputs.face = FaceForm(a.w, a.xyz, Bending(b.xyz, c.xyz), FaceCut(b.w, c.w, d.x, 0.0, 0.0), CREASE_NONE);
         s.inputs.number_material = uvec2(floatBitsToUint(d.y), floatBitsToUint(d.z));
         if (CREASES == 1u) s.inputs.face.crease = imageLoad(prepared, prepared_texel(at + PREPARED_CREASE));
     }

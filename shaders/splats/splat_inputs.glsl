@@ -5,7 +5,6 @@
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 #include "shaders/footprints/kernel.glsl"
-#include "shaders/footprints/face_share.glsl"
 
 struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
@@ -19,11 +18,12 @@ struct SplatInputs {
     SelectedFootprint selected;  // with a table only
 };
 
-FaceBody body_of(Edge e, Bending h, FaceCut cut) {
-    vec3 hn = bent(h, e.n);
-    float bend = dot(e.n, hn), norm = bending_norm(h), mean = 0.5 * (h.diagonal.x + h.diagonal.y + h.diagonal.z - bend);
-    float across2 = norm * norm - 2.0 * dot(hn, hn) + bend * bend;  // of both principal curvatures
-    return FaceBody(bend, mean, sqrt(max(0.5 * across2 - mean * mean, 0.0)), cut.thickness);
+// Beyond the volume's border no voxel carries matter: the outermost ones have more, so that there is as much of it.
+float border_weight(uint voxel) {
+    uvec3 dims = uvec3(params.frame.dims), at = uvec3(voxel % dims.x, voxel / dims.x % dims.y, voxel / dims.x / dims.y);
+    uvec3 outermost = uvec3(equal(at, uvec3(0u))) | uvec3(equal(at, dims - 1u));
+    outermost *= uvec3(greaterThan(dims, uvec3(1u)));
+    return pow(BORDER_WEIGHT, float(outermost.x + outermost.y + outermost.z));
 }
 
 SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
@@ -34,6 +34,8 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
     else
         material = params.frame.materials[splat.edge >> 28];
+    bool through = (params.frame.seen_through >> (splat.edge >> 28) & 1u) == 1u;
+    if (FACES) material.a *= through ? border_weight(splat.voxel) : 1.0;
     // A surface faces its lower values, whichever side of it the splat is on.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
@@ -56,37 +58,34 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     s.color_sigma = vec4(payload, material.a);
     s.number_material = uvec2(number, splat.edge >> 28);
     if (FACES) {
-        bool is_cut = e.state >= EDGE_LOWER && abs(e.d) < params.frame.support + params.frame.face_depth;
+        bool is_cut = e.state >= EDGE_LOWER && e.d < params.frame.support + FACE_DEPTH;
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
         s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
-                          CREASE_NONE, 1.0);
+                          CREASE_NONE);
         IF_ANY(is_cut) {
-            FaceTraits traits = traits_of(number, e);
+            FaceTraits traits = traits_of(number, e, splat.edge >> 28);
             FaceCut cut = cut_of(e, traits);
             h = traits.h;
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
             s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
-            float share = 1.0;
-            bool thin = cut.thickness < FACE_NO_WALL || bending_norm(h) > SHARE_BENDING;
-            IF_ANY(params.frame.face_depth > FACE_DEPTH && thin) share = thin ? face_share(body_of(e, h, cut), cut.depth) : 1.0;
             vec3 at_foot = bent(h, e.d * e.n);
-            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, share);
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
         }
         if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced(number) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }
-    if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.face_depth);
+    if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.table_depth);
     if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;
     s.normal_distance = vec4(e.n, e.d);
-    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && abs(e.d) < (FACES ? params.frame.support + params.frame.face_depth : params.frame.band);
+    bool warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && (FACES ? e.d < params.frame.support + FACE_DEPTH : abs(e.d) < params.frame.band);
     s.shape = vec3(warped ? 1.0 : -1.0, depths);
     if (ANTIALIAS == 1u) {
         LowPass f = p.filtered;
-        float matter = warped ? matter_of_voxel(e.d, e.d2) : 1.0;
+        float matter = warped ? matter_of_voxel(e.d, e.d2, through) : 1.0;
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
         if (FACES && f.share >= 1.0) {

@@ -32,6 +32,7 @@ vec3 view_position(vec3 position) {
 struct FaceTraits {
     Bending h;
     vec4 crease;
+    float deepest;  // no deeper under it its kernel is sampled, voxels
 };
 
 // Whether rays find its face.
@@ -40,9 +41,11 @@ bool is_traced(uint number) {
     return (code.x & FACE_CREASED) == 0u && (code.y & FACE_TRACED) != 0u;
 }
 
-FaceTraits traits_of(uint number, Edge e) {
+// Where one sees through matter the voxels beside it carry what theirs do not: kernels are sampled where they are.
+FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
-    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE);
+    bool hides = (params.frame.seen_through >> material & 1u) == 0u;
+    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE, hides ? FACE_DEPTH : 0.0);
     if (CREASES == 1u) {
         bool creased = (code.x & FACE_CREASED) != 0u;
         t.crease = creased ? unpack_crease(code) : t.crease;
@@ -54,14 +57,14 @@ FaceTraits traits_of(uint number, Edge e) {
     return t;
 }
 
-bool is_in_table(uint number, Edge e) {
-    FaceTraits t = traits_of(number, e);
-    return e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.w >= CREASE_REACH;
+bool is_in_table(uint number, Edge e, uint material) {
+    FaceTraits t = traits_of(number, e, material);
+    return t.deepest == params.frame.table_depth && e.d2 >= params.frame.band && bending_norm(t.h) == 0.0 && t.crease.w >= CREASE_REACH;
 }
 
 FaceCut cut_of(Edge e, inout FaceTraits t) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
-    FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, params.frame.face_depth);
+    FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, t.deepest);
     if (CREASES == 1u) {
         // A plane that cuts nothing is none.
         t.crease = t.crease.w < params.frame.support + cut.depth ? t.crease : CREASE_NONE;
@@ -115,15 +118,15 @@ void filter_splat(inout Projection p) {
 }
 
 // Position and support; project_support() finds where they lie on the screen.
-Projection place_splat(uint number, uint voxel, Edge e) {
+Projection place_splat(uint number, Splat splat, Edge e) {
     Projection p;
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
-    p.position = vec3(voxel % nx, voxel / nx % ny, voxel / nx / ny) - params.frame.anchor;
+    p.position = vec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny) - params.frame.anchor;
     p.view = view_position(p.position);
     bool cut_or_warped = FOOTPRINTS != 0u && e.state >= EDGE_LOWER;
     vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
     IF_ANY(FACES && cut_or_warped) {
-        FaceTraits traits = traits_of(number, e);
+        FaceTraits traits = traits_of(number, e, splat.edge >> 28);
         FaceCut cut = cut_of(e, traits);
         support = vec2(cut.shift, cut.radius);
         // Where the surface cuts it only rays will see.

@@ -144,8 +144,8 @@ vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, fl
     f.entry.z = at_border ? border : f.entry.z;
     vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
     if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
-    bool deep = !plain && params.frame.face_depth > FACE_DEPTH;
-    float half_chord = sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
+    bool deep = !plain && (params.frame.seen_through >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
+    float half_chord = LIT_WITHIN * sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
     bool to_border = far_border < f.leave.z;
     float leave = max(min(to_border ? far_border : f.leave.z, half_chord), f.entry.z);
     f.entry.z = deep && !at_border ? min(max(f.entry.z, -half_chord), leave) : f.entry.z;
@@ -164,7 +164,6 @@ vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice sli
     FaceFootprint f;
     if (FOOTPRINTS == TABLE) f = tabulated_footprint(sight, p, u, plain, inside, slice);
     else f = cut_footprint(sight, p, u, plain, inside, slice);
-    if (FACE_PIECES == 2u) f.integral /= face_form.share;
     if (ANTIALIAS == 1u) {
         float wide = filtered.w * footprint_isotropic(filtered_rho2(sight.ray.rho2), Slice(slice.low - z, slice.high - z));
         f.integral = filtered.x > 0.0 ? mix(f.integral, wide, filtered.x) : f.integral;

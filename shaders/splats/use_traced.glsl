@@ -22,7 +22,7 @@ bool use_traced(SeenRay t, vec3 p, vec3 u, float ahead) {
     face_form.value = whole ? -TRACE_WHOLE : plane ? -dot(n, p + (piece.x - ahead) * u) : face_form.value;
     face_form.h.diagonal = plane ? vec3(0.0) : face_form.h.diagonal;
     face_form.h.mixed = plane ? vec3(0.0) : face_form.h.mixed;
-    FaceCut cut = face_cut(-face_form.value, 0.0, 0.0, leaves ? max((piece.y - piece.x) * abs(dot(u, n)), 0.05) : 1e9, params.frame.face_depth);
+    FaceCut cut = face_cut(-face_form.value, 0.0, 0.0, leaves ? max((piece.y - piece.x) * abs(dot(u, n)), 0.05) : 1e9, FACE_DEPTH);
     face_form.cut.depth = plane ? cut.depth : face_form.cut.depth;
     face_form.cut.thickness = plane ? cut.thickness : face_form.cut.thickness;
     face_form.cut.reach2 = plane ? cut.reach2 : face_form.cut.reach2;

@@ -10,7 +10,9 @@ std::vector<reference::SplatRecord> expected_records(const PassScene& s) {
     const auto values = scaled_field(s.volume);
     const reference::Field field{s.volume.geometry.dims, values, {}};
     const std::vector<reference::VoxelEdge> no_edges(values.size());
-    return reference::collect_splats(field, s.scaled(), no_edges, s.scene, s.volume.geometry, s.settings, s.camera.eye);
+    const auto carried = reference::voxels_beside(field, s.scaled());
+    return reference::collect_splats(field, s.scaled(), no_edges, s.scene, s.volume.geometry, s.settings, s.camera.eye,
+                                     false, {}, carried);
 }
 
 TEST(CollectSplats, TheSameVoxelsBrickByBrick) {
@@ -45,14 +47,6 @@ TEST(CollectSplats, BuriedVoxelsAreDroppedAndOnlyThey) {
     for (const auto& record : with)
         kept += is_outer(record) ? 1U : 0U;
     EXPECT_EQ(kept, outer);
-}
-
-/// What pass 1 left for every voxel.
-std::vector<reference::VoxelEdge> device_field(DeviceUnderTest& state) {
-    std::vector<reference::VoxelEdge> edges;
-    for (const auto& words : download<glm::uvec2>(state, state.lists().edges))
-        edges.push_back(decode_edge(words.x, words.y));
-    return edges;
 }
 
 TEST(CollectSplats, RecordsHoldThePapersPlanesAsTheyWereFound) {

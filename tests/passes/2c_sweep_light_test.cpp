@@ -60,10 +60,11 @@ TEST_F(SweepLight, EqualsTheReferencesOpticalDepths) {
         const VolumeGeometry& geometry = s.volume.geometry;
         const glm::dvec3 middle = geometry.to_world(0.5 * glm::dvec3(geometry.dims - 1));
         s.scene.lights = {sun({0.4, 0.5, 0.8}), lamp(middle + glm::dvec3(10, -35, 20))};
-        const Reaches got = device_reaches(s);
+        Reaches got = device_reaches(s);
+        got.records = drawn_records(s, got.records);
         const auto values = scaled_field(s.volume);
         const reference::Field field{geometry.dims, values, {}};
-        const reference::Footprints footprints(s.settings, face_depth(s.scene, geometry));
+        const reference::Footprints footprints(s.settings, table_depth(s.scene, geometry));
         const double band = edge_reach(s.settings);
         const double pixel = glm::length(geometry.to_world(glm::dvec3(geometry.dims)) - geometry.origin) / 256;
         for (const bool second : {false, true}) {

@@ -51,7 +51,7 @@ TEST(SelectLayers, AsTheReferenceDoesForBothWaysOfDrawing) {
                 EXPECT_EQ(is_plain, oracle.selected[i].axis == glm::dvec3(0)) << "splat " << i;
                 EXPECT_EQ((got[i].x & kIntegrated) == 0, oracle.footprints.tabulated(records[i].edge)) << "splat " << i;
                 const auto layer =
-                    decode_footprint_layer(got[i].x & ~(kPlain | kIntegrated), face_depth(s.scene, s.volume.geometry));
+                    decode_footprint_layer(got[i].x & ~(kPlain | kIntegrated), table_depth(s.scene, s.volume.geometry));
                 EXPECT_NEAR(layer.middle, want.middle, 1e-3) << "splat " << i;
                 EXPECT_NEAR(layer.cosine, want.cosine, 1e-3) << "splat " << i;
                 other += (layer.code & kBlend) != (want.code & kBlend) ? 1U : 0U;
@@ -80,12 +80,12 @@ TEST(FootprintTableOnTheDevice, IsThereWhereItIsCalledForAndGoneAfterwards) {
     ASSERT_TRUE(state.targets().footprint_table);
     EXPECT_GE(state.targets().footprints.bytes(), state.lists().splat_count * sizeof(glm::uvec2));
     const auto got = download<std::uint16_t>(state, state.targets().footprint_table);
-    const double depth = face_depth(s.scene, s.volume.geometry);
+    const double depth = table_depth(s.scene, s.volume.geometry);
     EXPECT_TRUE(std::ranges::equal(got, kept_footprint_table(depth).texels()));
-    // Another scene's faces may be sampled deeper.
-    s.scene.materials.back().extinction = depth > kFaceDepth ? 40 : 0.1;
+    // Another scene's faces may not be gone under.
+    s.scene.materials.back().extinction = depth < kFaceDepth ? 40 : 0.1;
     draw(FootprintMode::Table);
-    const double other = face_depth(s.scene, s.volume.geometry);
+    const double other = table_depth(s.scene, s.volume.geometry);
     ASSERT_NE(other, depth);
     EXPECT_TRUE(std::ranges::equal(download<std::uint16_t>(state, state.targets().footprint_table),
                                    kept_footprint_table(other).texels()));

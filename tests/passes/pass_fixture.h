@@ -124,6 +124,16 @@ inline std::vector<PassScene> pass_scenes() {
     return scenes;
 }
 
+/// What pass 1 left for every voxel: in the bits of D2 there is what lies beside it.
+inline std::vector<reference::VoxelEdge> device_field(DeviceUnderTest& state) {
+    std::vector<reference::VoxelEdge> edges;
+    for (const auto& words : download<glm::uvec2>(state, state.lists().edges)) {
+        edges.push_back(decode_edge(words.x, words.y | shader::FACE_NONE << 16U));
+        edges.back().border = (words.y & shader::EDGE_BORDER) != 0;
+    }
+    return edges;
+}
+
 /// Device and volume ready, passes 1 and 2 run.
 inline DeviceUnderTest& prepared(const PassScene& s) {
     DeviceUnderTest& state = device_under_test();
@@ -223,7 +233,7 @@ inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, cons
             state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
-/// The records as the scene has them drawn: traced in their material's interval, or not.
+/// The records as the scene has them drawn: traced in their material's interval, or not; one sees through them or not.
 inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
                                                          std::vector<reference::SplatRecord> records) {
     const bool traces = traced_material(s.settings, s.scene, s.volume.geometry).has_value();
@@ -231,6 +241,10 @@ inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
     for (reference::SplatRecord& record : records) {
         const auto material = static_cast<int>(record.material);
         if (!traces) record.edge.traced.reset();
+        const bool through = scaled.seen_through[record.material] && draws_faces(s.settings);
+        if (through) record.edge.deepest = 0;
+        const reference::Field field{s.volume.geometry.dims, {}, {}};
+        record.weight = reference::border_weight(field, scaled, s.settings, field.voxel(record.voxel), material);
         if (record.edge.traced) record.edge.traced = {scaled.lower(material), scaled.upper(material)};
     }
     return records;
@@ -245,7 +259,7 @@ struct Oracle {
           records(drawn_records(s, listed)),
           view(s.camera, s.volume.geometry, size.x, size.y),
           footprints(
-              s.settings, face_depth(s.scene, s.volume.geometry),
+              s.settings, table_depth(s.scene, s.volume.geometry),
               one_piece_is_enough(s.settings, s.scene, s.volume.geometry) ? FacePieces::Longer : FacePieces::Both),
           selected(reference::select_footprints(records, field, view, s.settings, footprints)),
           drawer(records, selected, field, s.scene, view, s.settings, footprints) {}

@@ -240,14 +240,15 @@ TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
         ramp(s, iso_count);
         DeviceUnderTest& state = prepared(s);
         const auto got = device_records(state);
-        std::vector<reference::VoxelEdge> edges;
-        for (const auto& words : download<glm::uvec2>(state, state.lists().edges))
-            edges.push_back(decode_edge(words.x, words.y));
+        const std::vector<reference::VoxelEdge> edges = device_field(state);
         const auto samples = scaled_field(s.volume);
         const reference::Field field{s.volume.geometry.dims, samples, {}};
         const auto values = reference::classified_values(field, s.scaled(), edges);
+        auto carried = reference::voxels_beside(field, s.scaled());
+        for (reference::CarriedEdge& c : carried)
+            c.value = reference::carried_value(field, s.scaled(), edges, c);
         auto want = reference::collect_splats(field, s.scaled(), edges, s.scene, s.volume.geometry, s.settings,
-                                              s.camera.eye, false, values);
+                                              s.camera.eye, false, values, carried);
         sort_by_brick(want, s.volume.geometry.dims);
         ASSERT_EQ(got.size(), want.size());
         std::size_t moved = 0;

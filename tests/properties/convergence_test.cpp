@@ -70,7 +70,7 @@ TEST(Convergence, HalvingTheSheetsQuartersTheError) {
             before = rms;
         }
         std::printf("%s:%s\n", name, line.c_str());
-        EXPECT_LE(before, 3e-4) << name << ": the thinnest sheets";
+        EXPECT_LE(before, 4e-4) << name << ": the thinnest sheets";
     }
 }
 
@@ -84,7 +84,7 @@ TEST(Convergence, ThinSheetsAreTheModelToATenthOfAPercent) {
         const Image expected = model(prepared, shot), got = render(shot).color;
         const double rms = image_error(got, expected).rms;
         std::printf("%s: %.4f %% rms\n", name, 100 * rms);
-        EXPECT_LE(rms, 4e-4) << name;  // measured 7e-5 to 2.7e-4; a tenth of a percent is what is asked of them
+        EXPECT_LE(rms, 2e-4) << name;  // measured 4e-5 to 1.4e-4; a tenth of a percent is what is asked of them
         EXPECT_GT(evenness(got).variation, 0.1) << name << ": an empty picture shows nothing";
     }
 }

@@ -105,26 +105,39 @@ double uniform(std::mt19937& random) {
     return random() / 4294967296.0;
 }
 
-/// Sums the weights of all voxels at x; `inside` gets the share of those whose edge is their interval's lower end.
+/// Sums the weights of all voxels at x; `inside` of what they have of the upper material. `add_of(v, add)` calls
+/// add(edge, inside) for both materials of voxel v.
 struct Weights {
     double all = 0, inside = 0;
 };
-template <typename EdgeOf, typename Inside>
-Weights weights_at(const reference::Footprints& footprints, const glm::dvec3& x, const EdgeOf& edge_of,
-                   const Inside& inside) {
+template <typename AddOf>
+Weights weights_at(const reference::Footprints& footprints, const glm::dvec3& x, const AddOf& add_of) {
     Weights sum;
     const glm::ivec3 low(glm::ceil(x - 3.0)), high(glm::floor(x + 3.0));
     for (int c = low.z; c <= high.z; ++c) {
         for (int b = low.y; b <= high.y; ++b) {
             for (int a = low.x; a <= high.x; ++a) {
                 const glm::ivec3 v(a, b, c);
-                const double h = footprints.at_point(edge_of(v), x - glm::dvec3(v));
-                sum.all += h;
-                if (inside(v)) sum.inside += h;
+                add_of(v, [&](const reference::VoxelEdge& edge, bool inside) {
+                    if (edge.has_edge && edge.D <= -kKernelRadius) return;
+                    const double h = footprints.at_point(edge, x - glm::dvec3(v));
+                    sum.all += h;
+                    if (inside) sum.inside += h;
+                });
             }
         }
     }
     return sum;
+}
+
+/// What a voxel found of its own material, and what it carries of the other one.
+template <typename Add>
+void add_estimated(const reference::PreparedVolume& prepared, const glm::ivec3& v, const Add& add) {
+    const reference::Field field = prepared.field();
+    const std::size_t at = field.offset(v);
+    add(prepared.edges()[at], prepared.scaled_scene().material(field.at(v)) == 1);
+    for (const reference::CarriedEdge& carried : prepared.carried_by(at))
+        add(carried.edge, carried.material == 1);
 }
 
 /// Collects deviations from 1, one list an orientation.
@@ -210,35 +223,33 @@ EdgeProfiles torus_silhouettes(const Settings& settings) {
 
 Unity plane_unity(const Settings& settings, bool estimated) {
     constexpr int kSize = 22;
-    const reference::Footprints footprints(settings, kDeepFaceDepth);
+    const reference::Footprints footprints(settings, 0);
     UnityCollector collector;
     std::mt19937 random(11);
     for (const Pose& pose : poses(kOrientations)) {
         const glm::dvec3 center = glm::dvec3((kSize - 1) / 2.0) + pose.shift;
         const auto volume = plane_volume(kSize, pose, center);
-        std::vector<reference::VoxelEdge> edges;
-        if (estimated) {
-            edges = reference::PreparedVolume(*volume, two_tone(1, 1), settings, true).edges();
-        } else {
-            for (int i = 0; i < kSize * kSize * kSize; ++i) {
-                const glm::dvec3 x(i % kSize, i / kSize % kSize, i / (kSize * kSize));
-                const double s = glm::dot(pose.n, x - center);
-                reference::VoxelEdge edge;
-                edge.D = std::abs(s);
-                edge.n = s <= 0 ? pose.n : -pose.n;
-                edge.has_edge = edge.has_normal = true;
-                edges.push_back(edge);
-            }
-        }
-        const auto edge_of = [&](const glm::ivec3& v) -> const reference::VoxelEdge& {
-            return edges[static_cast<std::size_t>((v.z * kSize + v.y) * kSize + v.x)];
+        const reference::PreparedVolume prepared(*volume, two_tone(1, 1), settings, true);
+        const auto known = [&](const glm::ivec3& v, const auto& add) {
+            reference::VoxelEdge edge;
+            edge.D = glm::dot(pose.n, center - glm::dvec3(v));
+            edge.n = pose.n;
+            edge.has_edge = edge.has_normal = true;
+            edge.deepest = 0;
+            add(edge, true);
+            edge.D = -edge.D;
+            edge.n = -edge.n;
+            add(edge, false);
+        };
+        const auto add_of = [&](const glm::ivec3& v, const auto& add) {
+            return estimated ? add_estimated(prepared, v, add) : known(v, add);
         };
         collector.begin();
         for (int i = 0; i < 300; ++i) {
             const double across = 4 * uniform(random) - 2, along = 4 * uniform(random) - 2;
             const glm::dvec3 x =
                 center + (6 * uniform(random) - 3) * pose.n + across * pose.across + along * pose.along;
-            collector.add(weights_at(footprints, x, edge_of, [](const glm::ivec3&) { return false; }).all - 1);
+            collector.add(weights_at(footprints, x, add_of).all - 1);
         }
     }
     return collector.result();
@@ -278,7 +289,7 @@ Unity picture_unity(const Settings& settings) {
 
 SphereUnity sphere_unity(const Settings& settings, double radius) {
     constexpr int kSize = 22;
-    const reference::Footprints footprints(settings, kDeepFaceDepth);
+    const reference::Footprints footprints(settings, 0);
     UnityCollector collector;
     std::mt19937 random(11);
     double raw = 0, normalised = 0;
@@ -288,17 +299,13 @@ SphereUnity sphere_unity(const Settings& settings, double radius) {
         const auto volume = sampled(
             glm::ivec3(kSize), [&](const glm::dvec3& x) { return blurred_step(glm::length(x - center) - radius); });
         const reference::PreparedVolume prepared(*volume, two_tone(1, 1), settings, true);
-        const auto field = prepared.field();
-        const auto edge_of = [&](const glm::ivec3& v) -> const reference::VoxelEdge& {
-            return prepared.edges()[field.offset(v)];
-        };
-        const auto inside = [&](const glm::ivec3& v) { return volume->at(v.x, v.y, v.z) >= 0.5F; };
+        const auto add_of = [&](const glm::ivec3& v, const auto& add) { add_estimated(prepared, v, add); };
         collector.begin();
         for (int i = 0; i < 300; ++i) {
             const double across = 4 * uniform(random) - 2, along = 4 * uniform(random) - 2;
             const glm::dvec3 x =
                 middle + (6 * uniform(random) - 3) * pose.n + across * pose.across + along * pose.along;
-            const Weights sum = weights_at(footprints, x, edge_of, inside);
+            const Weights sum = weights_at(footprints, x, add_of);
             const double truth = glm::length(x - center) <= radius ? 1 : 0;
             collector.add(sum.all - 1);
             raw += (sum.inside - truth) * (sum.inside - truth);

@@ -65,7 +65,7 @@ TEST(Shadows, FallWhereTheyShouldAndDarkenNothingElse) {
                 if (hit.ball) {
                     if (cosine < 0.25) continue;
                     ++ball;
-                    EXPECT_NEAR(static_cast<double>(with.at(x, y, 0)), light.intensity * cosine, 0.07);
+                    EXPECT_NEAR(static_cast<double>(with.at(x, y, 0)), light.intensity * cosine, 0.08);
                     continue;
                 }
                 const glm::dvec3 v = kBall - hit.place;

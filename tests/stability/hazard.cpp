@@ -99,10 +99,7 @@ Estimate estimate(const VolumePointer& volume, const std::vector<double>& iso_va
         result.device.resize(values.size());
         return result;
     }
-    for (const glm::uvec2& words : download<glm::uvec2>(state, state.lists().edges)) {
-        result.device.push_back(decode_edge(words.x, words.y));
-        result.device.back().border = (words.y & shader::EDGE_BORDER) != 0;
-    }
+    result.device = device_field(state);
     const bool cubic = estimator == EdgeEstimator::Cubic;
     for (std::size_t i = 0; i < values.size(); ++i)
         result.off_surface[i] = off_surface_of(field, s.scaled(), i, result.device[i], cubic);
@@ -137,10 +134,8 @@ ImageDifference against_reference(const Shot& shot, const std::string& what) {
         s.volume = *shot.volume;
         s.scene = shot.scene;
         s.settings = shot.settings;
-        std::vector<reference::VoxelEdge> edges = drawn.edges();
         for (const reference::SplatRecord& record : drawn_records(s, device_records(prepared(s))))
-            edges[record.voxel] = record.edge;
-        drawn.replace_edges(std::move(edges));
+            drawn.replace_edge(record.voxel, static_cast<int>(record.material), record.edge);
     }
     return compare_images(device.color, drawn.render(shot.camera, shot.width, shot.height));
 }

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "footprints/face.h"
-#include "footprints/face_share.h"
 #include "footprints/footprint_table.h"
 #include "shaders/shared/footprint_params.h"
 #include "shaders/shared/footprint_table.h"
+#include "shaders/shared/limits.h"
 #include "tests/unit/footprints_samples.h"
 
 // What GLSL brings: float functions.
@@ -65,7 +65,6 @@ const uint NODES = 4;
 // After what it needs.
 const uint FACE_PIECES = 2;
 #include "shaders/footprints/face.glsl"
-#include "shaders/footprints/face_share.glsl"
 
 // Of the table's layers, what a sampler with linear filter makes of them.
 const std::uint16_t* layers = nullptr;
@@ -124,6 +123,7 @@ glsl::FootprintParams params_of(const PaperShape& shape) {
 TEST(FootprintShader, MirrorsFaces) {
     namespace four = glsl::nodes4;
     EXPECT_EQ(four::FACE_DEPTH, static_cast<float>(kFaceDepth));
+    EXPECT_EQ(four::FACE_FARTHEST, static_cast<float>(kFaceFarthest));
     std::mt19937 random(31);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
     const auto f = [](double v) { return static_cast<float>(v); };
@@ -132,7 +132,7 @@ TEST(FootprintShader, MirrorsFaces) {
     int entries = 0, cut = 0;
     for (int i = 0; i < 20000; ++i) {
         // A quadric about a foot point on the x axis, seen along any ray.
-        const double distance = uniform(-0.4, 2.3), bend = uniform(-1, 1);
+        const double distance = uniform(-1.5, 2.3), bend = uniform(-1, 1);
         const glm::dmat3 h = bend * glm::dmat3(0.3, 0.1, 0.05, 0.1, uniform(-1, 1), 0.1, 0.05, 0.1, uniform(-1, 1));
         const glm::dvec3 u = glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
         const glm::dvec3 any(uniform(-1.5, 1.5), uniform(-1.5, 1.5), uniform(-1.5, 1.5));
@@ -144,8 +144,9 @@ TEST(FootprintShader, MirrorsFaces) {
                           {glm::dot(slope, slope), 2 * glm::dot(slope, turn), glm::dot(turn, turn)},
                           glm::dot(p, slope),
                           glm::dot(p, turn)};
-        const double thickness = i % 3 == 0 ? distance + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
-        const double deepest = i % 2 == 0 ? kFaceDepth : kDeepFaceDepth;
+        const double thickness =
+            i % 3 == 0 ? std::max(distance, -0.5) + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
+        const double deepest = i % 2 == 0 ? kFaceDepth : 0.0;
         FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest);
         four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
                                            thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
@@ -181,25 +182,21 @@ TEST(FootprintShader, MirrorsFaces) {
     EXPECT_LE(error.percentile(99.5), 1e-3);
 }
 
-TEST(FootprintShader, MirrorsTheShareOfAFace) {
-    namespace four = glsl::nodes4;
-    std::mt19937 random(33);
-    const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
-    const auto f = [](double v) { return static_cast<float>(v); };
-    for (int i = 0; i < 5000; ++i) {
-        FaceBody body{uniform(-0.5, 1.5), uniform(-1, 1.5), uniform(0, 0.5)};
-        const bool wall = i % 2 == 0;
-        if (wall) body.thickness = uniform(0.3, 4);
-        const double depth = uniform(0.2, 1.4);
-        const four::FaceBody same{f(body.bend), f(body.mean), f(body.spread), wall ? f(body.thickness) : 1e9F};
-        EXPECT_NEAR(static_cast<double>(four::face_share(same, f(depth))), face_share(body, depth), 2e-4) << i;
+TEST(FootprintShader, OutermostKernelsWeighWhatThoseBeyondWouldHave) {
+    // Of a kernel half a voxel inside of the border, and of one half a voxel beyond it.
+    constexpr int kSteps = 4000;
+    double beyond = 0;
+    for (int i = 0; i < kSteps; ++i) {
+        const double t = 0.5 + (kKernelRadius - 0.5) * (i + 0.5) / kSteps;
+        beyond += kernel_plane_integral(t * t) * (kKernelRadius - 0.5) / kSteps;
     }
+    EXPECT_NEAR(static_cast<double>(shader::BORDER_WEIGHT), 1 / (1 - beyond), 1e-4);
 }
 
 TEST(FootprintShader, MirrorsTheTable) {
     namespace four = glsl::nodes4;
     const auto f = [](double v) { return static_cast<float>(v); };
-    for (const double depth : {kFaceDepth, kDeepFaceDepth}) {
+    for (const double depth : {kFaceDepth, 0.0}) {
         const FootprintTable& table = kept_footprint_table(depth);
         four::layers = table.texels().data();
         Errors error;

@@ -118,7 +118,7 @@ TEST_P(FootprintTableDepth, CodesSayWhereTheFaceLies) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Depths, FootprintTableDepth, testing::Values(kFaceDepth, kDeepFaceDepth),
+INSTANTIATE_TEST_SUITE_P(Depths, FootprintTableDepth, testing::Values(kFaceDepth, 0.0),
                          [](const auto& test) { return test.param == kFaceDepth ? "opaque" : "translucent"; });
 
 TEST(FootprintTable, IsMadeOnceAndHasOneSize) {

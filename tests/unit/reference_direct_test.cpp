@@ -36,6 +36,9 @@ Image stepped(const PreparedVolume& prepared, const Camera& camera, int size, do
     const Footprints& footprints = prepared.footprints();
     const glm::dvec3 center = glm::dvec3(field.dims - 1) / 2.0;
     const double bound = glm::length(center) + 4;
+    const std::vector<SplatRecord> records =
+        collect_splats(field, prepared.scaled_scene(), prepared.edges(), scene, geometry, prepared.settings(),
+                       camera.eye, true, prepared.classified(), prepared.carried());
     Image image(size, size, 4);
     for (int y = 0; y < size; ++y) {
         for (int x = 0; x < size; ++x) {
@@ -44,16 +47,13 @@ Image stepped(const PreparedVolume& prepared, const Camera& camera, int size, do
             const double middle = glm::dot(center - view.eye_index, u);
             // Only the voxels the ray can touch at all.
             std::vector<std::pair<SplatRecord, glm::dvec4>> near;
-            for (std::size_t at = 0; at < field.values.size(); ++at) {
-                const int m = prepared.scaled_scene().material(static_cast<double>(field.values[at]));
-                const double extinction = scene.materials[static_cast<std::size_t>(m)].extinction;
-                const glm::dvec3 v = glm::dvec3(field.voxel(at)) - view.eye_index;
-                if (!(extinction > 0) || glm::length(v - glm::dot(v, u) * u) > 3) continue;
-                const SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m),
-                                         prepared.edges()[at]};
+            for (const SplatRecord& record : records) {
+                const glm::dvec3 v = glm::dvec3(field.voxel(record.voxel)) - view.eye_index;
+                const bool nothing = record.edge.has_edge && record.edge.D <= -kKernelRadius;
+                if (nothing || glm::length(v - glm::dot(v, u) * u) > 3) continue;
                 const glm::dvec3 color = face_payload(record, field, scene, view, prepared.settings(), Payload::Color,
                                                       footprints, glm::dot(v, u) * u - v, u);
-                near.push_back({record, extinction * glm::dvec4(color, 1)});
+                near.push_back({record, record.extinction(scene) * glm::dvec4(color, 1)});
             }
             glm::dvec4 seen(0);
             for (double t = std::max(middle - bound, 0.0) + step / 2; t < middle + bound; t += step) {

@@ -1,0 +1,16 @@
+// The samples next to a voxel. The including shader declares `dims` and voxel(ivec3).
+#ifndef EDGESPLAT_VALUES_AROUND_GLSL
+#define EDGESPLAT_VALUES_AROUND_GLSL
+
+// The least and the largest sample around. No surface within SURFEL_REACH passes between samples further off.
+vec2 values_around(ivec3 p) {
+    vec2 around = vec2(3e38, -3e38);
+    for (int i = 0; i < 33; ++i) {
+        ivec3 o = i < 27 ? ivec3(i % 3, i / 3 % 3, i / 9) - 1 : ivec3(0);
+        if (i >= 27) o[(i - 27) >> 1] = (i & 1) == 1 ? -2 : 2;
+        float value = voxel(clamp(p + o, ivec3(0), dims - 1));
+        around = vec2(min(around.x, value), max(around.y, value));
+    }
+    return around;
+}
+#endif
