@@ -268,7 +268,9 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     }
     const Quadric one = quadric_of(all), wall = quadric_of(same);
     const double iso = nearest.upper ? scene.upper(m) : scene.lower(std::max(m, 1));
-    const auto [own, slope_there] = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
+    const auto expansion = field_quadric(field, i, iso, nearest.upper ? -1 : 1);
+    const Quadric& own = expansion.first;
+    const double slope_there = expansion.second;
     double of_one = 0, of_own = 0, of_same = 0, opposite = 0, sum = 0, sum2 = 0;
     for (const Surfel& s : seen) {
         const dvec3 r = s.at - middle;

@@ -43,6 +43,10 @@ Image resolve(std::span<const glm::dvec4> frame, int width, int height, const Sc
     return resolve_mean(frame, width, height);
 }
 
+bool is_before(const CarriedEdge& carried, std::size_t voxel) {
+    return carried.voxel < voxel;
+}
+
 }  // namespace
 
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
@@ -77,14 +81,15 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
 }
 
 std::span<const CarriedEdge> PreparedVolume::carried_by(std::size_t voxel) const {
-    const auto range = std::ranges::equal_range(carried_, voxel, {}, &CarriedEdge::voxel);
-    return {range.begin(), range.end()};
+    const auto first = std::lower_bound(carried_.begin(), carried_.end(), voxel, is_before);
+    return {first, std::lower_bound(first, carried_.end(), voxel + 1, is_before)};
 }
 
 void PreparedVolume::replace_edge(std::size_t voxel, int material, const VoxelEdge& edge) {
     if (scaled_.material(field().at(field().voxel(voxel))) == material) edges_[voxel] = edge;
-    for (CarriedEdge& carried : std::ranges::equal_range(carried_, voxel, {}, &CarriedEdge::voxel))
-        if (carried.material == material) carried.edge = edge;
+    auto carried = std::lower_bound(carried_.begin(), carried_.end(), voxel, is_before);
+    for (; carried != carried_.end() && carried->voxel == voxel; ++carried)
+        if (carried->material == material) carried->edge = edge;
 }
 
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
