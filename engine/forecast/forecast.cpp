@@ -51,7 +51,8 @@ bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& cli
     return beyond || within;
 }
 
-/// Bits of a voxel's own material and of those between the samples around it, as values_around() of find_surfel.glsl.
+/// Bits of a voxel's own material and of those between the samples around it, as shaders/edges/values_around.glsl has
+/// them.
 std::uint32_t materials_around(std::span<const std::uint8_t> materials, const glm::ivec3& dims, const glm::ivec3& p) {
     const auto material = [&](const glm::ivec3& o) {
         const glm::ivec3 q = glm::clamp(p + o, glm::ivec3(0), dims - 1);
@@ -75,8 +76,9 @@ std::uint32_t materials_around(std::span<const std::uint8_t> materials, const gl
 SplatCount most_splats(const CollectionPlan& plan) {
     const glm::dvec3 dims(plan.dims);
     const auto voxels = static_cast<std::uint64_t>(dims.x * dims.y * dims.z);
-    const auto carried = static_cast<std::uint64_t>(std::popcount(plan.params.seen_through));
-    return {SplatCount::From::Voxels, {voxels * std::max<std::uint64_t>(carried, 1), glm::ivec3(0), plan.dims - 1}};
+    const std::uint32_t carried = plan.params.seen_through, others = plan.params.visible_mask & ~carried;
+    const auto of_a_voxel = static_cast<std::uint64_t>(std::popcount(carried) + (others != 0 ? 1 : 0));
+    return {SplatCount::From::Voxels, {voxels * of_a_voxel, glm::ivec3(0), plan.dims - 1}};
 }
 
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {

@@ -18,7 +18,7 @@ struct SplatCount {
     SplatExtent extent;
 };
 
-/// As if every voxel were a splat, and one more of each other material that one sees through.
+/// As if every voxel were a splat of each material that one sees through, and of one that one does not.
 SplatCount most_splats(const CollectionPlan& plan);
 
 /// The voxels that pass 2 keeps, counted on the host, pass 1a included: about 10 ns per voxel.

@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/forecast/description.h"
+#include "engine/forecast/forecast.h"
 #include "engine/scene/ladder.h"
 #include "tests/properties/scenes.h"
 
@@ -85,6 +86,23 @@ TEST(FrameDescription, IsRightForUsualPicturesToo) {
     request.settings = preset_named("draft").settings;
     request.outputs = {true, true, true, true};
     expect_described(request, "draft with every output");
+}
+
+TEST(FrameDescription, NoVolumeHasMoreSplatsThanTheBound) {
+    // Where values jump a voxel has what hides, and carries what lies between its samples.
+    FrameRequest r = torus_request();
+    r.volume = sampled(glm::ivec3(12), [](const glm::dvec3& x) {
+        const int i = static_cast<int>(x.x + 3 * x.y + 7 * x.z);
+        return i % 5 < 3 ? 1.0 : i % 5 == 3 ? 0.5 : 0.0;
+    });
+    r.scene.iso_values = {0.4, 0.6};
+    r.scene.materials = {{}, {{1, 1, 1}, 0.1}, {{1, 1, 1}, 8}};
+    r.settings.cull_buried = false;
+    const CollectionPlan plan = planned_collection(r);
+    const std::uint64_t counted = count_splats(*r.volume, plan).extent.count;
+    EXPECT_GT(counted, std::uint64_t{12 * 12 * 12});
+    EXPECT_LE(counted, most_splats(plan).extent.count);
+    expect_described(r, "jumps");
 }
 
 TEST(FrameDescription, EveryLineHasItsReasonAndWhatIsOffItsPrice) {
