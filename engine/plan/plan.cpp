@@ -227,7 +227,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
     params.reach = static_cast<float>(kernel_reach(settings));
-    params.seen_through = plan.faces ? materials_seen_through(scene, volume.geometry) : 0;
+    params.seen_through = materials_carried_beside(settings, scene, volume.geometry);
     // Faces are of both sides of a surface, drawn or not.
     params.estimate_mask = plan.faces ? ~0U : params.visible_mask;
     return plan;
@@ -333,7 +333,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(edge_reach(settings));
-    p.seen_through = materials_seen_through(scene, geometry);
+    p.seen_through = materials_carried_beside(settings, scene, geometry);
     p.table_depth = static_cast<float>(table_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);

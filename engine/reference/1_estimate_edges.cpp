@@ -69,6 +69,15 @@ glm::dvec3 through_octahedron(const glm::dvec3& n) {
     return glm::normalize(r);
 }
 
+/// Beside matter, out of its reach.
+VoxelEdge carries_nothing() {
+    VoxelEdge edge;
+    edge.n = {0, 0, 1};
+    edge.D = static_cast<double>(shader::CARRIES_NOTHING);
+    edge.has_edge = edge.has_normal = true;
+    return edge;
+}
+
 template <typename Work>
 std::vector<VoxelEdge> per_drawn_voxel(const Field& field, const ScaledScene& scene, const Work& work) {
     std::vector<VoxelEdge> edges(field.values.size());
@@ -106,25 +115,20 @@ VoxelEdge finished_face(const Field& field, const ScaledScene& scene, const Sett
                         const std::vector<VoxelEdge>& edges, const glm::ivec3& i, int m) {
     const bool through = scene.seen_through[static_cast<std::size_t>(m)];
     VoxelEdge face = fit_face(field, scene, edges, i, m);
-    VoxelEdge plain = normal_only(field_gradient(field, i));
-    if (scene.material(field.at(i)) != m) {
-        plain = {};
-        plain.n = {0, 0, 1};
-        plain.D = static_cast<double>(shader::CARRIES_NOTHING);
-        plain.has_edge = plain.has_normal = true;
-    }
-    if (!face.has_edge || !(std::abs(face.D) <= edge_reach(settings))) return plain;
     face.deepest = through ? 0 : kFaceDepth;
-    if (!through || std::abs(face.D) < kKernelRadius) return face;
-    if (plain.has_edge) return plain;
+    const bool near = face.has_edge && std::abs(face.D) <= edge_reach(settings);
+    if (near && (!through || std::abs(face.D) < kKernelRadius)) return face;
+    if (scene.material(field.at(i)) != m) return carries_nothing();
+    VoxelEdge plain = normal_only(field_gradient(field, i));
+    if (!near) return plain;
     // What a face but for the reach would cut is lit as under it.
-    const glm::dvec3 under = glm::normalize(face.n - face.D * (face.bending * face.n));
-    VoxelEdge lit;
-    lit.n = glm::mix((face.upper ? -1.0 : 1.0) * under, plain.n, plain.has_normal ? face.steep : 0);
-    if (!(glm::dot(lit.n, lit.n) > 1e-6)) return plain;
-    lit.n = glm::normalize(lit.n);
-    lit.has_normal = true;
-    return lit;
+    const glm::dvec3 under = face.n - face.D * (face.bending * face.n);
+    const glm::dvec3 outward = (face.upper ? -1.0 : 1.0) * under / std::max(glm::length(under), 1e-6);
+    const glm::dvec3 lit = glm::mix(outward, plain.n, plain.has_normal ? face.steep : 0);
+    if (!(glm::dot(lit, lit) > 1e-6)) return plain;
+    plain.n = glm::normalize(lit);
+    plain.has_normal = true;
+    return plain;
 }
 
 std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene, const Settings& settings,

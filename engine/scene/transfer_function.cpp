@@ -53,6 +53,10 @@ std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& g
     return seen_through;
 }
 
+std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_faces(settings) ? materials_seen_through(scene, geometry) : 0;
+}
+
 bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
     return materials_seen_through(scene, geometry) == 0;
 }

@@ -26,9 +26,11 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
 /// Whether all matter that is seen lets at most 2 % of light through a voxel.
 bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry);
 
-/// Bit m: material m has matter that does not hide what is behind it. Faces of that are not gone under: voxels beside
-/// it carry it, too.
+/// Bit m: material m has matter that does not hide what is behind it.
 std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& geometry);
+
+/// Those that voxels beside them carry, too: where faces cut kernels.
+std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
 /// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth` or 0.
 double table_depth(const Scene& scene, const VolumeGeometry& geometry);

@@ -105,7 +105,7 @@ struct FrameParams {
     uint sort_segment;      // slots of a block that are sorted at once
     Address batches;        // (slot_count / SPLAT_BATCH) uvec2: first splat and how many; where bricks are culled
     uint slot_count;        // splats that may show: all, or SPLAT_BATCH for each batch
-    uint seen_through;      // bit m: material m does not hide what is behind it
+    uint seen_through;      // bit m: voxels beside matter of material m carry it, too
     float table_depth;      // of the faces of BIND_TABLE: no deeper under them kernels are sampled, voxels
     uint chunk_pairs;       // of a chunk that the device plans, at most; its splats are prepared, too
     uint chunk_slots;       // chunks that it plans, at most

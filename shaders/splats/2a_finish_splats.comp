@@ -55,7 +55,7 @@ void main() {
             Edge plain = Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
             // What a face but for the reach would cut is lit as under it.
             vec3 under = (face.edge.state == EDGE_UPPER ? -1.0 : 1.0) * (face.edge.n - face.edge.d * bent(face.h, face.edge.n));
-            vec3 lit = mix(normalize(under), plain.n, slope >= GRADIENT_MIN ? face.steep : 0.0);
+            vec3 lit = mix(under / max(length(under), 1e-6), plain.n, slope >= GRADIENT_MIN ? face.steep : 0.0);
             if (near && dot(lit, lit) > 1e-6) plain = Edge(normalize(lit), 1e9, 1e9, EDGE_NORMAL);
             if (material_at(p) != material) plain = Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER);
             e = cut ? face.edge : plain;

@@ -19,10 +19,9 @@ struct SplatInputs {
 };
 
 // Beyond the volume's border no voxel carries matter: the outermost ones have more, so that there is as much of it.
-float border_weight(uint voxel) {
-    uvec3 dims = uvec3(params.frame.dims), at = uvec3(voxel % dims.x, voxel / dims.x % dims.y, voxel / dims.x / dims.y);
-    uvec3 outermost = uvec3(equal(at, uvec3(0u))) | uvec3(equal(at, dims - 1u));
-    outermost *= uvec3(greaterThan(dims, uvec3(1u)));
+float border_weight(ivec3 voxel) {
+    ivec3 dims = params.frame.dims;
+    ivec3 outermost = (ivec3(equal(voxel, ivec3(0))) | ivec3(equal(voxel, dims - 1))) * ivec3(greaterThan(dims, ivec3(1)));
     return pow(BORDER_WEIGHT, float(outermost.x + outermost.y + outermost.z));
 }
 
@@ -35,7 +34,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     else
         material = params.frame.materials[splat.edge >> 28];
     bool through = (params.frame.seen_through >> (splat.edge >> 28) & 1u) == 1u;
-    if (FACES) material.a *= through ? border_weight(splat.voxel) : 1.0;
+    if (FACES) material.a *= through ? border_weight(ivec3(round(p.position + params.frame.anchor))) : 1.0;
     // A surface faces its lower values, whichever side of it the splat is on.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);

@@ -10,18 +10,19 @@
 
 namespace edgesplat::test {
 
-/// A scene, opaque, whole in a picture of 120 x 120 pixels.
+/// A scene, opaque, whole in a picture of 120 x 120 pixels; where it has two iso-values `layer` lies between them.
 struct Exact {
     Shot shot;
     Image truth;
 };
 
-inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8) {
+inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8, const Material& layer = {}) {
     Exact out;
     Shot& shot = out.shot;
     shot.volume = std::make_shared<const Volume>(sample(scene));
     shot.scene.iso_values = scene.iso_values;
     shot.scene.materials.resize(scene.iso_values.size() + 1);
+    if (scene.iso_values.size() == 2) shot.scene.materials[1] = layer;
     shot.scene.materials.back() = {{1, 0.9, 0.8}, extinction};
     const glm::dvec3 middle = glm::dvec3(scene.dims - 1) / 2.0;
     shot.camera =
