@@ -11,6 +11,7 @@
 #include "apps/paper/picture_sections.h"
 #include "engine/error.h"
 #include "engine/image/image_file.h"
+#include "tests/properties/test_renderer.h"
 
 namespace {
 
@@ -98,11 +99,13 @@ int main(int argc, char** argv) {
         fmt::print(stderr, "usage: edgesplat_paper [DOCS_FOLDER]\n");
         return 2;
     }
+    int status = 0;
     try {
         write_page(argc == 2 ? argv[1] : "docs");
-        return 0;
     } catch (const std::exception& error) {
         fmt::print(stderr, "edgesplat_paper: {}\n", error.what());
-        return 1;
+        status = 1;
     }
+    test::close_test_renderer();
+    return status;
 }

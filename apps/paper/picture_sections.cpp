@@ -156,16 +156,15 @@ Section seam_section() {
         rows += fmt::format("| {} | {:.1f} | {:.2f} | {:.2f} | {:.2f} |\n", v.name, percent(exact.mean_of_max),
                             percent(exact.rms), percent(picture.mean_of_max), percent(picture.rms));
     }
-    return {
-        "seams",
-        "## Seams: what the figures do not show\n\nWhere both sides of an edge have the same extinction, nothing "
-        "should be seen. In three dimensions the paper's warp of the\ninterval between two voxels is shared by all "
-        "neighbours only where the edge lies along the grid; what a face cuts\nis, at any orientation, the sum that "
-        "the lattice has at a face's depth. Deviation of the sum of weights from 1 in percent, planes at 24 random "
-        "orientations: at\n"
-        "points, with the edge known exactly; and in pictures seen edge-on, with the edge estimated from data.\n\n"
-        "| | points, mean of largest | rms | pictures, mean of largest | rms |\n|---|--:|--:|--:|--:|\n" +
-            rows};
+    return {"seams",
+            "## Seams: what the figures do not show\n\nWhere both sides of an edge have the same extinction, nothing "
+            "should be seen. In three dimensions the paper's warp of the\ninterval between two voxels is shared by all "
+            "neighbours only where the edge lies along the grid; what a face cuts\nof one material's kernels, at any "
+            "orientation, the other's have. Deviation of the sum of weights from 1 in percent, planes at 24 random "
+            "orientations: at\n"
+            "points, with the edge known exactly; and in pictures seen edge-on, with the edge estimated from data.\n\n"
+            "| | points, mean of largest | rms | pictures, mean of largest | rms |\n|---|--:|--:|--:|--:|\n" +
+                rows};
 }
 
 }  // namespace edgesplat

@@ -236,10 +236,12 @@ Unity plane_unity(const Settings& settings, bool estimated) {
             edge.n = pose.n;
             edge.has_edge = edge.has_normal = true;
             edge.deepest = 0;
-            add(edge, true);
-            edge.D = -edge.D;
-            edge.n = -edge.n;
-            add(edge, false);
+            reference::VoxelEdge other = edge;
+            other.D = -edge.D;
+            other.n = -edge.n;
+            // The paper's kernels are those of their own side alone.
+            if (draws_faces(settings) || edge.D >= 0) add(edge, true);
+            if (draws_faces(settings) || edge.D < 0) add(other, false);
         };
         const auto add_of = [&](const glm::ivec3& v, const auto& add) {
             return estimated ? add_estimated(prepared, v, add) : known(v, add);
