@@ -58,8 +58,10 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
             }
         }
         // Some tens of float32 splats add up in a sheet. A table is blended by the device, which may do it in steps of
-        // 1/256.
-        const double good_to = GetParam().mode == FootprintMode::Table ? 5e-4 : 5e-5;
+        // 1/256. The paper's map is endlessly steep at its knots, where a kernel moved by it is off by more than
+        // rounding: 4.4e-5 on lavapipe, 5.6e-5 on a GPU.
+        const auto mode = GetParam().mode;
+        const double good_to = mode == FootprintMode::Table ? 5e-4 : mode == FootprintMode::Warp2d ? 1e-4 : 5e-5;
         EXPECT_GT(peak, 0.5);
         EXPECT_LE(worst, good_to * peak) << "peak " << peak;
         RecordProperty("worst_of_peak_" + std::string(s.name), std::to_string(worst / peak));
