@@ -127,10 +127,14 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);
         const bool sliced = settings.sheets == SheetCut::Sliced;
-        // What a voxel beside matter has of it lies behind the face: another material's splats are not to come between.
+        // What a voxel beside matter has of it lies behind the face, and matter that one sees through a sheet before
+        // what its face leads to: neither another material's splats are to come between, nor is what hides it to be in
+        // one sheet with it.
         const VoxelEdge& edge = records[i].edge;
-        const double beside = settings.warp == WarpFamily::Face && edge.has_edge ? std::min(edge.D, 0.0) : 0;
-        s.z = view.depth(x + beside * edge.n);
+        const bool face = settings.warp == WarpFamily::Face && edge.has_edge;
+        const double beside = face ? std::min(edge.D, 0.0) : 0;
+        const double apart = face && footprints.lit_in_depth(edge) ? thickness / depth_of_unit(view) : 0;
+        s.z = view.depth(x + (beside - apart) * edge.n);
         s.sheet = std::max(sheet_of(sliced ? middle - extent : s.z), 0);
         s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
         s.kept = beside > -kKernelRadius && middle > -extent && !s.box.empty() &&

@@ -133,6 +133,16 @@ struct SeenSplat {
     }
 };
 
+/// Where a ray meets both faces of a layer, if near by.
+std::optional<glm::dvec2> faces_near(const Quadratic& phi) {
+    const double root2 = phi.b * phi.b - 4 * phi.a * phi.c;
+    if (!(root2 > 0) || phi.a == 0) return std::nullopt;
+    const double sum = -0.5 * (phi.b + (phi.b < 0 ? -1 : 1) * std::sqrt(root2));
+    const double low = std::min(sum / phi.a, phi.c / sum), high = std::max(sum / phi.a, phi.c / sum);
+    const double near = static_cast<double>(shader::LIT_FACES);
+    return low > -near && high < near ? std::optional(glm::dvec2(low, high)) : std::nullopt;
+}
+
 }  // namespace
 
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
@@ -168,6 +178,10 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const double tau =
         record.extinction(scene) * glm::length(view.geometry.index_to_world_axes * u) * (f.leave.z - f.entry.z);
     const double share = 1 / (1 + std::exp(0.5 * tau));
+    // Between the faces of a layer the field goes one way; the quadric of which both are levels turns.
+    const auto faces = edge.mixed ? faces_near(seen.sight.ray.phi) : std::nullopt;
+    if (faces && !at_border) f.entry.z = std::min(f.entry.z, faces->x);
+    if (faces && !to_border) f.leave.z = std::max(f.leave.z, faces->y);
     return glm::mix(seen.at(f.entry, normal, payload),
                     seen.at(f.leave, to_border ? inside.far_normal : glm::dvec3(0), payload), share);
 }

@@ -29,6 +29,7 @@ EDGESPLAT_CONSTANT float MADE_UP = 0.5f;        // voxels that the field's own q
 EDGESPLAT_CONSTANT float CARRIES_NOTHING = -4.0f;  // D of a voxel beside matter whose face is out of its kernel's reach
 EDGESPLAT_CONSTANT float BORDER_WEIGHT = 1.1501f;  // of an outermost voxel's kernel: what those beyond the border would have of matter
 EDGESPLAT_CONSTANT float LIT_WITHIN = 0.6f;     // of a kernel's half chord: most of it lies between
+EDGESPLAT_CONSTANT float LIT_FACES = 3.2f;      // voxels from a ray's point nearest to the voxel: faces of a layer further off do not light it
 EDGESPLAT_CONSTANT float FIT_THINNEST = 0.2f;   // wall, voxels
 EDGESPLAT_CONSTANT float FIT_OWN = 0.5f;  // the field's own quadric must leave less of the squared error than what is fitted
 EDGESPLAT_CONSTANT float FIT_WELL = 0.1f;  // voxels^2, summed: what fits as well as this is kept

@@ -77,8 +77,11 @@ void main() {
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
         if (drawn) note(i, uint(first), uint(last), box);
     } else {
-        // What it has lies behind the face: another material's splats are not to come between.
-        float depth = p.view.z + beside * dot(params.frame.view_z, e.n);
+        // What it has lies behind the face, and matter that one sees through a sheet before what its face leads to: neither
+        // another material's splats are to come between, nor is what hides it to be in one sheet with it.
+        bool before = FACES && e.state >= EDGE_LOWER && (params.frame.seen_through >> (splat.edge >> 28) & 1u) == 1u;
+        float apart = before ? params.frame.sheet_thickness / length(params.frame.view_z) : 0.0;
+        float depth = p.view.z + (beside - apart) * dot(params.frame.view_z, e.n);
         int sheet = max(int(floor(depth / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;

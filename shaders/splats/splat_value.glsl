@@ -132,6 +132,17 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
 }
 #include "shaders/footprints/tabulated_footprint.glsl"
 
+// From one face of a layer between two iso-values to the other, where the ray meets both near by, else `way`, which lies between.
+// There the field goes one way; the quadric of which both are levels turns.
+vec2 way_between_faces(Quadratic phi, vec2 way) {
+    float root2 = phi.b * phi.b - 4.0 * phi.a * phi.c;
+    float sum = -0.5 * (phi.b + (phi.b < 0.0 ? -1.0 : 1.0) * sqrt(max(root2, 0.0)));
+    vec2 ends = vec2(sum, phi.c) / divisible(vec3(phi.a, sum, 1.0)).xy;
+    float low = min(ends.x, ends.y), high = max(ends.x, ends.y);
+    bool both = root2 > 0.0 && low > -LIT_FACES && high < LIT_FACES;
+    return both ? vec2(min(way.x, low), max(way.y, high)) : way;
+}
+
 // What the splat shows of a ray that goes through it. Where one sees through matter light falls in its depth: the nearer half of
 // the way is lit as where it begins, the farther half as where it ends.
 vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, float far_border, vec3 u, float ahead, float mm) {
@@ -150,9 +161,14 @@ vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, fl
     float leave = max(min(to_border ? far_border : f.leave.z, half_chord), f.entry.z);
     f.entry.z = deep && !at_border ? min(max(f.entry.z, -half_chord), leave) : f.entry.z;
     f.leave.z = leave;
+    float share = 1.0 / (1.0 + exp(0.5 * color_sigma.a * mm * (leave - f.entry.z)));
+    if (deep && (number_material.y & IS_MIXED) != 0u) {
+        vec2 way = way_between_faces(sight.ray.phi, vec2(f.entry.z, leave));
+        f.entry.z = at_border ? f.entry.z : way.x;
+        f.leave.z = to_border ? leave : way.y;
+    }
     vec3 near = face_payload(sight, f.entry, normal, u, ahead);
     vec3 far = face_payload(sight, f.leave, to_border ? volume_piece.far_normal : vec3(0.0), u, ahead);
-    float share = 1.0 / (1.0 + exp(0.5 * color_sigma.a * mm * (leave - f.entry.z)));
     return deep ? mix(near, far, share) : near;
 }
 

@@ -10,15 +10,24 @@
 
 namespace edgesplat::test {
 
-/// A scene, opaque, whole in a picture of 120 x 120 pixels; where it has two iso-values `layer` lies between them.
+/// A picture that is to be drawn, and what is right.
 struct Exact {
     Shot shot;
     Image truth;
 };
 
+/// What `shot` shows of a scene, beside its truth.
+inline Exact exact_shot(const AnalyticScene& scene, const Shot& shot) {
+    reference::DirectOptions options;
+    options.tolerance = 1e-3;
+    return {shot,
+            reference::truth(scene, shot.volume->geometry, shot.scene, shot.camera, shot.width, shot.height, options)
+                .image};
+}
+
+/// A scene, opaque, whole in a picture of 120 x 120 pixels; where it has two iso-values `layer` lies between them.
 inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8, const Material& layer = {}) {
-    Exact out;
-    Shot& shot = out.shot;
+    Shot shot;
     shot.volume = std::make_shared<const Volume>(sample(scene));
     shot.scene.iso_values = scene.iso_values;
     shot.scene.materials.resize(scene.iso_values.size() + 1);
@@ -28,11 +37,7 @@ inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8, cons
     shot.camera =
         look(*shot.volume, middle + 2.3 * glm::length(middle) * glm::normalize(glm::dvec3(3.8, -5.2, 3)), middle, 32);
     shot.width = shot.height = 120;
-    reference::DirectOptions options;
-    options.tolerance = 1e-3;
-    out.truth =
-        reference::truth(scene, shot.volume->geometry, shot.scene, shot.camera, shot.width, shot.height, options).image;
-    return out;
+    return exact_shot(scene, shot);
 }
 
 /// A builtin one.
