@@ -30,11 +30,11 @@ FacePlane plane_at(const FaceRay& ray, double depth, double z, const End& end) {
     return {p, u, p + z * u - distance - depth};
 }
 
-double reach2_of(double distance, double depth, double norm) {
+double reach2_of(double distance, double depth, double norm, double radius) {
     const double off = distance - depth;
-    if (!(std::abs(off) < kKernelRadius)) return 0;
+    if (!(std::abs(off) < radius)) return 0;
     // Normals turn by `norm` a voxel, which spreads what is moved along them, and the face leaves its tangent plane.
-    const double lateral = std::sqrt(kKernelRadius * kKernelRadius - off * off) * (1 + 1.2 * depth * norm);
+    const double lateral = std::sqrt(radius * radius - off * off) * (1 + 1.2 * depth * norm);
     const double along = std::max(distance, 0.0) + 0.5 * norm * lateral * lateral;
     return lateral * lateral + along * along;
 }
@@ -52,22 +52,24 @@ FaceRoots face_roots(const Quadratic& phi, double level) {
     return {true, std::min(near, far), std::max(near, far)};
 }
 
-FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest) {
+FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest, const Kernel& kernel) {
+    const double radius = kernel.radius;
     FaceCut cut;
+    cut.kernel = &kernel;
     cut.depth = deepest;
     cut.thickness = thickness;
     // What is bent away from both sides is as deep as the ridge, where the slope is 0.
     if (bend > 0) cut.depth = std::min(cut.depth, 0.5 / bend);
     cut.depth = std::min(cut.depth, 0.5 * thickness);
-    double reach2 = std::max(kKernelRadius * kKernelRadius, reach2_of(distance, cut.depth, norm));
-    if (thickness < kInfinity) reach2 = std::max(reach2, reach2_of(thickness - distance, cut.depth, norm));
+    double reach2 = std::max(radius * radius, reach2_of(distance, cut.depth, norm, radius));
+    if (thickness < kInfinity) reach2 = std::max(reach2, reach2_of(thickness - distance, cut.depth, norm, radius));
     // No point is moved further than that.
-    cut.reach = std::min(std::sqrt(reach2), kKernelRadius + cut.depth);
+    cut.reach = std::min(std::sqrt(reach2), radius + cut.depth);
     return cut;
 }
 
 void add_crease(FaceCut& cut, const FaceCut::Crease& crease) {
-    if (!(crease.distance < kKernelRadius + cut.depth)) return;
+    if (!(crease.distance < cut.kernel->radius + cut.depth)) return;
     cut.crease = crease;
     // As far as what is moved by one and the other may come from.
     const double further = std::max((2 * crease.distance - cut.depth) * cut.depth, 0.0);
@@ -80,7 +82,8 @@ double FacePlane::beyond(double z) const {
 }
 
 FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
-    : rho2_(ray.rho2),
+    : kernel_(cut.kernel),
+      rho2_(ray.rho2),
       half_chord_(std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0))),
       crease_{ray.crease.p, ray.crease.u, cut.crease.distance - cut.depth},
       facing_(cut.crease.facing),
@@ -140,13 +143,13 @@ double FacePath::sampled_at(const FacePiece& piece, double z) const {
 double FacePath::kernel_at(double z) const {
     if (!(std::abs(z) < half_chord_)) return 0;
     for (const FacePiece& piece : pieces())
-        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z));
+        if (z >= piece.low && z <= piece.high) return kernel(sampled_at(piece, z), *kernel_);
     return 0;
 }
 
 FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     FaceFootprint out;
-    const double plain = std::sqrt(std::max(kKernelRadius * kKernelRadius - rho2_, 0.0));
+    const double plain = std::sqrt(std::max(kernel_->radius * kernel_->radius - rho2_, 0.0));
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
     // Deeper than what is moved there is nothing beyond the plain kernel's reach. Of a wall that must be so all the
     // way: its other face may be tilted.
@@ -161,7 +164,7 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
         double sum = 0;
         for (std::size_t k = 0; begin < end && k < rule.size(); ++k) {
             const double z = begin + (end - begin) * rule.nodes[k];
-            sum += rule.weights[k] * kernel(sampled_at(piece, z));
+            sum += rule.weights[k] * kernel(sampled_at(piece, z), *kernel_);
         }
         out.integral += std::max(end - begin, 0.0) * sum;
         // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where

@@ -54,6 +54,7 @@ struct FaceCut {
     double depth = 0.8;                                          ///< where it is sampled at least, > 0
     double thickness = std::numeric_limits<double>::infinity();  ///< of the wall, > 0
     double reach = kKernelRadius;                                ///< of the cut kernel from the voxel's centre
+    const Kernel* kernel = &kKernel;                             ///< that is cut
     /// Another plane that ends the matter; none at infinity.
     struct Crease {
         double distance = std::numeric_limits<double>::infinity();  ///< from the voxel's centre
@@ -79,7 +80,8 @@ inline constexpr int kFewNodes = 6, kManyNodes = 10;
 
 /// `FaceCut` of a face of that thickness whose foot point lies `distance` from the voxel's centre; `bend` is n'Hn
 /// there, `norm` the Frobenius norm of H, 1/voxel, `deepest` kFaceDepth or 0.
-FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth);
+FaceCut face_cut(double distance, double bend, double norm, double thickness, double deepest = kFaceDepth,
+                 const Kernel& kernel = kKernel);
 
 /// Adds a plane that may cut the kernel, and by as much as it is moved along it lets the kernel reach further: no
 /// further than the deepest face does, which costs edges that one sees through a little of their outermost matter.
@@ -145,6 +147,7 @@ class FacePath {
     /// |x|^2 of where the kernel is sampled for the point z of the ray.
     double sampled_at(const FacePiece& piece, double z) const;
 
+    const Kernel* kernel_;
     double rho2_, half_chord_;
     FacePlane crease_;
     double facing_;  ///< of the crease with the face

@@ -7,6 +7,7 @@
 
 #include <limits>
 
+#include "footprints/kernel.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {
@@ -26,7 +27,7 @@ struct Slice {
 };
 
 /// The plain footprint's share of a slice.
-double sliced_kernel_footprint(double rho2, const Slice& slice);
+double sliced_kernel_footprint(double rho2, const Slice& slice, const Kernel& k = kKernel);
 
 /// The ray of design (8): n = (sqrt(1-c^2), 0, c), u = z, through (x, y).
 Ray ray_through(double x, double y, double c);

@@ -39,9 +39,9 @@ struct Stretches {
     double begin, across, beside, end;
 };
 
-Stretches stretches(const FootprintLayer& layer, double y) {
+Stretches stretches(const FootprintLayer& layer, double y, double radius) {
     const double half = layer.cosine * std::sqrt(std::max(layer.rim2 - y * y, 0.0));
-    const double ball = std::sqrt(std::max(kKernelRadius * kKernelRadius - y * y, 0.0));
+    const double ball = std::sqrt(std::max(radius * radius - y * y, 0.0));
     const double across = std::max(layer.middle - half, -ball), beside = std::max(layer.middle + half, -ball);
     return {-ball, across, beside, std::max(ball, beside)};
 }
@@ -65,7 +65,8 @@ double place_of(const Stretches& s, int texel) {
 
 /// The whole footprint along a ray, by what the reference integrates faces with.
 double plane_footprint(const Ray& ray, double distance, double depth) {
-    const FaceCut cut = face_cut(distance, 0, 0, std::numeric_limits<double>::infinity(), depth);
+    const FaceCut cut =
+        face_cut(distance, 0, 0, std::numeric_limits<double>::infinity(), depth, kernel_of_table(depth));
     const FacePath path(plane_face(ray, distance), cut);
     const double turns = (distance - depth - ray.pn) / ray.un;
     return path.footprint(kNodes, {.high = turns}).integral + path.footprint(kNodes, {.low = turns}).integral;
@@ -78,19 +79,22 @@ std::uint32_t coded(double place, int layers, std::uint32_t& index) {
 
 }  // namespace
 
+const Kernel& kernel_of_table(double depth) {
+    return depth == kFaceDepth ? kNarrowKernel : kKernel;
+}
+
 FootprintLayer decode_footprint_layer(std::uint32_t code, double depth) {
     constexpr std::uint32_t kMask = (1U << shader::TABLE_BLEND_BITS) - 1;
     const std::uint32_t layer = code & kMask;
     const double distance = layer / kDirections + (code >> shader::TABLE_BLEND_BITS & kMask) / kSteps;
     const double direction = layer % kDirections + (code >> 2 * shader::TABLE_BLEND_BITS & kMask) / kSteps;
     const double of_distance = 2 * distance / (kDistances - 1) - 1, of_direction = direction / (kDirections - 1);
-    const double rim = kKernelRadius * cosine_of(of_distance);
-    return {code, (kKernelRadius * sine_of(of_distance) + depth) * cosine_of(of_direction), sine_of(of_direction),
-            rim * rim};
+    const double radius = kernel_of_table(depth).radius, rim = radius * cosine_of(of_distance);
+    return {code, (radius * sine_of(of_distance) + depth) * cosine_of(of_direction), sine_of(of_direction), rim * rim};
 }
 
 FootprintLayer select_footprint_layer(double distance, double cosine, double depth) {
-    const double e = std::clamp((distance - depth) / kKernelRadius, -1.0, 1.0);
+    const double e = std::clamp((distance - depth) / kernel_of_table(depth).radius, -1.0, 1.0);
     std::uint32_t i = 0, j = 0;
     const std::uint32_t to_next = coded((tangent_of(e) + 1) / 2 * (kDistances - 1), kDistances, i);
     const std::uint32_t turned = coded(tangent_of(std::clamp(cosine, 0.0, 1.0)) * (kDirections - 1), kDirections, j);
@@ -99,21 +103,22 @@ FootprintLayer select_footprint_layer(double distance, double cosine, double dep
 }
 
 FootprintLayer plain_footprint_layer(double depth) {
-    return select_footprint_layer(kKernelRadius + depth, 1, depth);
+    return select_footprint_layer(kernel_of_table(depth).radius + depth, 1, depth);
 }
 
 FootprintTable::FootprintTable(double depth)
     : depth_(depth), texels_(std::size_t{kWidth} * kRows * shader::TABLE_LAYERS) {
+    const double radius = kernel_of_table(depth).radius;
     std::size_t at = 0;
     for (int i = 0; i < kDistances; ++i) {
         for (int j = 0; j < kDirections; ++j) {
-            const double e = kKernelRadius * sine_of(2.0 * i / (kDistances - 1) - 1);
+            const double e = radius * sine_of(2.0 * i / (kDistances - 1) - 1);
             const double c = std::max(sine_of(j / (kDirections - 1.0)), kLeastCosine);
             const double s = std::sqrt(std::max(1 - c * c, 0.0));
-            const FootprintLayer layer{0, (e + depth) * s, c, kKernelRadius * kKernelRadius - e * e};
+            const FootprintLayer layer{0, (e + depth) * s, c, radius * radius - e * e};
             for (int row = 0; row < kRows; ++row) {
-                const double y = kKernelRadius * row / (kRows - 1);
-                const Stretches along = stretches(layer, y);
+                const double y = radius * row / (kRows - 1);
+                const Stretches along = stretches(layer, y, radius);
                 for (int texel = 0; texel < kWidth; ++texel) {
                     const double x = place_of(along, texel);
                     const Ray ray{x * x + y * y, x * s, c};
@@ -126,7 +131,8 @@ FootprintTable::FootprintTable(double depth)
 
 double FootprintTable::lookup(const FootprintLayer& layer, double x, double y) const {
     constexpr std::uint32_t kMask = (1U << shader::TABLE_BLEND_BITS) - 1;
-    const double u = texel_of(stretches(layer, y), x), v = std::clamp(y / kKernelRadius, 0.0, 1.0) * (kRows - 1);
+    const double radius = kernel_of_table(depth_).radius;
+    const double u = texel_of(stretches(layer, y, radius), x), v = std::clamp(y / radius, 0.0, 1.0) * (kRows - 1);
     const int column = std::min(static_cast<int>(u), kWidth - 2), row = std::min(static_cast<int>(v), kRows - 2);
     const auto texel = [&](std::size_t number, int i, int j) {
         const std::size_t at = (number * kRows + static_cast<std::size_t>(j)) * kWidth + static_cast<std::size_t>(i);

@@ -12,6 +12,8 @@
 #include <span>
 #include <vector>
 
+#include "footprints/kernel.h"
+
 namespace edgesplat {
 
 /// Which layers a splat takes, and where its face lies in them.
@@ -21,6 +23,9 @@ struct FootprintLayer {
     double cosine = 0;       ///< of theta, [0, 1]
     double rim2 = 0;         ///< R^2 - e^2: squared radius of what the face cuts off the kernel
 };
+
+/// What tables of that depth hold: the narrow kernel where it is `kFaceDepth`.
+const Kernel& kernel_of_table(double depth);
 
 /// Of a face at `distance` along n, seen along a direction with |n . u| = `cosine`; from R + depth on, the plain layer.
 FootprintLayer select_footprint_layer(double distance, double cosine, double depth);

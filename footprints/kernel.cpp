@@ -7,52 +7,52 @@
 namespace edgesplat {
 namespace {
 
-constexpr double kR2 = kKernelRadius * kKernelRadius;
-
-double remaining(double r2) {
-    return std::max(0.0, 1 - r2 / kR2);
+double remaining(double r2, const Kernel& k) {
+    return std::max(0.0, 1 - r2 / (k.radius * k.radius));
 }
 
 }  // namespace
 
-double kernel_footprint(double rho2) {
-    const double w = remaining(rho2);
-    const auto& g = kFootprintCoefficients;
+double kernel_footprint(double rho2, const Kernel& k) {
+    static constexpr KernelCoefficients kWide = footprint_coefficients(kKernel);
+    static constexpr KernelCoefficients kNarrow = footprint_coefficients(kNarrowKernel);
+    const double w = remaining(rho2, k);
+    const KernelCoefficients& g = k.radius < kKernelRadius ? kNarrow : kWide;
     return w * w * std::sqrt(w) * (g[0] + w * (g[1] + w * (g[2] + w * (g[3] + w * (g[4] + w * g[5])))));
 }
 
-double kernel_chord(double rho2, double z) {
-    const double w = remaining(rho2);
+double kernel_chord(double rho2, double z, const Kernel& k) {
+    const double w = remaining(rho2, k);
     if (w <= 0) return 0;
     // On the line K's argument is w (1 - s^2) with s = z / half chord; I_n = integral of (1-s^2)^n from 0 to s obeys
     // (2n+1) I_n = s (1-s^2)^n + 2n I_(n-1).
-    const double half_chord = kKernelRadius * std::sqrt(w);
+    const double half_chord = k.radius * std::sqrt(w);
     const double s = std::clamp(z / half_chord, -1.0, 1.0);
     const double c = 1 - s * s;
     double power = c;                     // (1-s^2)^n
     double integral = s - s * s * s / 3;  // I_1
     double w_power = w;
     double sum = 0;
-    for (std::size_t i = 0; i < kKernelCoefficients.size(); ++i) {
+    for (std::size_t i = 0; i < k.coefficients.size(); ++i) {
         const double n = static_cast<double>(i) + 2;
         power *= c;
         w_power *= w;
         integral = (s * power + 2 * n * integral) / (2 * n + 1);
-        sum += kKernelCoefficients[i] * w_power * integral;
+        sum += k.coefficients[i] * w_power * integral;
     }
     return half_chord * sum;
 }
 
-double kernel_plane_integral(double r2) {
-    const double w = remaining(r2);
+double kernel_plane_integral(double r2, const Kernel& k) {
+    const double w = remaining(r2, k);
     double sum = 0;
     double power = w * w * w;
-    for (std::size_t i = 0; i < kKernelCoefficients.size(); ++i, power *= w)
-        sum += kKernelCoefficients[i] / (static_cast<double>(i) + 3) * power;
-    return std::numbers::pi * kR2 * sum;
+    for (std::size_t i = 0; i < k.coefficients.size(); ++i, power *= w)
+        sum += k.coefficients[i] / (static_cast<double>(i) + 3) * power;
+    return std::numbers::pi * k.radius * k.radius * sum;
 }
 
-double kernel_ripple(int steps, const KernelCoefficients& coefficients) {
+double kernel_ripple(int steps, const Kernel& k) {
     double worst = 0;
     // The lattice sum has the cube's symmetry: 0 <= z <= y <= x <= 1/2 is enough.
     for (int ix = 0; ix <= steps; ++ix)
@@ -62,14 +62,14 @@ double kernel_ripple(int steps, const KernelCoefficients& coefficients) {
                 double sum = 0;
                 for (int i = -2; i <= 2; ++i)
                     for (int j = -2; j <= 2; ++j)
-                        for (int k = -2; k <= 2; ++k)
-                            sum += kernel((x - i) * (x - i) + (y - j) * (y - j) + (z - k) * (z - k), coefficients);
+                        for (int l = -2; l <= 2; ++l)
+                            sum += kernel((x - i) * (x - i) + (y - j) * (y - j) + (z - l) * (z - l), k);
                 worst = std::max(worst, std::abs(sum - 1));
             }
     return worst;
 }
 
-double footprint_ripple(const std::array<double, 3>& direction, int steps) {
+double footprint_ripple(const std::array<double, 3>& direction, int steps, const Kernel& kernel) {
     const double length = std::hypot(direction[0], direction[1], direction[2]);
     const std::array<double, 3> u = {direction[0] / length, direction[1] / length, direction[2] / length};
     // The sum along the ray, lattice plane by lattice plane across the dominant axis. A smooth window over the planes
@@ -92,7 +92,7 @@ double footprint_ripple(const std::array<double, 3>& direction, int steps) {
                     for (int k = -4; k <= 4; ++k) {
                         const double db = std::floor(hit_b) + j - hit_b, dc = std::floor(hit_c) + k - hit_c;
                         const double along = db * u[b] + dc * u[c];
-                        sum += kernel_footprint(std::max(0.0, db * db + dc * dc - along * along));
+                        sum += kernel_footprint(std::max(0.0, db * db + dc * dc - along * along), kernel);
                     }
                 total += sum * (1 - std::cos(2 * std::numbers::pi * (p + 0.5) / kPlanes)) / kPlanes;
             }

@@ -1,4 +1,4 @@
-// The reconstruction kernel K7 and its integrals over a line, part of a line, and a plane, all in closed form.
+// The reconstruction kernels K7 and their integrals over a line, part of a line, and a plane, all in closed form.
 //
 // K is a polynomial in w = max(0, 1 - r^2/R^2), so every integral along a straight line is one too (design (1), (2)).
 // The coefficients come from fit_kernel.cpp. Lengths are voxels; the integral of K over space is 1.
@@ -11,49 +11,59 @@ namespace edgesplat {
 
 using KernelCoefficients = std::array<double, 6>;
 
-inline constexpr double kKernelRadius = 1.6;  ///< R, voxels
-/// Coefficients of w^2 ... w^7 in K.
-inline constexpr KernelCoefficients kKernelCoefficients = {0.0173624837, -0.0404017909, 0.531403221,
-                                                           -0.680940898, 1.37803587,    -0.611612954};
+/// K.
+struct Kernel {
+    double radius;                    ///< R, voxels
+    KernelCoefficients coefficients;  ///< of w^2 ... w^7
+};
+
+/// That of plain splats, of the paper's, and of matter that one sees through: the sum over the lattice is 1 to 7e-5.
+inline constexpr Kernel kKernel = {1.6,
+                                   {0.0173624837, -0.0404017909, 0.531403221, -0.680940898, 1.37803587, -0.611612954}};
+/// That of scenes in which all matter hides what is behind it and faces cut it: nobody sees its sum, 1 to 1.4 %, and a
+/// ray passes .6 as many of them.
+inline constexpr Kernel kNarrowKernel = {1.2,
+                                         {1.48023482, -8.29281328, 27.6530166, -44.8614407, 36.1508107, -11.4339851}};
+inline constexpr double kKernelRadius = kKernel.radius;
 
 /// Weight of w^n in the line integral, relative to its weight in K: R * integral of (1-s^2)^n over [-1, 1].
-constexpr double kernel_line_factor(int n) {
-    double factor = 2 * kKernelRadius;
+constexpr double kernel_line_factor(double radius, int n) {
+    double factor = 2 * radius;
     for (int i = 1; i <= n; ++i)
         factor *= 2.0 * i / (2.0 * i + 1.0);
     return factor;
 }
 
-constexpr KernelCoefficients footprint_coefficients(const KernelCoefficients& kernel) {
+/// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
+constexpr KernelCoefficients footprint_coefficients(const Kernel& k) {
     KernelCoefficients c{};
     for (std::size_t i = 0; i < c.size(); ++i)
-        c[i] = kernel[i] * kernel_line_factor(static_cast<int>(i) + 2);
+        c[i] = k.coefficients[i] * kernel_line_factor(k.radius, static_cast<int>(i) + 2);
     return c;
 }
-/// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
-inline constexpr KernelCoefficients kFootprintCoefficients = footprint_coefficients(kKernelCoefficients);
 
 /// K at a squared distance r2 >= 0 from its centre. 0 from R on.
-inline double kernel(double r2, const KernelCoefficients& c = kKernelCoefficients) {
-    const double v = 1 - r2 / (kKernelRadius * kKernelRadius);
+inline double kernel(double r2, const Kernel& k = kKernel) {
+    const KernelCoefficients& c = k.coefficients;
+    const double v = 1 - r2 / (k.radius * k.radius);
     const double w = v > 0 ? v : 0;
     return w * w * (c[0] + w * (c[1] + w * (c[2] + w * (c[3] + w * (c[4] + w * c[5])))));
 }
 
 /// g: integral of K along a line that passes its centre at squared distance rho2 >= 0 (design (2)).
-double kernel_footprint(double rho2);
+double kernel_footprint(double rho2, const Kernel& k = kKernel);
 
 /// Integral of K along that line from its point nearest to the centre to the point z voxels on; odd in z.
-double kernel_chord(double rho2, double z);
+double kernel_chord(double rho2, double z, const Kernel& k = kKernel);
 
 /// Integral of K over a plane at squared distance r2 >= 0: the kernel of one-dimensional reconstruction.
-double kernel_plane_integral(double r2);
+double kernel_plane_integral(double r2, const Kernel& k = kKernel);
 
 /// Largest |sum over the lattice of K - 1|, at steps^3 points of one octant of the unit cell.
-double kernel_ripple(int steps, const KernelCoefficients& coefficients = kKernelCoefficients);
+double kernel_ripple(int steps, const Kernel& k = kKernel);
 
 /// Largest |lattice sum of g * area per sample - 1| over a view along `direction` (any non-zero vector), at `steps`^2
 /// points: how even a uniform volume looks when its footprints are added up.
-double footprint_ripple(const std::array<double, 3>& direction, int steps);
+double footprint_ripple(const std::array<double, 3>& direction, int steps, const Kernel& k = kKernel);
 
 }  // namespace edgesplat

@@ -102,9 +102,10 @@ Row negative(Row row) {
 
 }  // namespace
 
-KernelCoefficients fit_kernel(int steps) {
+Kernel fit_kernel(int steps, double radius) {
     if (steps < 4 || steps > 64) throw std::invalid_argument("fit_kernel: steps must be in [4, 64]");
-    constexpr double kR2 = kKernelRadius * kKernelRadius;
+    if (!(radius >= 1 && radius <= 2)) throw std::invalid_argument("fit_kernel: the radius must be in [1, 2]");
+    const double radius2 = radius * radius;
     SmallestRipple program;
 
     // |sum_n c_n S_n(x) - 1| <= ripple, S_n the lattice sum of w^n, at points of the cell's smallest symmetric part.
@@ -115,7 +116,7 @@ KernelCoefficients fit_kernel(int steps) {
                 for (int cell = 0; cell < 125; ++cell) {
                     const double x = 0.5 * ix / steps - (cell % 5 - 2), y = 0.5 * iy / steps - (cell / 5 % 5 - 2),
                                  z = 0.5 * iz / steps - (cell / 25 - 2);
-                    const double w = std::max(0.0, 1 - (x * x + y * y + z * z) / kR2);
+                    const double w = std::max(0.0, 1 - (x * x + y * y + z * z) / radius2);
                     double power = w * w;
                     for (std::size_t n = 0; n + 1 < kUnknowns; ++n, power *= w)
                         sums[n] += power;
@@ -142,15 +143,15 @@ KernelCoefficients fit_kernel(int steps) {
     double integral = 1.0 / 3;
     for (int n = 1; n <= 7; ++n) {
         integral *= 2.0 * n / (2.0 * n + 3);
-        if (n >= 2) volume[static_cast<std::size_t>(n) - 2] = 4 * std::numbers::pi * kR2 * kKernelRadius * integral;
+        if (n >= 2) volume[static_cast<std::size_t>(n) - 2] = 4 * std::numbers::pi * radius2 * radius * integral;
     }
     program.require(volume, 1);
     program.require(negative(volume), -1);
 
     const Row x = program.solve();
-    KernelCoefficients coefficients{};
-    std::copy_n(x.begin(), coefficients.size(), coefficients.begin());
-    return coefficients;
+    Kernel kernel{radius, {}};
+    std::copy_n(x.begin(), kernel.coefficients.size(), kernel.coefficients.begin());
+    return kernel;
 }
 
 }  // namespace edgesplat

@@ -65,8 +65,8 @@ double displaced(const Ray& ray, double delta, const Slice& slice) {
 
 }  // namespace
 
-double sliced_kernel_footprint(double rho2, const Slice& slice) {
-    return std::max(kernel_chord(rho2, slice.high) - kernel_chord(rho2, slice.low), 0.0);
+double sliced_kernel_footprint(double rho2, const Slice& slice, const Kernel& k) {
+    return std::max(kernel_chord(rho2, slice.high, k) - kernel_chord(rho2, slice.low, k), 0.0);
 }
 
 double procedural_footprint(const Ray& ray, const PaperEdge& edge, int nodes, const Slice& slice) {

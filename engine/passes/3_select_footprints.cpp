@@ -5,6 +5,7 @@ namespace edgesplat::passes {
 gpu::Specialization select_constants(const DrawVariant& variant) {
     return {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
             {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
+            {shader::SPEC_NARROW, variant.narrow ? 1U : 0U},
             {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},

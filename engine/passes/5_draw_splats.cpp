@@ -14,6 +14,7 @@ std::vector<std::uint32_t> quad_indices() {
 gpu::Specialization draw_constants(const DrawVariant& variant) {
     return {{shader::SPEC_FOOTPRINTS, static_cast<std::uint32_t>(variant.footprints)},
             {shader::SPEC_WARP, static_cast<std::uint32_t>(variant.warp)},
+            {shader::SPEC_NARROW, variant.narrow ? 1U : 0U},
             {shader::SPEC_LIGHT, variant.lights},
             {shader::SPEC_PAYLOAD, variant.payload},
             {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},

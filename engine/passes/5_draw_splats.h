@@ -12,6 +12,7 @@ namespace edgesplat::passes {
 struct DrawVariant {
     FootprintMode footprints;
     WarpFamily warp;
+    bool narrow = false;        ///< kernels are the narrow ones
     std::uint32_t lights = 0;   ///< how many
     std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
     bool sliced = false;        ///< kernels are cut at the sheets' planes

@@ -302,7 +302,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     auto& p = plan.params;
     plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
     p.anchor = to_float(anchor);
-    p.support = static_cast<float>(kKernelRadius);
+    plan.variant.narrow = draws_narrow(settings, scene, geometry);
+    p.support = static_cast<float>((plan.variant.narrow ? kNarrowKernel : kKernel).radius);
     const PaperShape paper;
     p.footprint = {.paper_inset = static_cast<float>(paper.inset),
                    .paper_rise = static_cast<float>(paper.rise),

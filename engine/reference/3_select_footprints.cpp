@@ -137,7 +137,7 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         s.z = view.depth(x + (beside - apart) * edge.n);
         s.sheet = std::max(sheet_of(sliced ? middle - extent : s.z), 0);
         s.last_sheet = sliced ? std::max(sheet_of(middle + extent), s.sheet) : s.sheet;
-        s.kept = beside > -kKernelRadius && middle > -extent && !s.box.empty() &&
+        s.kept = beside > -footprints.kernel().radius && middle > -extent && !s.box.empty() &&
                  !clip.cuts_away(drawn.center, drawn.radius);
     }
     return selected;

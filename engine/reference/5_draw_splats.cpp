@@ -18,8 +18,8 @@ glm::dvec3 world_normal(const VolumeGeometry& geometry, const glm::dvec3& n_inde
 }
 
 /// Share of a kernel that lies in front of the eye.
-double in_front(double s0) {
-    const double t = std::clamp((s0 + kKernelRadius) / (2 * kKernelRadius), 0.0, 1.0);
+double in_front(double s0, double radius) {
+    const double t = std::clamp((s0 + radius) / (2 * radius), 0.0, 1.0);
     return t * t * (3 - 2 * t);
 }
 
@@ -154,13 +154,14 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
         record, scene, view, settings, glm::dvec3(field.voxel(record.voxel)), p, u, {}, footprints.cuts(edge)};
     if (!seen.cut) return seen.at({}, glm::dvec3(0), payload);
     seen.sight = face_sight(drawn_edge(edge, settings), p, u);
+    const double radius = footprints.kernel().radius;
     const double eye = glm::dot(view.eye_index - seen.center - p, u);
     const VolumePiece inside = piece_in_volume(view.geometry.dims, view.eye_index, u).seen_from(eye);
     if (plain) {
         // A widened kernel is entered as its voxel's centre would be.
         const FaceSight centre = face_sight(drawn_edge(edge, settings), glm::dvec3(0), u);
         const double value = centre.ray.phi.c, along = centre.ray.phi.b;
-        const double begin = std::max(along < 0 ? -value / along : -kKernelRadius, -kKernelRadius);
+        const double begin = std::max(along < 0 ? -value / along : -radius, -radius);
         const bool at_border = value < 0 && inside.low > std::max(begin, eye);
         return seen.at({at_border ? inside.low : 0}, at_border ? inside.normal : glm::dvec3(0), payload);
     }
@@ -170,8 +171,8 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     if (at_border) f.entry.z = inside.low;
     if (payload != Payload::Color || !footprints.lit_in_depth(edge)) return seen.at(f.entry, normal, payload);
     // The nearer half of the way is lit as where it begins, the farther as where it ends, of what holds most of it.
-    const double half_chord = static_cast<double>(shader::LIT_WITHIN) *
-                              std::sqrt(std::max(kKernelRadius * kKernelRadius - glm::dot(p, p), 0.0));
+    const double half_chord =
+        static_cast<double>(shader::LIT_WITHIN) * std::sqrt(std::max(radius * radius - glm::dot(p, p), 0.0));
     const bool to_border = inside.high < f.leave.z;
     f.leave.z = std::max(std::min(std::min(inside.high, f.leave.z), half_chord), f.entry.z);
     if (!at_border) f.entry.z = std::min(std::max(f.entry.z, -half_chord), f.leave.z);
@@ -239,10 +240,11 @@ double SplatDrawer::footprint(std::uint32_t splat, const VoxelEdge& edge, int x,
     if (filter.share == 0) return own;
     // The pixel's filter lies across the view, and so its kernels keep their depths.
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
-    double wide = kernel_footprint(rho2);
+    const Kernel& kernel = footprints_.kernel();
+    double wide = kernel_footprint(rho2, kernel);
     if (slice) {
         const double z = depth_on_ray(p, u);
-        wide = sliced_kernel_footprint(rho2, {slice->low - z, slice->high - z});
+        wide = sliced_kernel_footprint(rho2, {slice->low - z, slice->high - z}, kernel);
     }
     return glm::mix(own, filter.amplitude * wide, filter.share);
 }
@@ -258,7 +260,7 @@ bool SplatDrawer::in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, i
     if (filter.share < 1) return footprints_.in_matter(edge, p, u, z);
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
     const double from_voxel = z - depth_on_ray(p, u);
-    return rho2 + from_voxel * from_voxel < kKernelRadius * kKernelRadius;
+    return rho2 + from_voxel * from_voxel < std::pow(footprints_.kernel().radius, 2);
 }
 
 double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
@@ -280,7 +282,7 @@ double SplatDrawer::tau(const MetSplat& met, std::uint32_t splat, int x, int y,
         const Slice slice{cut->near / depth_along - s0, cut->far / depth_along - s0};
         return record.extinction(scene_) * ray.w * footprint(splat, record.edge, x, y, p, u, slice);
     }
-    const double share = in_front(s0);
+    const double share = in_front(s0, footprints_.kernel().radius);
     if (!(share > 0)) return 0;
     return record.extinction(scene_) * ray.w * share * footprint(splat, record.edge, x, y, p, u, {});
 }
@@ -365,7 +367,8 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                     const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
                     const VoxelEdge edge = met(splat, p, u).record.edge;
                     if (!footprints_.cuts(edge)) continue;
-                    keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
+                    keep_outer(outlines[at],
+                               outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau, footprints_.kernel()));
                 }
             }
         }

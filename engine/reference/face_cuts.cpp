@@ -39,11 +39,11 @@ dmat3 quantise_bending(const dmat3& bending) {
     return stored;
 }
 
-FaceCut cut_of(const VoxelEdge& edge) {
+FaceCut cut_of(const VoxelEdge& edge, const Kernel& kernel) {
     const bool wall = edge.D2 < kFaceFarthest;
     const double thickness = wall ? std::max(edge.D + edge.D2, 0.05) : std::numeric_limits<double>::infinity();
     const double bend = glm::dot(edge.n, edge.bending * edge.n);
-    FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, edge.deepest);
+    FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, edge.deepest, kernel);
     const dvec3 own = edge.n - edge.bending * (edge.D * edge.n);
     add_crease(cut, {edge.crease.D, glm::dot(own, edge.crease.n)});
     return cut;

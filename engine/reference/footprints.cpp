@@ -20,15 +20,19 @@ PaperEdge paper_edge(const VoxelEdge& edge) {
 Footprints::Footprints(const Settings& settings, double table_depth, FacePieces pieces)
     : settings_(settings), table_depth_(table_depth), pieces_(pieces) {}
 
+const Kernel& Footprints::kernel() const {
+    return draws_faces(settings_) ? kernel_of_table(table_depth_) : kKernel;
+}
+
 bool Footprints::warped(const VoxelEdge& edge) const {
     if (!edge.has_edge || settings_.footprints == FootprintMode::Isotropic) return false;
-    if (settings_.warp == WarpFamily::Face) return edge.D < kKernelRadius + kFaceDepth;
+    if (settings_.warp == WarpFamily::Face) return edge.D < kernel().radius + kFaceDepth;
     return edge.D < kKernelRadius;
 }
 
 double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
-    if (!warped(edge)) return kernel(r2);
+    if (!warped(edge)) return edgesplat::kernel(r2, kernel());
     if (settings_.warp == WarpFamily::Face) {
         // What a ray across the face meets there.
         const double along = glm::dot(r, edge.n);
@@ -36,17 +40,17 @@ double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     }
     const double t = glm::dot(r, edge.n);
     const double w = warped_coordinate(t, paper_edge(edge));
-    return kernel(r2 - t * t + w * w);
+    return edgesplat::kernel(r2 - t * t + w * w);
 }
 
 double Footprints::along_ray(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
-    return warped(edge) ? along_slice(edge, p, u, {}) : kernel_footprint(glm::dot(p, p));
+    return warped(edge) ? along_slice(edge, p, u, {}) : kernel_footprint(glm::dot(p, p), kernel());
 }
 
 double Footprints::along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
                                const Slice& slice) const {
     const Ray ray{glm::dot(p, p), glm::dot(p, edge.n), glm::dot(u, edge.n)};
-    if (!warped(edge)) return sliced_kernel_footprint(ray.rho2, slice);
+    if (!warped(edge)) return sliced_kernel_footprint(ray.rho2, slice, kernel());
     if (settings_.warp == WarpFamily::Face) return at_face(edge, p, u, slice).integral;
     const bool flat = settings_.footprints == FootprintMode::Warp2d;
     return flat ? warp2d_footprint(ray, paper_edge(edge), slice)
@@ -59,7 +63,7 @@ bool Footprints::cuts(const VoxelEdge& edge) const {
 
 FacePath Footprints::face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const {
     const VoxelEdge drawn = drawn_edge(edge, settings_);
-    return {face_sight(drawn, p, u).ray, cut_of(drawn), pieces_};
+    return {face_sight(drawn, p, u).ray, cut_of(drawn, kernel()), pieces_};
 }
 
 FaceFootprint Footprints::at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u,
@@ -90,7 +94,7 @@ double Footprints::looked_up(const FootprintLayer& layer, const glm::dvec3& axis
 
 bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, double z) const {
     const double r2 = glm::dot(p, p) + z * z;
-    if (!warped(edge)) return r2 < kKernelRadius * kKernelRadius;
+    if (!warped(edge)) return r2 < kernel().radius * kernel().radius;
     if (settings_.warp == WarpFamily::Face) return face_path(edge, p, u).kernel_at(z) > 0;
     return glm::dot(p + z * u, edge.n) < edge.D && r2 < kPaperReach * kPaperReach;
 }
@@ -98,8 +102,8 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
 double Footprints::reach(const VoxelEdge& edge) const {
     // Where the surface cuts it only rays will see.
     if (edge.traced) return static_cast<double>(shader::TRACE_REACH);
-    if (!warped(edge)) return kKernelRadius;
-    return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_)).reach : kPaperReach;
+    if (!warped(edge)) return kernel().radius;
+    return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), kernel()).reach : kPaperReach;
 }
 
 }  // namespace edgesplat::reference

@@ -18,6 +18,9 @@ class Footprints {
     explicit Footprints(const Settings& settings, double table_depth = kFaceDepth,
                         FacePieces pieces = FacePieces::Both);
 
+    /// What is warped, or cut: the narrow kernel where faces cut it and nothing is seen through.
+    const Kernel& kernel() const;
+
     /// Whether the kernel is warped at all; otherwise the closed-form isotropic footprint holds in every mode.
     bool warped(const VoxelEdge& edge) const;
 

@@ -81,10 +81,11 @@ struct OutlinedSplat {
 }  // namespace
 
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const dvec3& p, const dvec3& u, double ahead,
-                                  double tau) {
+                                  double tau, const Kernel& kernel) {
     const double depth_along = glm::dot(view.frame.forward, view.geometry.index_to_world_axes * u);
-    const OutlinedSplat splat{edge, view, face_sight(edge, p, u), cut_of(edge).thickness, ahead, tau, depth_along};
-    if (!(splat.sight.ray.rho2 < kKernelRadius * kKernelRadius)) return {};
+    const OutlinedSplat splat{edge, view,       face_sight(edge, p, u), cut_of(edge, kernel).thickness, ahead,
+                              tau,  depth_along};
+    if (!(splat.sight.ray.rho2 < kernel.radius * kernel.radius)) return {};
     std::optional<Outline> outline = splat.of_face();
     keep_outer(outline, splat.of_crease());
     return outline;

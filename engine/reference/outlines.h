@@ -19,9 +19,9 @@ struct Outline {
 
 /// The outline of a splat's face or crease beside the ray p + z u, which passes its kernel. p: the ray's point nearest
 /// to the voxel, relative to it, u: unit, index space; `ahead`: from the eye to p; `tau`: what the splat shows of the
-/// ray.
+/// ray; `kernel`: the splat's.
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const glm::dvec3& p, const glm::dvec3& u,
-                                  double ahead, double tau);
+                                  double ahead, double tau, const Kernel& kernel);
 
 /// Of two splats' outlines: matter of either is matter of both.
 void keep_outer(std::optional<Outline>& kept, const std::optional<Outline>& found);

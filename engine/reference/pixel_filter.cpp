@@ -45,7 +45,7 @@ PixelFilter pixel_filter(const View& view, const SplatRecord& record, const glm:
     f.of_pixels = det / widening / (view.low_pass * view.low_pass);
     f.of_voxels = 1 / widening;
     f.amplitude = matter_of_voxel(record.edge, footprints) * std::sqrt(f.of_voxels);
-    f.reach = kKernelRadius * std::sqrt(1 + trace / 2 + std::sqrt(std::max(trace * trace / 4 - det, 0.0)));
+    f.reach = footprints.kernel().radius * std::sqrt(1 + trace / 2 + std::sqrt(std::max(trace * trace / 4 - det, 0.0)));
     f.centre = view.pixel_of(x);
     return f;
 }

@@ -61,6 +61,10 @@ bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
     return materials_seen_through(scene, geometry) == 0;
 }
 
+bool draws_narrow(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_faces(settings) && hides_what_is_behind(scene, geometry);
+}
+
 double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
     return hides_what_is_behind(scene, geometry) ? kFaceDepth : 0;
 }

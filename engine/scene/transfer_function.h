@@ -32,6 +32,9 @@ std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& g
 /// Those that voxels beside them carry, too: where faces cut kernels.
 std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
+/// Whether kernels are the narrow ones: where all matter hides what is behind it and faces cut them.
+bool draws_narrow(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+
 /// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth` or 0.
 double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 

@@ -1,26 +1,35 @@
-// The kernel: the float32 mirror of footprints/kernel.h. The subset of GLSL that is C++ too.
+// The kernels: the float32 mirror of footprints/kernel.h. The subset of GLSL that is C++ too. The including shader declares NARROW:
+// 1 where all matter hides what is behind it and faces cut kernels.
 #ifndef EDGESPLAT_KERNEL_GLSL
 #define EDGESPLAT_KERNEL_GLSL
 
-const float KERNEL_R = 1.6;
-const float KERNEL_R2 = 2.56;
-const float KERNEL_INVERSE_R2 = 0.390625;
+#define KERNEL_R (NARROW == 1u ? 1.2 : 1.6)
+#define KERNEL_R2 (NARROW == 1u ? 1.44 : 2.56)
+#define KERNEL_INVERSE_R2 (NARROW == 1u ? 0.694444444 : 0.390625)
+// Coefficients of K and of its footprint: of the wide kernel, and of the narrow one.
+const float KERNEL_K[12] = {0.0173624837, -0.0404017909, 0.531403221, -0.680940898, 1.37803587, -0.611612954,
+                            1.48023482, -8.29281328, 27.6530166, -44.8614407, 36.1508107, -11.4339851};
+const float KERNEL_G[12] = {0.0296319722, -0.0591020484, 0.690992887, -0.804944854, 1.50367897, -0.622885261,
+                            1.89470057, -9.09840086, 26.9682752, -39.77326, 29.585159, -8.73353902};
+#define KERNEL_SET (NARROW == 1u ? 6 : 0)
 
 // ---- kernel (footprints/kernel.h)
 
 // `inside`: 1 - r^2 / R^2; nothing where that is negative.
 float kernel_at(float inside) {
     float w = max(0.0, inside);
-    return w * w * (0.0173624837 + w * (-0.0404017909 + w * (0.531403221 + w * (-0.680940898 +
-           w * (1.37803587 + w * -0.611612954)))));
+    int k = KERNEL_SET;
+    return w * w * (KERNEL_K[k] + w * (KERNEL_K[k + 1] + w * (KERNEL_K[k + 2] + w * (KERNEL_K[k + 3] +
+           w * (KERNEL_K[k + 4] + w * KERNEL_K[k + 5])))));
 }
 
 float kernel(float r2) { return kernel_at(1.0 - r2 * KERNEL_INVERSE_R2); }
 
 float kernel_footprint(float rho2) {
     float w = max(0.0, 1.0 - rho2 * KERNEL_INVERSE_R2);
-    return w * w * sqrt(w) * (0.0296319722 + w * (-0.0591020484 + w * (0.690992887 + w * (-0.804944854 +
-           w * (1.50367897 + w * -0.622885261)))));
+    int k = KERNEL_SET;
+    return w * w * sqrt(w) * (KERNEL_G[k] + w * (KERNEL_G[k + 1] + w * (KERNEL_G[k + 2] + w * (KERNEL_G[k + 3] +
+           w * (KERNEL_G[k + 4] + w * KERNEL_G[k + 5])))));
 }
 
 // Integral of K along the line from its nearest point to z; kernel_chord in kernel.cpp has the recurrence.
@@ -42,8 +51,9 @@ float kernel_chord(float rho2, float z) {
     float i5 = c5 * (1.0 / 11.0) + i4 * (10.0 / 11.0);
     float i6 = c6 * (1.0 / 13.0) + i5 * (12.0 / 13.0);
     float i7 = c7 * (1.0 / 15.0) + i6 * (14.0 / 15.0);
-    return half_chord * w * w * (0.0173624837 * i2 + w * (-0.0404017909 * i3 + w * (0.531403221 * i4 +
-           w * (-0.680940898 * i5 + w * (1.37803587 * i6 + w * -0.611612954 * i7)))));
+    int k = KERNEL_SET;
+    return half_chord * w * w * (KERNEL_K[k] * i2 + w * (KERNEL_K[k + 1] * i3 + w * (KERNEL_K[k + 2] * i4 +
+           w * (KERNEL_K[k + 3] * i5 + w * (KERNEL_K[k + 4] * i6 + w * KERNEL_K[k + 5] * i7)))));
 }
 
 float kernel_between(float rho2, float low, float high) { return kernel_chord(rho2, high) - kernel_chord(rho2, low); }

@@ -46,11 +46,11 @@ EDGESPLAT_CONSTANT float CREASE_BLUNT_LEFT = 0.2f;  // such ones must leave less
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // planes further off cut no kernel
 // Faces that rays find (5_trace_faces), where samples lie further than TRACE_FROM on the wrong side of the best quadric, voxels^2, summed.
 EDGESPLAT_CONSTANT float TRACE_FROM = 0.01f;
-EDGESPLAT_CONSTANT float TRACE_REACH = 2.15f;      // of their kernels, voxels: a plane at most R away cuts none that reaches further
+EDGESPLAT_CONSTANT float TRACE_REACH = 1.9f;       // of their kernels, the narrow ones, voxels: a plane at most 1.7 away cuts none that reaches further
 EDGESPLAT_CONSTANT float TRACE_STEP = 1.0f;       // voxels between samples of a ray
 EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // towards an end between two of them, at most: until one moves less than TRACE_NEAR
 EDGESPLAT_CONSTANT float TRACE_NEAR = 1e-3f;      // voxels
-EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.39f;      // voxels to a face that cuts nothing: less than R and the depth
+EDGESPLAT_CONSTANT float TRACE_WHOLE = 1.99f;      // voxels to a face that cuts nothing: less than the narrow R and the depth
 EDGESPLAT_CONSTANT float TRACE_DEEP = 2.5f;       // voxels within opaque matter that nothing is seen behind
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H are stored as 10 bits of sign(h) sqrt(|h| / 8), 1/voxel
@@ -129,7 +129,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // of a sliced splat's first sheet; t
     X(SPEC_OUTLINES, 39u)     /* 1: pixels that outlines pass show both sides */ \
     X(SPEC_TEXELS, 40u)       /* 1: buffers of texels are loaded as such, 0: through their addresses */ \
     X(SPEC_LOOPS, 41u)        /* 1: IF_ANY is a loop, 0: an if (drivers/if_any.glsl) */ \
-    X(SPEC_TRACED, 42u)       /* 1: some splats' faces are found by rays */
+    X(SPEC_TRACED, 42u)       /* 1: some splats' faces are found by rays */ \
+    X(SPEC_NARROW, 43u)       /* 1: kernels are the narrow ones */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

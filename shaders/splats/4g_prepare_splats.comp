@@ -8,6 +8,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
+layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;

@@ -76,10 +76,11 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
         const double unit =
             glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * oracle.view.frame.forward) / thickness;
         const auto extents = [&](const reference::VoxelEdge& edge) -> std::pair<double, double> {
-            if (!draws_warped(s.settings) || !edge.has_edge) return {kKernelRadius * unit, kKernelRadius * unit};
-            const double least = draws_faces(s.settings) ? kKernelRadius : kPaperReach;
-            // The sphere may lie to one side of the voxel by as much as it is larger than the plain kernel.
-            const double most = draws_faces(s.settings) ? 2 * kernel_reach(s.settings) - kKernelRadius : kPaperReach;
+            const double uncut = oracle.footprints.kernel().radius;
+            if (!draws_warped(s.settings) || !edge.has_edge) return {uncut * unit, uncut * unit};
+            const double least = draws_faces(s.settings) ? uncut : kPaperReach;
+            // The sphere may lie to one side of the voxel by as much as it is larger than the uncut kernel.
+            const double most = draws_faces(s.settings) ? 2 * kernel_reach(s.settings) - uncut : kPaperReach;
             return {least * unit, most * unit};
         };
         std::size_t kept = 0, looked_at = 0;

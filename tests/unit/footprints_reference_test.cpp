@@ -40,7 +40,7 @@ TEST_F(Reference, Kernel) {
     }
     const Numbers c = k7["g_coeff_w2.5_to_w7.5"];
     for (std::size_t i = 0; i < c.size(); ++i)
-        EXPECT_NEAR(kFootprintCoefficients[i], c[i], 1e-9);
+        EXPECT_NEAR(footprint_coefficients(kKernel)[i], c[i], 1e-9);
 }
 
 TEST_F(Reference, PaperProfile) {

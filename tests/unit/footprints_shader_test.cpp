@@ -60,6 +60,7 @@ inline float acos(float v) {
 // The including shader says how many nodes a piece of a footprint gets: one copy each.
 namespace nodes4 {
 const uint NODES = 4;
+uint NARROW = 0;
 #include "shaders/footprints/footprint.glsl"
 
 // After what it needs.
@@ -86,6 +87,7 @@ inline float table_texel(float x, float y, float layer) {
 #undef EDGESPLAT_KERNEL_GLSL
 namespace nodes10 {
 const uint NODES = 10;
+const uint NARROW = 0;
 #include "shaders/footprints/footprint.glsl"
 }  // namespace nodes10
 #pragma GCC diagnostic pop
@@ -147,7 +149,9 @@ TEST(FootprintShader, MirrorsFaces) {
         const double thickness =
             i % 3 == 0 ? std::max(distance, -0.5) + uniform(0.6, 2) : std::numeric_limits<double>::infinity();
         const double deepest = i % 2 == 0 ? kFaceDepth : 0.0;
-        FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest);
+        four::NARROW = i % 4 < 2 ? 1 : 0;
+        FaceCut want = face_cut(distance, h[0][0], 2 * std::abs(bend), thickness, deepest,
+                                four::NARROW == 1 ? kNarrowKernel : kKernel);
         four::FaceCut got = four::face_cut(f(distance), f(h[0][0]), f(2 * std::abs(bend)),
                                            thickness < 1e8 ? f(thickness) : 1e9F, f(deepest));
         const auto plane = [&] { return glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1))); };
@@ -162,7 +166,7 @@ TEST(FootprintShader, MirrorsFaces) {
                                       f(glm::dot(normal, own))};
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
         EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
-        EXPECT_GE(static_cast<double>(got.shift + got.radius), 1.59);
+        EXPECT_GE(static_cast<double>(got.shift + got.radius), want.kernel->radius - 0.01);
         const FaceFootprint a = FacePath(creased, want).footprint(4);
         const four::FaceFootprint b =
             four::footprint_face({f(ray.rho2), quadratic(ray.phi), quadratic(ray.slope2), f(ray.across), f(ray.turn)},
@@ -198,6 +202,7 @@ TEST(FootprintShader, MirrorsTheTable) {
     const auto f = [](double v) { return static_cast<float>(v); };
     for (const double depth : {kFaceDepth, 0.0}) {
         const FootprintTable& table = kept_footprint_table(depth);
+        four::NARROW = depth > 0 ? 1 : 0;
         four::layers = table.texels().data();
         Errors error;
         int other = 0;
@@ -242,6 +247,7 @@ TEST(FootprintShader, MirrorsThePapersWarp) {
 
 TEST(FootprintShader, MirrorsSlicesOfEveryFootprint) {
     namespace four = glsl::nodes4;
+    four::NARROW = 0;
     const PaperShape shape = {0.3, 0.05, PaperCurve::Smooth};
     const auto params = params_of(shape);
     std::mt19937 random(24);

@@ -13,14 +13,13 @@
 namespace edgesplat {
 namespace {
 
-using samples::kPeak;
 using samples::rays;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// To 1e-5 of the peak: the integrand bends where the kernel is sampled no nearer to the face.
 double exact(const Ray& ray, double distance, double depth) {
-    const FacePath path(plane_face(ray, distance), face_cut(distance, 0, 0, kInfinity, depth));
+    const FacePath path(plane_face(ray, distance), face_cut(distance, 0, 0, kInfinity, depth, kernel_of_table(depth)));
     const double bends = (distance - depth - ray.pn) / ray.un;
     return path.footprint(24, {.high = bends}).integral + path.footprint(24, {.low = bends}).integral;
 }
@@ -46,19 +45,23 @@ struct Statistics {
     double rms() const { return std::sqrt(squares / count); }
 };
 
-class FootprintTableDepth : public testing::TestWithParam<double> {};
+class FootprintTableDepth : public testing::TestWithParam<double> {
+  protected:
+    const Kernel& kernel_ = kernel_of_table(GetParam());
+    const double radius_ = kernel_.radius, peak_ = kernel_footprint(0, kernel_);
+};
 
 TEST_P(FootprintTableDepth, HoldsWhatAPlaneFaceLeavesOfAKernel) {
     const double depth = GetParam();
     const FootprintTable& table = kept_footprint_table(depth);
     Statistics blended, nearest;
-    for (const auto& [distance, ray] : rays(40000, depth - kKernelRadius, depth + kKernelRadius, 71)) {
+    for (const auto& [distance, ray] : rays(40000, depth - radius_, depth + radius_, 71)) {
         if (ray.un < 1e-3) continue;  // a step, which a test of its own places
         const double sine = std::sqrt(1 - ray.un * ray.un), x = sine > 0 ? ray.pn / sine : 0;
         const double y = std::sqrt(std::max(ray.rho2 - x * x, 0.0)), want = exact(ray, distance, depth);
         const FootprintLayer layer = select_footprint_layer(distance, ray.un, depth);
-        blended.add((table.lookup(layer, x, y) - want) / kPeak);
-        nearest.add((table.lookup(without_blend(layer), x, y) - want) / kPeak);
+        blended.add((table.lookup(layer, x, y) - want) / peak_);
+        nearest.add((table.lookup(without_blend(layer), x, y) - want) / peak_);
     }
     std::printf("depth %.1f, %% of the peak, largest / rms: blended %.2f / %.3f, nearest layer %.2f / %.3f\n", depth,
                 100 * blended.largest, 100 * blended.rms(), 100 * nearest.largest, 100 * nearest.rms());
@@ -73,32 +76,33 @@ TEST_P(FootprintTableDepth, ThePlainLayerIsThePlainFootprint) {
     double largest = 0;
     for (int i = 0; i <= 1000; ++i) {
         const double rho = 1.7 * i / 1000;
-        largest = std::max(largest, std::abs(table.lookup(plain, 0, rho) - kernel_footprint(rho * rho)) / kPeak);
+        largest =
+            std::max(largest, std::abs(table.lookup(plain, 0, rho) - kernel_footprint(rho * rho, kernel_)) / peak_);
     }
     std::printf("depth %.1f, %% of the peak, largest: plain layer %.2f\n", GetParam(), 100 * largest);
     EXPECT_LE(largest, 0.004);
     // No face that cuts nothing changes anything.
-    for (const double distance : {kKernelRadius + GetParam(), 5.0})
+    for (const double distance : {radius_ + GetParam(), 5.0})
         EXPECT_EQ(select_footprint_layer(distance, 1, GetParam()).code, plain.code);
 }
 
 TEST_P(FootprintTableDepth, AFaceSeenEdgeOnIsAStepWhereItStands) {
     const double depth = GetParam();
     const FootprintTable& table = kept_footprint_table(depth);
-    for (double distance = depth - 1.2; distance < depth + 1.2; distance += 0.073) {
+    for (double distance = depth - 0.75 * radius_; distance < depth + 0.75 * radius_; distance += 0.073) {
         const FootprintLayer layer = select_footprint_layer(distance, 0, depth);
         EXPECT_EQ(layer.cosine, 0);
         for (const double y : {0.0, 0.31, 0.5}) {
-            const double e = distance - depth, inside = kernel_footprint(e * e + y * y);
+            const double e = distance - depth, inside = kernel_footprint(e * e + y * y, kernel_);
             EXPECT_EQ(table.lookup(layer, distance + 5e-4, y), 0) << distance << " " << y;
-            EXPECT_NEAR(table.lookup(layer, distance - 5e-4, y), inside, 0.02 * kPeak) << distance << " " << y;
+            EXPECT_NEAR(table.lookup(layer, distance - 5e-4, y), inside, 0.02 * peak_) << distance << " " << y;
         }
     }
 }
 
 TEST_P(FootprintTableDepth, NothingIsSeenOfAKernelBeyondItsFace) {
     const FootprintTable& table = kept_footprint_table(GetParam());
-    for (const double distance : {GetParam() - kKernelRadius, -2.5})
+    for (const double distance : {GetParam() - radius_, -2.5})
         for (const double cosine : {0.0, 0.4, 1.0})
             for (const double x : {-1.5, -0.2, 0.0, 0.7})
                 EXPECT_NEAR(table.lookup(select_footprint_layer(distance, cosine, GetParam()), x, 0.1), 0, 1e-6);
@@ -107,12 +111,12 @@ TEST_P(FootprintTableDepth, NothingIsSeenOfAKernelBeyondItsFace) {
 TEST_P(FootprintTableDepth, CodesSayWhereTheFaceLies) {
     const double depth = GetParam();
     for (const double cosine : {0.0, 0.013, 0.5, 0.77, 0.999, 1.0}) {
-        for (double distance = depth - kKernelRadius; distance <= depth + kKernelRadius; distance += 0.01) {
+        for (double distance = depth - radius_; distance <= depth + radius_; distance += 0.01) {
             const FootprintLayer layer = select_footprint_layer(distance, cosine, depth);
             const double e = distance - depth;
             EXPECT_NEAR(layer.cosine, cosine, 1e-4);
             EXPECT_NEAR(layer.middle, distance * std::sqrt(1 - layer.cosine * layer.cosine), 1e-4);
-            EXPECT_NEAR(layer.rim2, kKernelRadius * kKernelRadius - e * e, 4e-4);
+            EXPECT_NEAR(layer.rim2, radius_ * radius_ - e * e, 4e-4);
             EXPECT_LT(layer.code & 1023U, shader::TABLE_LAYERS - shader::TABLE_DIRECTIONS);
         }
     }
