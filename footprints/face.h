@@ -64,7 +64,7 @@ struct FaceCut {
 };
 
 /// How deep under a face kernels of matter that hides what is behind it are sampled where there is room: most of the
-/// sum of kernels is enough there (.8 of a voxel behind a lattice plane .82 at least, .966 in the mean). Where one sees
+/// sum of kernels is enough there (.8 of a voxel behind a lattice plane .86 at least, .98 in the mean). Where one sees
 /// through matter they are sampled where they are, since voxels beside it carry it, too: the sum is 1 up to the face.
 /// Faces further away than R + that cut nothing.
 inline constexpr double kFaceDepth = 0.8;

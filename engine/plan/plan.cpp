@@ -11,7 +11,6 @@
 #include "engine/volume/filters.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/face.h"
-#include "footprints/kernel.h"
 #include "footprints/paper_warp.h"
 
 namespace edgesplat {
@@ -73,8 +72,8 @@ std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume&
 }
 
 /// Voxels behind a surface of this extinction per voxel where 1/256 of the light is left, beyond the kernel's radius.
-int bury_distance(double extinction_per_voxel) {
-    return static_cast<int>(std::ceil(kKernelRadius + std::log(256.0) / extinction_per_voxel));
+int bury_distance(double extinction_per_voxel, double radius) {
+    return static_cast<int>(std::ceil(radius + std::log(256.0) / extinction_per_voxel));
 }
 
 glm::vec3 to_float(const glm::dvec3& v) {
@@ -208,13 +207,14 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
         params.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
     plan.transfer = transfer_rows(scene, volume);
+    const double radius = uncut_kernel(settings, scene, volume.geometry).radius;
     int farthest = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto [least, most] = extinctions_of(scene, m);
         if (most > 0) params.visible_mask |= 1U << m;
         if (!is_opaque(least, volume.geometry)) continue;
         params.opaque_mask |= 1U << m;
-        farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry)));
+        farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry), radius));
     }
     plan.buried =
         settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= shader::MAX_BURY_DISTANCE;
@@ -285,9 +285,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                     .payload = payload,
                     .sliced = sliced,
                     .nodes = static_cast<std::uint32_t>(
-                        sliced && settings.sheet_spacing <= kThinSlice                               ? kSliceNodes
-                        : settings.warp == WarpFamily::Face && hides_what_is_behind(scene, geometry) ? kFewNodes
-                                                                                                     : kManyNodes)};
+                        sliced && settings.sheet_spacing <= kThinSlice                          ? kSliceNodes
+                        : settings.warp == WarpFamily::Face && table_depth(scene, geometry) > 0 ? kFewNodes
+                                                                                                : kManyNodes)};
     plan.variant.creases = splats.creases && draws_faces(settings);
     plan.variant.tiles = settings.sheet_format == SheetFormat::Tiles;
     plan.wide_marks = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y) > shader::MARK_PIXELS;
@@ -302,8 +302,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     auto& p = plan.params;
     plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
     p.anchor = to_float(anchor);
-    plan.variant.narrow = draws_narrow(settings, scene, geometry);
-    p.support = static_cast<float>((plan.variant.narrow ? kNarrowKernel : kKernel).radius);
+    plan.variant.narrow = draws_opaque_faces(settings, scene, geometry);
+    p.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
     const PaperShape paper;
     p.footprint = {.paper_inset = static_cast<float>(paper.inset),
                    .paper_rise = static_cast<float>(paper.rise),

@@ -7,7 +7,6 @@
 #include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
-#include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -45,12 +44,13 @@ std::vector<char> buried_voxels(const Field& field, const std::vector<char>& opa
 std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geometry, const Settings& settings) {
     if (!settings.cull_buried) return std::nullopt;
     const double step = shortest_step(geometry);
+    const double radius = uncut_kernel(settings, scene, geometry).radius;
     BuryRule rule;
     double distance = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const double depth = extinctions_of(scene, m).least * step;
         rule.opaque.push_back(depth >= 0.75);
-        if (rule.opaque.back()) distance = std::max(distance, std::ceil(kKernelRadius + std::log(256.0) / depth));
+        if (rule.opaque.back()) distance = std::max(distance, std::ceil(radius + std::log(256.0) / depth));
     }
     if (distance == 0 || distance > 10) return std::nullopt;
     rule.distance = static_cast<int>(distance);

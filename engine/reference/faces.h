@@ -29,7 +29,7 @@ double norm_of(const glm::dmat3& bending);
 glm::dmat3 quantise_bending(const glm::dmat3& bending);
 
 /// How the edge's face cuts its kernel; the edge has one.
-FaceCut cut_of(const VoxelEdge& edge, const Kernel& kernel = kKernel);
+FaceCut cut_of(const VoxelEdge& edge, const Kernel& kernel);
 
 /// Whether the edge's face is as those of the table: one, and bent so little that it is taken for plane.
 bool is_in_table(const VoxelEdge& edge, const Settings& settings);

@@ -61,22 +61,26 @@ bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
     return materials_seen_through(scene, geometry) == 0;
 }
 
-bool draws_narrow(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
-    return draws_faces(settings) && hides_what_is_behind(scene, geometry);
-}
-
-double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
-    return hides_what_is_behind(scene, geometry) ? kFaceDepth : 0;
-}
-
 namespace {
 
-/// Uncut kernels that hide what is behind, each cut at its face.
-bool draws_opaque_faces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
-    return draws_faces(settings) && scene.effects.clip.empty() && hides_what_is_behind(scene, geometry);
+/// Whole kernels that hide what is behind: no clip plane shows what they are made of.
+bool is_whole_and_opaque(const Scene& scene, const VolumeGeometry& geometry) {
+    return scene.effects.clip.empty() && hides_what_is_behind(scene, geometry);
 }
 
 }  // namespace
+
+bool draws_opaque_faces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_faces(settings) && is_whole_and_opaque(scene, geometry);
+}
+
+const Kernel& uncut_kernel(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    return draws_opaque_faces(settings, scene, geometry) ? kNarrowKernel : kKernel;
+}
+
+double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
+    return is_whole_and_opaque(scene, geometry) ? kFaceDepth : 0;
+}
 
 bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
     return draws_opaque_faces(settings, scene, geometry) && settings.sheets != SheetCut::Sliced;

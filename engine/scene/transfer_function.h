@@ -9,6 +9,7 @@
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
 #include "engine/volume/volume.h"
+#include "footprints/kernel.h"
 
 namespace edgesplat {
 
@@ -32,10 +33,14 @@ std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& g
 /// Those that voxels beside them carry, too: where faces cut kernels.
 std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// Whether kernels are the narrow ones: where all matter hides what is behind it and faces cut them.
-bool draws_narrow(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+/// Whether faces, and they alone, cut kernels of which all hide what is behind them: kernels are the narrow ones then.
+bool draws_opaque_faces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth` or 0.
+/// The kernel of voxels that nothing cuts.
+const Kernel& uncut_kernel(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+
+/// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth`, and then kernels are
+/// narrow, or 0.
 double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 
 /// Whether of two pieces of a ray in one kernel the longer is enough: in whole kernels, uncut, that hide what is

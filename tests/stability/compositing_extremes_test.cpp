@@ -59,7 +59,8 @@ TEST(CompositingExtremes, FarTooMuchExtinction) {
         shot.settings.sheet_format = format;
         const RenderResult result = sound(shot, "1e12 per mm");
         EXPECT_GE(middle_of(result.color, 3).least, 1 - 1e-6) << name_of(format);
-        EXPECT_NEAR(middle_of(*result.tau, 0).mean / 40e12, 1, 1e-3) << name_of(format);
+        // The sum of kernels is nobody's to see here: 1 to 1.25 % (kNarrowKernel).
+        EXPECT_NEAR(middle_of(*result.tau, 0).mean / 40e12, 1, 0.0125) << name_of(format);
     }
 }
 

@@ -23,7 +23,7 @@ double integrate(const Function& f, double low, double high) {
 
 TEST(Kernel, SumsToOneOverTheLattice) {
     EXPECT_LE(kernel_ripple(48), 1e-4);
-    EXPECT_LE(kernel_ripple(48, kNarrowKernel), 0.014);
+    EXPECT_LE(kernel_ripple(48, kNarrowKernel), 0.0125);
 }
 
 TEST(Kernel, FootprintsSumToOneInEveryView) {

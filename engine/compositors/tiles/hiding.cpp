@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "footprints/kernel.h"
-
 namespace edgesplat {
 namespace {
 
@@ -64,7 +62,7 @@ double tiles_of_splat(const FramePlan& plan, double depth) {
     const glm::dmat3 to_world(p.index_to_world);
     const double voxel = std::max({glm::length(to_world[0]), glm::length(to_world[1]), glm::length(to_world[2])});
     const double pixels =
-        2 * kKernelRadius * voxel / std::max(depth, 1e-6) * p.size.y / (2 * static_cast<double>(p.tan_half_y));
+        static_cast<double>(p.support) * voxel / std::max(depth, 1e-6) * p.size.y / static_cast<double>(p.tan_half_y);
     const double across = 1 + pixels / shader::TILE;
     return across * across;
 }
