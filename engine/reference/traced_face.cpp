@@ -66,6 +66,7 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
                     const VoxelEdge::Interval& interval) {
     const Along along{field, eye, u};
     const VolumePiece whole = piece_in_volume(field.dims, eye, u);
+    const bool at_border = whole.low > 0 && first <= whole.low;
     first = std::max(first, whole.low);
     TracedRay ray;
     if (!(first < std::min(last, whole.high))) return ray;
@@ -75,7 +76,9 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
     const auto take = [&](const Sample& at) {
         const bool matter = interval.holds(at.value), was = begun && interval.holds(before.value);
         ray.last = at.z;
-        if (!begun && matter) ray.pieces.push_back({-kInfinity, kInfinity, dvec3(0), false});
+        // Matter that the ray meets where it enters the volume begins there, with the border's normal.
+        if (!begun && matter && at_border) ray.pieces.push_back({whole.low, kInfinity, whole.normal, false});
+        if (!begun && matter && !at_border) ray.pieces.push_back({-kInfinity, kInfinity, dvec3(0), false});
         if (begun && matter != was) {
             const double outer = matter ? before.value : at.value;
             const bool upper = !(outer < interval.low);

@@ -10,8 +10,8 @@ namespace edgesplat::reference {
 /// Whether the samples around a voxel have two values alone: how the field goes between them is not known then.
 bool has_two_values(const Field& field, const glm::ivec3& i);
 
-/// A part of a ray that lies in matter, voxels from the eye. It begins at -infinity where the ray began in it, and ends
-/// at infinity where no end was found.
+/// A part of a ray that lies in matter, voxels from the eye. It begins at -infinity where what is looked at began in
+/// it, at the volume's border where that does, and ends at infinity where no end was found.
 struct TracedPiece {
     double begin = 0, end = 0;
     glm::dvec3 n{0};     ///< out of the matter where it begins, unit

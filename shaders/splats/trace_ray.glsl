@@ -46,6 +46,10 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     VolumeEnds ends = volume_ends(from, divisible(u), dims);
     Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
     float until = along.last;
+    // Matter that the ray meets there begins there, with the border's normal.
+    bool at_border = whole.first > 0.0 && along.first <= whole.first;
+    bool x = ends.near.x >= whole.first, y = !x && ends.near.y >= whole.first;
+    uint border = pack_end(-sign(u) * vec3(x, y, !x && !y), false);
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
     TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
@@ -94,7 +98,8 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         searching = crosses ? TRACE_ROOT_STEPS : searching;
         bool starts = takes && !begun && inside;
         pieces += starts || (crosses && inside) ? 1u : 0u;
-        t.one.x = starts ? -TRACE_NOWHERE : t.one.x;
+        t.one.x = starts ? (at_border ? whole.first : -TRACE_NOWHERE) : t.one.x;
+        t.first_end = starts && at_border ? border : t.first_end;
         matter = takes ? inside : matter;
         probe = turns ? before + turn.at * step : probe;
         turned = takes ? probes : turned;

@@ -298,7 +298,8 @@ INSTANTIATE_TEST_SUITE_P(All, DrawFaces,
                          testing::Values(Drawn{"torus", 0}, Drawn{"orbital", 1}, Drawn{"wall", 2},
                                          Drawn{"torus_sliced", 0, SheetCut::Sliced},
                                          Drawn{"orbital_clipped", 1, SheetCut::Whole, true}, Drawn{"traced_opening", 3},
-                                         Drawn{"traced_gyroid", 4}, Drawn{"traced_gyroid_sliced", 4, SheetCut::Sliced}),
+                                         Drawn{"traced_gyroid", 4}, Drawn{"traced_gyroid_sliced", 4, SheetCut::Sliced},
+                                         Drawn{"traced_cut", 5}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

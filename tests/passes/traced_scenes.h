@@ -5,9 +5,9 @@
 
 namespace edgesplat::test {
 
-/// A plate of three voxels with a round opening of radius 1, and a gyroid; opaque.
+/// A plate of three voxels with a round opening of radius 1, a gyroid, and a thin wall that the border cuts; opaque.
 inline std::vector<PassScene> traced_scenes() {
-    std::vector<PassScene> scenes(2);
+    std::vector<PassScene> scenes(3);
     auto& plate = scenes[0];
     plate.name = "opening";
     AnalyticScene slab = slab_scene({24, 24, 20}, {0.1, 0.2, 1}, {11.6, 11.3, 9.7}, 3);
@@ -27,6 +27,13 @@ inline std::vector<PassScene> traced_scenes() {
     gyroid.scene.iso_values = {static_cast<float>(waves.iso_values[0])};
     gyroid.scene.materials = {{{0, 0, 0}, 0}, {{0.8, 0.9, 1}, 4}};
     look_at(gyroid, {34, -14, 22}, {12, 12, 12}, 42);
+
+    auto& cut = scenes[2];
+    cut.name = "cut";
+    cut.volume = sample(slab_scene({24, 22, 24}, {1, 0.2, 0.1}, {11.6, 10.5, 11.5}, 1.5));
+    cut.scene.iso_values = {0.5};
+    cut.scene.materials = plate.scene.materials;
+    look_at(cut, {16, -9, 14}, {13, 4, 11.5}, 50);
     return scenes;
 }
 

@@ -120,6 +120,19 @@ TEST(Faces, ABallThatTheBorderCutsHasNoFlange) {
     EXPECT_GE(faces - std::max(trilinear, cubic), 3);
 }
 
+/// A thin wall's cut at the border: rays enter the volume within it, and leave it through its side.
+TEST(Faces, AWallThatTheBorderCutsHasNoComb) {
+    const AnalyticScene scene = builtin_scene("builtin:plates");
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(scene));
+    shot.scene.iso_values = scene.iso_values;
+    shot.scene.materials = {{}, {{1, 0.85, 0.75}, 8}};
+    shot.camera = look(*shot.volume, {46.07, -4.6, 26.96}, {46.07, 10, 26.96}, 35);
+    shot.width = shot.height = 64;
+    const auto [faces, trilinear, cubic] = nearness(exact_shot(scene, shot));
+    EXPECT_GE(faces - std::max(trilinear, cubic), 2);
+}
+
 TEST(Faces, DepthAndNormalAreThoseOfTheSurface) {
     const Exact scene = exact_scene("small-ball");
     Shot shot = scene.shot;
