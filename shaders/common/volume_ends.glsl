@@ -14,6 +14,12 @@ VolumeEnds volume_ends(vec3 from, vec3 way, ivec3 size) {
     return VolumeEnds(mix(min(a, b), vec3(-1e9), endless), mix(max(a, b), vec3(1e9), endless));
 }
 
+// Out of the volume where the ray enters it, `low` along `way`: along one axis.
+vec3 out_of_entry(VolumeEnds ends, float low, vec3 way) {
+    bool x = ends.near.x >= low, y = !x && ends.near.y >= low;
+    return -sign(way) * vec3(x, y, !x && !y);
+}
+
 // Parts of a direction, such that one can divide by them.
 vec3 divisible(vec3 u) { return mix(u, vec3(1e-8), lessThan(abs(u), vec3(1e-8))); }
 #endif

@@ -82,8 +82,7 @@ VolumePiece piece_in_volume(vec3 u) {
     VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, way, params.frame.dims);
     vec3 near = ends.near, far = ends.far;
     float low = max(near.x, max(near.y, near.z)), high = min(far.x, min(far.y, far.z));
-    bool x = near.x >= low, y = !x && near.y >= low;
-    vec3 out_of = -sign(way) * vec3(x, y, !x && !y);
+    vec3 out_of = out_of_entry(ends, low, way);
     VolumePiece piece = VolumePiece(low, high, normalize(params.frame.normal_to_world * out_of), vec3(0.0));
     if (FACE_PIECES == 2u) {
         bool far_x = far.x <= high, far_y = !far_x && far.y <= high;

@@ -48,8 +48,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     float until = along.last;
     // Matter that the ray meets there begins there, with the border's normal.
     bool at_border = whole.first > 0.0 && along.first <= whole.first;
-    bool x = ends.near.x >= whole.first, y = !x && ends.near.y >= whole.first;
-    uint border = pack_end(-sign(u) * vec3(x, y, !x && !y), false);
+    uint border = pack_end(out_of_entry(ends, whole.first, u), false);
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
     TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
