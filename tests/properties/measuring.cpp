@@ -6,6 +6,8 @@
 #include <optional>
 #include <random>
 
+#include "engine/gpu/device_profile.h"
+
 namespace edgesplat::test {
 namespace {
 
@@ -28,6 +30,11 @@ std::optional<double> last_below(std::span<const double> profile, double level, 
 }
 
 }  // namespace
+
+// Here, and not in the header, which brings Vulkan's headers to every test that way.
+bool refines_pixels() {
+    return gpu::profile_named(test_renderer().device().profile).refines;
+}
 
 std::vector<Pose> poses(int count) {
     std::mt19937 random(7);

@@ -5,7 +5,6 @@
 #include <memory>
 #include <string>
 
-#include "engine/gpu/device_profile.h"
 #include "engine/renderer.h"
 
 namespace edgesplat::test {
@@ -34,9 +33,7 @@ inline Renderer& test_renderer() {
 }
 
 /// Whether pixels may follow from those around them (PixelChoice::Refined).
-inline bool refines_pixels() {
-    return gpu::profile_named(test_renderer().device().profile).refines;
-}
+bool refines_pixels();
 
 using VolumePointer = std::shared_ptr<const Volume>;
 
