@@ -39,6 +39,18 @@ double reach2_of(double distance, double depth, double norm, double radius) {
     return lateral * lateral + along * along;
 }
 
+/// Where a ray enters and leaves what lies inside of planes, and by which (FaceEnd::plane).
+struct PlaneEnds {
+    double low = -kInfinity, high = kInfinity;
+    int low_plane = 0, high_plane = 0;
+    void cut(const FaceRay::Crease& ray, double distance, int plane) {
+        const double way = std::abs(ray.u) < kStraight ? std::copysign(kStraight, ray.u) : ray.u;
+        const double z = (distance - ray.p) / way;
+        if (way < 0 && z > low) low = z, low_plane = plane;
+        if (way > 0 && z < high) high = z, high_plane = plane;
+    }
+};
+
 }  // namespace
 
 FaceRoots face_roots(const Quadratic& phi, double level) {
@@ -68,9 +80,10 @@ FaceCut face_cut(double distance, double bend, double norm, double thickness, do
     return cut;
 }
 
-void add_crease(FaceCut& cut, const FaceCut::Crease& crease) {
+void add_crease(FaceCut& cut, const FaceCut::Crease& crease, double corner) {
     if (!(crease.distance < cut.kernel->radius + cut.depth)) return;
     cut.crease = crease;
+    cut.corner = corner;
     // As far as what is moved by one and the other may come from.
     const double further = std::max((2 * crease.distance - cut.depth) * cut.depth, 0.0);
     cut.reach = std::min(std::sqrt(cut.reach * cut.reach + further), kFaceFarthest);
@@ -98,9 +111,9 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     const FaceRoots outer = opens ? face : (wall ? behind : everywhere);
     const FaceRoots inner = opens ? behind : face;
     if (!outer.real) return;
-    const double distance = cut.crease.distance, p = ray.crease.p;
-    const double way = std::abs(ray.crease.u) < kStraight ? std::copysign(kStraight, ray.crease.u) : ray.crease.u;
-    const double begin = way < 0 ? (distance - p) / way : -kInfinity, end = way > 0 ? (distance - p) / way : kInfinity;
+    PlaneEnds ends;
+    ends.cut(ray.crease, cut.crease.distance, 1);
+    ends.cut(ray.corner, cut.corner, 2);
     const End front, back{cut.thickness, -1};
     const End outer_end = opens || !wall ? front : back, inner_end = opens ? back : front;
     const auto add = [&](double low, double high, const End& entry, const End& leave) {
@@ -108,11 +121,11 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
         const bool meets = low > -kNowhere || high < kNowhere;
         const double turn = -0.5 * ray.phi.b / std::min(ray.phi.a, -kStraight);
         const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
-        const double from = std::max(low, begin);
+        const double from = std::max(low, ends.low);
         pieces_.at(count_++) = {from,
-                                std::max(std::min(high, end), from),
-                                begin > low,
-                                end < high,
+                                std::max(std::min(high, ends.high), from),
+                                ends.low > low ? ends.low_plane : 0,
+                                ends.high < high ? ends.high_plane : 0,
                                 plane_at(ray, cut.depth, held(meets ? low : turn), entry),
                                 plane_at(ray, cut.depth, held(meets ? high : turn), leave)};
     };
@@ -128,9 +141,9 @@ double FacePath::overlap(const FacePiece& piece) const {
     return std::min(piece.high, half_chord_) - std::max(piece.low, -half_chord_);
 }
 
-FaceEnd FacePath::end_at(double z, bool crease) const {
+FaceEnd FacePath::end_at(double z, int plane) const {
     const double held = std::clamp(z, -half_chord_, half_chord_);
-    return {held, !crease && phi_.at(held) < -kBesideOther * thickness_, crease};
+    return {held, plane == 0 && phi_.at(held) < -kBesideOther * thickness_, plane};
 }
 
 double FacePath::sampled_at(const FacePiece& piece, double z) const {
@@ -171,9 +184,9 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
         // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
         const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();
         if (first ? last || overlap(piece) > 0 : !(overlap(pieces().front()) > 0))
-            out.entry = end_at(piece.low, piece.from_crease);
+            out.entry = end_at(piece.low, piece.from_plane);
         if (first || overlap(piece) > 0 || !(overlap(pieces().front()) > 0))
-            out.leave = end_at(piece.high, piece.to_crease);
+            out.leave = end_at(piece.high, piece.to_plane);
     }
     return out;
 }

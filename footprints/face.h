@@ -8,7 +8,7 @@
 // the face where the ray meets it, on the way in or on the way out, whichever is nearer: kernels of one surface then
 // share one map on one ray, and nothing of it is more than a plane. Lengths are voxels, index space, relative to the
 // voxel's centre. At a crease another plane ends the matter: it cuts a kernel likewise, and x is moved along its
-// normal, too, after it was moved along the face's.
+// normal, too, after it was moved along the face's. At a corner a third one ends the matter and moves nothing.
 #pragma once
 
 #include <array>
@@ -47,6 +47,7 @@ struct FaceRay {
         double p = 0, u = 0;  ///< n . p, n . u
     };
     Crease crease;  ///< of the plane in the cut
+    Crease corner;  ///< of a corner's third plane
 };
 
 /// How a face cuts a kernel, whatever the ray.
@@ -61,6 +62,7 @@ struct FaceCut {
         double facing = 0;                                          ///< cosine of its normal with the face's
     };
     Crease crease;
+    double corner = std::numeric_limits<double>::infinity();  ///< distance of a corner's third plane; none at infinity
 };
 
 /// How deep under a face kernels of matter that hides what is behind it are sampled where there is room: most of the
@@ -85,7 +87,8 @@ FaceCut face_cut(double distance, double bend, double norm, double thickness, do
 
 /// Adds a plane that may cut the kernel, and by as much as it is moved along it lets the kernel reach further: no
 /// further than the deepest face does, which costs edges that one sees through a little of their outermost matter.
-void add_crease(FaceCut& cut, const FaceCut::Crease& crease);
+/// `corner`: the distance of a third one beside it.
+void add_crease(FaceCut& cut, const FaceCut::Crease& crease, double corner = std::numeric_limits<double>::infinity());
 
 /// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n . x
 /// along the ray, and from which value on x is moved along n.
@@ -102,7 +105,7 @@ struct FacePlane {
 /// by the face behind; or nowhere (at -1e9).
 struct FacePiece {
     double low = 0, high = 0;
-    bool from_crease = false, to_crease = false;
+    int from_plane = 0, to_plane = 0;  ///< as FaceEnd::plane
     FacePlane entry, leave;
     /// The plane that the point z of the ray is sampled by: that of the nearer end.
     const FacePlane& plane(double z) const { return z > 0.5 * (low + high) ? leave : entry; }
@@ -112,7 +115,7 @@ struct FacePiece {
 struct FaceEnd {
     double z = 0;
     bool behind = false;  ///< the wall's other face, or within the reach, beside it
-    bool crease = false;  ///< the crease's plane
+    int plane = 0;        ///< by the face (0), the crease's plane (1) or the corner's (2)
 };
 
 /// The integral of a cut kernel along a ray, per voxel, where the ray enters its matter first, and leaves it last.
@@ -143,7 +146,7 @@ class FacePath {
   private:
     double overlap(const FacePiece& piece) const;
     /// The point z of the ray, held within the reach, as an end of its way.
-    FaceEnd end_at(double z, bool crease) const;
+    FaceEnd end_at(double z, int plane) const;
     /// |x|^2 of where the kernel is sampled for the point z of the ray.
     double sampled_at(const FacePiece& piece, double z) const;
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "engine/reference/creases.h"
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "footprints/kernel.h"
@@ -167,6 +168,9 @@ VoxelEdge quantise(const VoxelEdge& edge) {
     stored.D = 4 * snorm16(edge.D / 4);
     stored.bending = quantise_bending(edge.bending);
     if (edge.crease.D < kInfinity) stored.crease = {through_octahedron(edge.crease.n), 4 * snorm16(edge.crease.D / 4)};
+    if (edge.corner.D < kInfinity)
+        stored.corner = square_to(stored.n, stored.crease.n, std::round(edge.corner.D / 4 * 8190) / 8190 * 4,
+                                  glm::dot(glm::cross(edge.n, edge.crease.n), edge.corner.n) < 0);
     stored.D2 = edge.D2 >= 4 ? kInfinity : std::round(std::max(edge.D2, 0.0) / 4 * 1022) / 1022 * 4;
     return stored;
 }

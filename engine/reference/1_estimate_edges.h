@@ -24,6 +24,7 @@ struct VoxelEdge {
         double D = std::numeric_limits<double>::infinity();
     };
     Crease crease;  ///< of a face
+    Crease corner;  ///< of a crease: a third plane, square to both
     /// Values that are matter, half open.
     struct Interval {
         double low = 0, high = 0;

@@ -105,7 +105,7 @@ struct SeenSplat {
         bool upper = edge.upper;
         if (cut) {
             outward = sight.outward(end.z, end.behind);
-            if (end.crease) outward = edge.crease.n;
+            if (end.plane > 0) outward = (end.plane == 1 ? edge.crease : edge.corner).n;
             // Both faces of a layer between two iso-values face the lower values.
             const glm::dvec3 a = glm::abs(edge.n);
             const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);

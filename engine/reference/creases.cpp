@@ -16,6 +16,8 @@ using Crease = VoxelEdge::Crease;
 
 constexpr auto kRadius = static_cast<double>(shader::CREASE_RADIUS);
 constexpr auto kTurned = static_cast<double>(shader::CREASE_TURNED);
+constexpr auto kRounded = static_cast<double>(shader::CREASE_ROUNDED);
+constexpr auto kSpread = static_cast<double>(shader::CREASE_SPREAD);
 constexpr auto kAlike = static_cast<double>(shader::CREASE_ALIKE);
 constexpr auto kBehind = static_cast<double>(shader::CREASE_BEHIND);
 
@@ -27,15 +29,53 @@ struct PlaneFit {
 
 class Fit {
   public:
-    Fit(std::span<const Surfel> surfels, const dvec3& middle, bool upper)
-        : surfels_(surfels), middle_(middle), upper_(upper) {}
+    Fit(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp)
+        : surfels_(surfels), nearest_(nearest), sharp_(sharp) {}
 
-    /// The normal that is least like both.
+    /// The normal that is least like that of the nearest.
+    dvec3 most_different() const {
+        return least_like(sharp_ ? kRounded : kTurned, [this](const dvec3& n) { return glm::dot(n, nearest_.n); });
+    }
+    /// Least like both. What only rounds the way between two planes is of neither.
     dvec3 most_different(const dvec3& a, const dvec3& b) const {
+        return least_like(kTurned, [&](const dvec3& n) {
+            const double seen = glm::dot(n, nearest_.n);
+            if (sharp_ && seen > kRounded && seen < kAlike) return 1.0;
+            return std::max(glm::dot(n, a), glm::dot(n, b));
+        });
+    }
+
+    PlaneFit plane(const dvec3& seed) const {
+        PlaneFit fit;
+        fit.plane.n = seed;
+        for (int step = 0; step < shader::CREASE_STEPS; ++step) {
+            dvec3 normals(0), places(0);
+            glm::dmat3 spread(0);
+            double sum = 0;
+            for (const Surfel& s : surfels_) {
+                const double w = weight(s) * std::max(glm::dot(s.n, fit.plane.n) - kAlike, 0.0) / (1 - kAlike);
+                normals += w * s.n;
+                places += w * s.at;
+                spread += w * glm::outerProduct(s.at, s.at);
+                sum += w;
+            }
+            if (!(sum > 0.05)) return {};
+            fit.place = places / sum;
+            // Where the spline rounds, its normals are tilted beside creases, and places say more.
+            const glm::dmat3 about = spread / sum - glm::outerProduct(fit.place, fit.place) + glm::dmat3(kSpread);
+            fit.plane.n = glm::normalize(sharp_ ? glm::inverse(about) * normals : normals);
+        }
+        fit.plane.D = glm::dot(fit.plane.n, fit.place);
+        fit.found = true;
+        return fit;
+    }
+
+  private:
+    template <typename Like>
+    dvec3 least_like(double least, const Like& like_of) const {
         dvec3 best(0);
-        double least = kTurned;
         for (const Surfel& s : surfels_) {
-            const double like = std::max(glm::dot(s.n, a), glm::dot(s.n, b));
+            const double like = like_of(s.n);
             // Of what differs as much the first is taken, whichever way numbers are rounded.
             if (!(weight(s) > 0.02) || !(like < least - 1e-4)) continue;
             least = like;
@@ -44,37 +84,15 @@ class Fit {
         return best;
     }
 
-    PlaneFit plane(const dvec3& seed) const {
-        PlaneFit fit;
-        fit.plane.n = seed;
-        for (int step = 0; step < shader::CREASE_STEPS; ++step) {
-            dvec3 normals(0), places(0);
-            double sum = 0;
-            for (const Surfel& s : surfels_) {
-                const double w = weight(s) * std::max(glm::dot(s.n, fit.plane.n) - kAlike, 0.0) / (1 - kAlike);
-                normals += w * s.n;
-                places += w * s.at;
-                sum += w;
-            }
-            if (!(sum > 0.05)) return {};
-            fit.plane.n = glm::normalize(normals);
-            fit.place = places / sum;
-        }
-        fit.plane.D = glm::dot(fit.plane.n, fit.place);
-        fit.found = true;
-        return fit;
-    }
-
-  private:
     double weight(const Surfel& s) const {
-        const dvec3 r = s.at - middle_;
+        const dvec3 r = s.at - nearest_.at;
         const double w = std::max(1 - glm::dot(r, r) / (kRadius * kRadius), 0.0);
-        return s.upper == upper_ ? w * w : 0;
+        return s.upper == nearest_.upper ? w * w : 0;
     }
 
     std::span<const Surfel> surfels_;
-    dvec3 middle_;
-    bool upper_;
+    Surfel nearest_;
+    bool sharp_;
 };
 
 }  // namespace
@@ -87,9 +105,9 @@ double CreasePlanes::off(const dvec3& r) const {
     return most;
 }
 
-CreasePlanes crease_planes(std::span<const Surfel> surfels, const dvec3& middle, const dvec3& n, bool upper) {
-    const Fit fit(surfels, middle, upper);
-    const dvec3 a = fit.most_different(n, n);
+CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp) {
+    const Fit fit(surfels, nearest, sharp);
+    const dvec3 a = fit.most_different();
     if (a == dvec3(0)) return {};
     const dvec3 b = fit.most_different(a, a);
     if (b == dvec3(0)) return {};
@@ -115,6 +133,19 @@ CreasePlanes crease_planes(std::span<const Surfel> surfels, const dvec3& middle,
         for (std::size_t l = k; l > 0 && found.planes.at(l).D < found.planes.at(l - 1).D - 1e-4; --l)
             std::swap(found.planes.at(l), found.planes.at(l - 1));
     return found;
+}
+
+Crease square_to(const dvec3& n, const dvec3& crease, double distance, bool turned) {
+    return {(turned ? -1.0 : 1.0) * glm::normalize(glm::cross(n, crease)), distance};
+}
+
+Crease corner_of(const CreasePlanes& planes) {
+    if (planes.count < 3) return {};
+    const auto& [first, second, third] = planes.planes;
+    const double like = glm::dot(glm::normalize(glm::cross(first.n, second.n)), third.n);
+    const bool kept = std::abs(like) > static_cast<double>(shader::CORNER_SQUARE) && third.D > 0 &&
+                      third.D < static_cast<double>(shader::CREASE_REACH);
+    return kept ? square_to(first.n, second.n, third.D, like < 0) : Crease{};
 }
 
 }  // namespace edgesplat::reference

@@ -25,8 +25,14 @@ struct CreasePlanes {
     double off(const glm::dvec3& r) const;
 };
 
-/// Of the surfels around `middle` that lie on that end of the material's interval; n: their normal there. None unless
-/// there are two directions that differ, and each plane lies inside of the others.
-CreasePlanes crease_planes(std::span<const Surfel> surfels, const glm::dvec3& middle, const glm::dvec3& n, bool upper);
+/// Of the surfels around `nearest` that lie on the same end of the material's interval. None unless there are two
+/// directions that differ, and each plane lies inside of the others. `sharp`: samples around have two values alone, and
+/// what the spline rounds may be sharp.
+CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp);
+
+/// The third plane of a corner, where it is square to the first two and passes in front of the voxel; else none.
+VoxelEdge::Crease corner_of(const CreasePlanes& planes);
+/// The plane at that distance that is square to both, `turned` against their cross product.
+VoxelEdge::Crease square_to(const glm::dvec3& n, const glm::dvec3& crease, double distance, bool turned);
 
 }  // namespace edgesplat::reference

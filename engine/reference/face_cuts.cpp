@@ -45,7 +45,7 @@ FaceCut cut_of(const VoxelEdge& edge, const Kernel& kernel) {
     const double bend = glm::dot(edge.n, edge.bending * edge.n);
     FaceCut cut = face_cut(edge.D, bend, norm_of(edge.bending), thickness, edge.deepest, kernel);
     const dvec3 own = edge.n - edge.bending * (edge.D * edge.n);
-    add_crease(cut, {edge.crease.D, glm::dot(own, edge.crease.n)});
+    add_crease(cut, {edge.crease.D, glm::dot(own, edge.crease.n)}, edge.corner.D);
     return cut;
 }
 
@@ -74,6 +74,7 @@ FaceSight face_sight(const VoxelEdge& edge, const dvec3& p, const dvec3& u) {
     sight.ray.across = glm::dot(p, slope);
     sight.ray.turn = glm::dot(p, hu);
     sight.ray.crease = {glm::dot(edge.crease.n, p), glm::dot(edge.crease.n, u)};
+    sight.ray.corner = {glm::dot(edge.corner.n, p), glm::dot(edge.corner.n, u)};
     return sight;
 }
 

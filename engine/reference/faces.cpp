@@ -120,20 +120,26 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
 /// than half of it, or a fifth where two planes meet at a blunt angle and might be a narrow ridge.
 std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m,
                                  std::span<const Surfel> surfels, const Surfel& nearest, double error) {
-    if (!(error > kCreaseFrom)) return std::nullopt;
-    const CreasePlanes planes = crease_planes(surfels, nearest.at, nearest.n, nearest.upper);
+    const bool sharp = has_two_values(field, i);
+    if (!(error > kCreaseFrom) && !sharp) return std::nullopt;
+    const CreasePlanes planes = crease_planes(surfels, nearest, sharp);
     if (planes.count < 2) return std::nullopt;
     double off = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return planes.off(r); });
-    for (const Surfel& s : surfels)
-        off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * std::pow(planes.off(s.at), 2);
+    // Where it is sharp, what lies inside was rounded.
+    for (const Surfel& s : surfels) {
+        const double outside = sharp ? std::max(planes.off(s.at), 0.0) : planes.off(s.at);
+        off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * outside * outside;
+    }
     const bool blunt = glm::dot(planes.planes[0].n, planes.planes[1].n) > static_cast<double>(shader::CREASE_BLUNT);
-    if (!(off < (blunt ? static_cast<double>(shader::CREASE_BLUNT_LEFT) : kOwnShare) * error)) return std::nullopt;
+    const bool better = off < (blunt ? static_cast<double>(shader::CREASE_BLUNT_LEFT) : kOwnShare) * error;
+    if (!better && !(sharp && !blunt && off < static_cast<double>(shader::CREASE_ROUNDED_LEFT))) return std::nullopt;
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;
     edge.n = planes.planes[0].n;
     edge.D = planes.planes[0].D;
     edge.crease = planes.planes[1];
+    edge.corner = corner_of(planes);
     return edge;
 }
 

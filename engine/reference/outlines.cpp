@@ -31,6 +31,9 @@ struct OutlinedSplat {
 
     double depth(double z) const { return (ahead + z) * depth_along; }
 
+    /// Whether the point z of the ray lies inside of a corner's third plane.
+    bool inside_corner(double z) const { return sight.ray.corner.p + z * sight.ray.corner.u < edge.corner.D; }
+
     /// How a function with that gradient changes at z from a pixel to the next, to the right and down.
     dvec2 rate_across(const dvec3& gradient, double z) const {
         const double pixel = 2 * view.frame.tan_half_y * depth(z) / view.height;
@@ -57,6 +60,7 @@ struct OutlinedSplat {
         if (!opens && !std::isfinite(thickness)) return {};
         const double side = opens ? 1 : -1, z = -0.5 * phi.b / not_zero(phi.a);
         if (!(depth(z) > 0) || !(sight.ray.crease.p + z * sight.ray.crease.u < edge.crease.D)) return {};
+        if (!inside_corner(z)) return {};
         return passing(side * (phi.at(z) + (opens ? 0 : thickness)),
                        side * rate_across(sight.slope + z * sight.turn, z), z);
     }
@@ -71,7 +75,7 @@ struct OutlinedSplat {
         const double at_face = (phi.a >= 0) == leaves ? roots.low : roots.high;
         const double at_crease = (edge.crease.D - sight.ray.crease.p) / u, z = 0.5 * (at_face + at_crease);
         const double along = phi.b + 2 * at_face * phi.a;
-        if (!(depth(z) > 0) || !(along * u < 0)) return {};
+        if (!(depth(z) > 0) || !(along * u < 0) || !inside_corner(z)) return {};
         const dvec2 rate =
             rate_across(edge.crease.n, z) / u - rate_across(sight.slope + at_face * sight.turn, z) / along;
         return passing(side * (at_face - at_crease), side * rate, z);

@@ -29,7 +29,7 @@ struct FaceRay {
 struct FaceEnd {
     float z;
     float side;   // -1: by the wall's other face, or beside it, else 1
-    bool crease;  // by the crease's plane
+    int plane;    // by the face (0), the crease's plane (1) or the corner's (2)
 };
 
 struct FaceFootprint {
@@ -80,24 +80,38 @@ FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side)
 // Nothing is moved on the ray between two points that are both deep.
 bool is_deep(FacePlane plane, float z, float other) { return plane.p + max(z * plane.u, other * plane.u) <= plane.level; }
 
-// Where a ray enters and leaves what lies inside of a crease's plane.
+// Where a ray enters and leaves what lies inside of planes, and by which.
 struct CreaseEnds {
     float low;
     float high;
+    int low_plane;
+    int high_plane;
 };
 
-CreaseEnds crease_ends(FaceCrease crease) {
-    float u = abs(crease.u) < FACE_STRAIGHT ? (crease.u < 0.0 ? -FACE_STRAIGHT : FACE_STRAIGHT) : crease.u;
-    float z = (crease.distance - crease.p) / u;
+CreaseEnds plane_ends(float p, float u, float distance, int plane) {
+    float way = abs(u) < FACE_STRAIGHT ? (u < 0.0 ? -FACE_STRAIGHT : FACE_STRAIGHT) : u;
+    float z = (distance - p) / way;
     CreaseEnds ends;
-    ends.low = u < 0.0 ? z : -FACE_NOWHERE;
-    ends.high = u < 0.0 ? FACE_NOWHERE : z;
+    ends.low = way < 0.0 ? z : -FACE_NOWHERE;
+    ends.high = way < 0.0 ? FACE_NOWHERE : z;
+    ends.low_plane = plane;
+    ends.high_plane = plane;
+    return ends;
+}
+
+CreaseEnds crease_ends(FaceCrease crease) {
+    CreaseEnds ends = plane_ends(crease.p, crease.u, crease.distance, 1);
+    CreaseEnds corner = plane_ends(crease.corner_p, crease.corner_u, crease.corner_distance, 2);
+    ends.low_plane = corner.low > ends.low ? 2 : 1;
+    ends.high_plane = corner.high < ends.high ? 2 : 1;
+    ends.low = max(ends.low, corner.low);
+    ends.high = min(ends.high, corner.high);
     return ends;
 }
 
 // The point z of the ray as an end of its way. What lies deeper in a wall than BESIDE_OTHER of it shows the other face.
-FaceEnd face_end(FaceRay ray, FaceCut cut, float z, bool crease) {
-    return FaceEnd(z, !crease && quadratic_at(ray.phi, z) < -BESIDE_OTHER * cut.thickness ? -1.0 : 1.0, crease);
+FaceEnd face_end(FaceRay ray, FaceCut cut, float z, int plane) {
+    return FaceEnd(z, plane == 0 && quadratic_at(ray.phi, z) < -BESIDE_OTHER * cut.thickness ? -1.0 : 1.0, plane);
 }
 
 // The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
@@ -195,16 +209,16 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease 
     // Where a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last piece.
     bool last = FACE_PIECES == 2u && first && has_inner && after > 0.0;
     to = last ? outer_high : to;
-    bool from_crease = false;
-    bool to_crease = false;
+    int from_plane = 0;
+    int to_plane = 0;
     if (creased) {
-        from_crease = ends.low > from;
-        to_crease = ends.high < to;
+        from_plane = ends.low > from ? ends.low_plane : 0;
+        to_plane = ends.high < to ? ends.high_plane : 0;
         from = max(from, ends.low);
         to = max(min(to, ends.high), from);
     }
-    result.entry = face_end(ray, cut, clamp(from, -half_chord, half_chord), from_crease);
-    result.leave = face_end(ray, cut, clamp(to, -half_chord, half_chord), to_crease);
+    result.entry = face_end(ray, cut, clamp(from, -half_chord, half_chord), from_plane);
+    result.leave = face_end(ray, cut, clamp(to, -half_chord, half_chord), to_plane);
     return result;
 }
 #endif

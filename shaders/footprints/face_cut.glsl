@@ -54,6 +54,10 @@ struct FaceCrease {
     float u;         // n . u
     float distance;  // from the voxel's centre; beyond FACE_NO_WALL there is none
     float facing;    // cosine of its normal with the face's
+    // Of a third plane, at a corner, which ends the matter, too.
+    float corner_p;
+    float corner_u;
+    float corner_distance;
 };
 
 // By as much as it lets the kernel reach further.

@@ -15,6 +15,7 @@ struct FaceForm {
     Bending h;
     FaceCut cut;  // depth < 0: the kernel is plain
     vec4 crease;  // normal and distance of another plane that cuts it, CREASE_NONE without
+    float corner;  // distance of a third one, CORNER_NONE without (crease_record.glsl)
 };
 
 const uint MATERIAL_BITS = 0xffu, FACES_UPWARD = 0x100u, HAS_NORMAL = 0x200u, IS_MIXED = 0x400u;  // of SplatInputs::number_material.y

@@ -16,7 +16,7 @@ FaceFootprint tabulated_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, S
     float half_chord = sqrt(max(face_form.cut.reach2 - sight.ray.rho2, 0.0));
     Slice own = Slice(plain ? slice.low : inside.low, plain ? slice.high : inside.high);
     bool whole = (selected_footprint.layer.code & INTEGRATED) == 0u && own.low <= -half_chord && own.high >= half_chord;
-    FaceFootprint f = FaceFootprint(0.0, FaceEnd(0.0, 1.0, false), FaceEnd(0.0, 1.0, false));
+    FaceFootprint f = FaceFootprint(0.0, FaceEnd(0.0, 1.0, 0), FaceEnd(0.0, 1.0, 0));
     IF_ANY(!whole) f = cut_footprint(sight, p, u, plain, inside, slice);
     float looked_up = half_chord > 0.0 ? footprint_looked_up(selected_footprint.layer, along_axis, sight.ray.rho2) : 0.0;
     // Where the ray comes through the face, or within the kernel's reach.

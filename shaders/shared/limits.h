@@ -37,6 +37,11 @@ EDGESPLAT_CONSTANT float FIT_BADLY = 2.0f;  // the same: of what fits worse than
 // Creases: planes fitted to surfels whose normals differ.
 EDGESPLAT_CONSTANT float CREASE_RADIUS = 2.2f;  // voxels around the nearest surfel
 EDGESPLAT_CONSTANT float CREASE_TURNED = 0.6f;  // cosine: normals of two planes are less alike
+// Of two values alone the spline rounds what is sharp: planes are believed that leave nothing outside.
+EDGESPLAT_CONSTANT float CREASE_ROUNDED = 0.75f;     // cosine there, of what is seen between two planes
+EDGESPLAT_CONSTANT float CREASE_ROUNDED_LEFT = 0.02f;  // voxels^2, summed, that such planes leave at most
+EDGESPLAT_CONSTANT float CREASE_SPREAD = 0.01f;  // voxels^2: what places are spread over less says little of their plane
+EDGESPLAT_CONSTANT float CORNER_SQUARE = 0.98f;  // cosine: a third plane is kept where it is as square to both
 EDGESPLAT_CONSTANT float CREASE_ALIKE = 0.93f;  // cosine: those of one plane's surfels are more alike
 EDGESPLAT_CONSTANT float CREASE_BEHIND = 0.1f;  // voxels that one plane's surfels lie inside of another plane
 EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // in which a plane's normal settles

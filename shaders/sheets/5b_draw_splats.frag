@@ -36,7 +36,7 @@ layout(location = 8) flat in vec4 filtered;
 layout(location = 9) flat in vec4 face_slope;
 layout(location = 10) flat in vec4 face_diagonal;
 layout(location = 11) flat in vec4 face_mixed;
-layout(location = 12) flat in float face_reach2;
+layout(location = 12) flat in vec2 face_reach2_corner;
 layout(location = 13) flat in vec4 first_selected;
 layout(location = 14) flat in vec4 second_selected;
 layout(location = 15) flat in vec4 crease;
@@ -72,7 +72,7 @@ void main() {
     number_material = number_and_material;
     if (FACES)
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
-                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2, 0.0, 0.0), crease);
+                             FaceCut(face_diagonal.w, face_mixed.w, face_reach2_corner.x, 0.0, 0.0), crease, face_reach2_corner.y);
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
     // Not interpolated: corners of quads are drawn where the device's grid of parts of a pixel has them.
     vec2 slope = (gl_FragCoord.xy * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);

@@ -37,7 +37,7 @@ layout(location = 8) flat out vec4 filtered;       // share, weights of distance
 layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
 layout(location = 10) flat out vec4 face_diagonal; // depth last
 layout(location = 11) flat out vec4 face_mixed;    // thickness last
-layout(location = 12) flat out float face_reach2;
+layout(location = 12) flat out vec2 face_reach2_corner;
 layout(location = 13) flat out vec4 first_selected;   // with a table only, SelectedFootprint in two parts
 layout(location = 14) flat out vec4 second_selected;
 layout(location = 15) flat out vec4 crease;
@@ -82,7 +82,7 @@ void main() {
         face_slope = vec4(s.face.slope, s.face.value);
         face_diagonal = vec4(s.face.h.diagonal, s.face.cut.depth);
         face_mixed = vec4(s.face.h.mixed, s.face.cut.thickness);
-        face_reach2 = s.face.cut.reach2;
+        face_reach2_corner = vec2(s.face.cut.reach2, s.face.corner);
         if (CREASES == 1u) crease = s.face.crease;
     }
     if (FOOTPRINTS == TABLE) {

@@ -62,7 +62,7 @@ void main() {
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
             uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u),
                                pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
-            BendingsRef(params.scene.traits).at[i] = cut ? face.creased ? pack_crease(face.crease) : bent : uvec2(0u);
+            BendingsRef(params.scene.traits).at[i] = cut ? face.creased ? pack_crease(face.crease, face.corner) : bent : uvec2(0u);
             with_crease = cut && face.creased;
             traced = cut && face.traced;
         }

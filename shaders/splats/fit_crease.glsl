@@ -10,6 +10,16 @@ struct CreaseFit {
     vec4 third;  // CREASE_NONE: there are but two
 };
 
+// From where it is looked for: the surfel at `middle`, n, nearest to voxel p.
+struct CreaseSight {
+    ivec3 p;
+    uint material;
+    vec3 middle;
+    vec3 n;
+    uint state;
+    bool sharp;  // samples around have two values alone: the spline rounds what is sharp
+};
+
 float crease_weight(Surfel s, vec3 middle, uint state) {
     vec3 r = s.at - middle;
     float w = max(1.0 - dot(r, r) / (CREASE_RADIUS * CREASE_RADIUS), 0.0);
@@ -22,7 +32,7 @@ struct Different {
     float like;
 };
 
-Different none_different() { return Different(vec3(0.0), CREASE_TURNED); }
+Different none_different(bool sharp) { return Different(vec3(0.0), sharp ? CREASE_ROUNDED : CREASE_TURNED); }
 
 // Of what differs as much the first is taken, whichever way numbers are rounded.
 void see_different(inout Different most, Surfel s, vec3 middle, uint state, float like) {
@@ -31,12 +41,19 @@ void see_different(inout Different most, Surfel s, vec3 middle, uint state, floa
     most.n = better ? s.n : most.n;
 }
 
-vec3 most_different(ivec3 p, uint material, vec3 middle, uint state, vec3 a, vec3 b) {
-    ivec3 around = p + ivec3(round(middle));
-    Different most = none_different();
+// What only rounds the way between two planes, as seen from where the normal is n, is of neither.
+bool is_rounding(vec3 n, vec3 other) {
+    float like = dot(n, other);
+    return like > CREASE_ROUNDED && like < CREASE_ALIKE;
+}
+
+vec3 most_different(CreaseSight sight, vec3 a, vec3 b) {
+    ivec3 around = sight.p + ivec3(round(sight.middle));
+    Different most = none_different(false);
     for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
-        see_different(most, s, middle, state, max(dot(s.n, a), dot(s.n, b)));
+        Surfel s = surfel_at(sight.p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
+        bool rounding = sight.sharp && is_rounding(sight.n, s.n);
+        see_different(most, s, sight.middle, sight.state, rounding ? 1.0 : max(dot(s.n, a), dot(s.n, b)));
     }
     return most.n;
 }
@@ -46,21 +63,26 @@ struct PlaneFit {
     vec3 place;
 };
 
-PlaneFit fit_plane(ivec3 p, uint material, vec3 middle, uint state, vec3 seed) {
-    ivec3 around = p + ivec3(round(middle));
+PlaneFit fit_plane(CreaseSight sight, vec3 seed) {
+    ivec3 around = sight.p + ivec3(round(sight.middle));
     PlaneFit fit = PlaneFit(seed, vec3(0.0));
     for (int step = 0; step < CREASE_STEPS; ++step) {
         vec3 normals = vec3(0.0), places = vec3(0.0);
+        mat3 spread = mat3(0.0);
         float sum = 0.0;
         for (int i = 0; i < 125; ++i) {
-            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
-            float w = crease_weight(s, middle, state) * max(dot(s.n, fit.n) - CREASE_ALIKE, 0.0) / (1.0 - CREASE_ALIKE);
+            Surfel s = surfel_at(sight.p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
+            float w = crease_weight(s, sight.middle, sight.state) * max(dot(s.n, fit.n) - CREASE_ALIKE, 0.0) / (1.0 - CREASE_ALIKE);
             normals += w * s.n;
             places += w * s.at;
+            spread += w * outerProduct(s.at, s.at);
             sum += w;
         }
-        fit.n = sum > 0.05 ? normalize(normals) : vec3(0.0);
         fit.place = places / max(sum, 1e-9);
+        // Where the spline rounds, its normals are tilted beside creases, and places say more.
+        mat3 about = spread / max(sum, 1e-9) - outerProduct(fit.place, fit.place) + mat3(CREASE_SPREAD);
+        if (sight.sharp) normals = inverse(about) * normals;
+        fit.n = sum > 0.05 ? normalize(normals) : vec3(0.0);
     }
     return fit;
 }
@@ -82,16 +104,16 @@ void order_planes(inout vec4 a, inout vec4 b) {
 }
 
 // `a`: the normal least like that of the surfel at `middle`.
-CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 a) {
+CreaseFit fit_crease(CreaseSight sight, vec3 a) {
     CreaseFit found = CreaseFit(false, CREASE_NONE, CREASE_NONE, CREASE_NONE);
     // Where all normals are alike, as nearly everywhere, nothing else is looked for.
     IF_ANY(dot(a, a) > 0.0) {
-        vec3 b = most_different(p, material, middle, state, a, a);
-        vec3 c = most_different(p, material, middle, state, a, b);
+        vec3 b = most_different(sight, a, a);
+        vec3 c = most_different(sight, a, b);
         bool third = dot(c, c) > 0.0;
-        PlaneFit one = fit_plane(p, material, middle, state, a), two = fit_plane(p, material, middle, state, b);
+        PlaneFit one = fit_plane(sight, a), two = fit_plane(sight, b);
         PlaneFit three = PlaneFit(vec3(0.0), vec3(0.0));
-        IF_ANY(third) three = fit_plane(p, material, middle, state, c);
+        IF_ANY(third) three = fit_plane(sight, c);
         bool some = dot(b, b) > 0.0 && dot(one.n, one.n) > 0.0 && dot(two.n, two.n) > 0.0;
         some = some && !cuts_other(one, two) && !cuts_other(two, one) && (!third || dot(three.n, three.n) > 0.0);
         bool cut = cuts_other(one, three) || cuts_other(two, three) || cuts_other(three, one) || cuts_other(three, two);
@@ -104,6 +126,14 @@ CreaseFit fit_crease(ivec3 p, uint material, vec3 middle, uint state, vec3 a) {
     return found;
 }
 
+// Of the third plane, where it is square to the first two and passes in front of the voxel; as pack_crease() takes it.
+float corner_of(CreaseFit crease) {
+    vec3 across = normalize(cross(crease.first.xyz, crease.second.xyz));
+    float like = dot(across, crease.third.xyz);
+    bool kept = abs(like) > CORNER_SQUARE && crease.third.w > 0.0 && crease.third.w < CREASE_REACH;
+    return kept ? sign(like) * crease.third.w : CORNER_NONE;
+}
+
 // How far a point lies outside.
 float off_crease(CreaseFit crease, vec3 r) {
     float two = max(dot(crease.first.xyz, r) - crease.first.w, dot(crease.second.xyz, r) - crease.second.w);
@@ -111,18 +141,20 @@ float off_crease(CreaseFit crease, vec3 r) {
 }
 
 // Squared, summed over the surfels around, by weight, and over samples that lie on the wrong side.
-float crease_error(ivec3 p, uint material, vec3 middle, vec3 n, CreaseFit crease) {
+// Where it is sharp, what lies inside was rounded.
+float crease_error(CreaseSight sight, CreaseFit crease) {
     float error = 0.0;
-    ivec3 around = p + ivec3(round(middle));
+    ivec3 p = sight.p, around = p + ivec3(round(sight.middle));
     for (int i = 0; i < 125; ++i) {
-        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
         float off = off_crease(crease, s.at);
-        error += s.there && !s.border ? surfel_weight(s.at - middle, n, s.n) * off * off : 0.0;
+        if (sight.sharp) off = max(off, 0.0);
+        error += s.there && !s.border ? surfel_weight(s.at - sight.middle, sight.n, s.n) * off * off : 0.0;
     }
     for (int i = 0; i < 27; ++i) {
         ivec3 q = p + ivec3(i % 3, i / 3 % 3, i / 9) - 1;
         bool there = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
-        bool inside = there && material_at(clamp(q, ivec3(0), dims - 1)) == material;
+        bool inside = there && material_at(clamp(q, ivec3(0), dims - 1)) == sight.material;
         float off = off_crease(crease, vec3(q - p));
         off = min(max(inside ? off : -off, 0.0), 1.0);
         error += off * off;

@@ -57,6 +57,7 @@ struct Face {
     bool mixed;  // what faces the other way around is the other end of the material's interval
     bool creased;
     vec4 crease;
+    float corner;  // as pack_crease() takes it
     bool traced;  // it fits badly: rays are to find the surface
     float steep;  // how much of the field's direction at the voxel is believed, 0 to 1
 };
@@ -207,7 +208,7 @@ bool has_two_values(ivec3 p) {
 
 // The face of voxel p's kernel, of its own material or of matter that it lies beside. Without a surface in reach: no edge.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, false, 0.0);
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE, false, 0.0);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = 1e9;
     uint state = EDGE_LOWER;
@@ -246,7 +247,8 @@ Face fit_face(ivec3 p, uint material) {
     IF_ANY(found || crossed.x || crossed.y) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
-        Different different = none_different();
+        bool sharp = has_two_values(p);
+        Different different = none_different(sharp);
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
             Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
@@ -289,19 +291,21 @@ Face fit_face(ivec3 p, uint material) {
         }
         is_wall = is_wall && !is_own;
         float best = is_own ? e.own + wrong.z : error;
-        IF_ANY(found && best > CREASE_FROM) {
-            CreaseFit crease = fit_crease(p, material, middle, state, different.n);
+        IF_ANY(found && (best > CREASE_FROM || sharp)) {
+            CreaseSight sight = CreaseSight(p, material, middle, n, state, sharp);
+            CreaseFit crease = fit_crease(sight, different.n);
             float left = 1e9;
-            IF_ANY(crease.found) left = crease_error(p, material, middle, n, crease);
+            IF_ANY(crease.found) left = crease_error(sight, crease);
             // Where two planes meet at a blunt angle a narrow ridge looks the same.
             bool blunt = dot(crease.first.xyz, crease.second.xyz) > CREASE_BLUNT;
-            face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best;
+            face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best || (sharp && !blunt && left < CREASE_ROUNDED_LEFT);
             face.crease = crease.second;
+            face.corner = corner_of(crease);
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
         }
         if (face.creased) return face;
         face.traced = found && (is_own ? wrong.z : is_wall ? wrong.y : wrong.x) > TRACE_FROM;
-        IF_ANY(face.traced) face.traced = !has_two_values(p);
+        face.traced = face.traced && !sharp;
         vec3 about = is_own ? vec3(0.0) : middle;
         float scale = foot.real ? 1.0 / length(foot.slope) : 0.0;
         face.edge.n = foot.real ? scale * foot.slope : n;

@@ -62,7 +62,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         s.number_material.y |= (e.state == EDGE_UPPER ? FACES_UPWARD : 0u) | (has_normal ? HAS_NORMAL : 0u);
         Bending h = Bending(vec3(0.0), vec3(0.0));
         s.face = FaceForm(0.0, e.state == EDGE_NONE ? vec3(0.0) : e.n, h, FaceCut(-1.0, 1e9, params.frame.support * params.frame.support, 0.0, 0.0),
-                          CREASE_NONE);
+                          CREASE_NONE, CORNER_NONE);
         IF_ANY(is_cut) {
             FaceTraits traits = traits_of(number, e, splat.edge >> 28);
             FaceCut cut = cut_of(e, traits);
@@ -72,7 +72,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             s.number_material.y |= (axis | (e.n[axis] < 0.0 ? 4u : 0u)) << MAIN_AXIS_AT;
             s.number_material.y |= (BendingsRef(params.frame.traits).at[number].x & FACE_MIXED) != 0u ? IS_MIXED : 0u;
             vec3 at_foot = bent(h, e.d * e.n);
-            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease);
+            s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, traits.corner);
         }
         if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced(number) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;

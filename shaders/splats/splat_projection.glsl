@@ -32,6 +32,7 @@ vec3 view_position(vec3 position) {
 struct FaceTraits {
     Bending h;
     vec4 crease;
+    float corner;
     float deepest;  // no deeper under it its kernel is sampled, voxels
 };
 
@@ -45,10 +46,11 @@ bool is_traced(uint number) {
 FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
     bool hides = (params.frame.seen_through >> material & 1u) == 0u;
-    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE, hides ? FACE_DEPTH : 0.0);
+    FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE, CORNER_NONE, hides ? FACE_DEPTH : 0.0);
     if (CREASES == 1u) {
         bool creased = (code.x & FACE_CREASED) != 0u;
         t.crease = creased ? unpack_crease(code) : t.crease;
+        t.corner = creased ? unpack_corner(code) : t.corner;
         t.h = Bending(creased ? vec3(0.0) : t.h.diagonal, creased ? vec3(0.0) : t.h.mixed);
     }
     // In the table faces are plane: what bends so little is taken for that. It has no walls.
@@ -66,8 +68,10 @@ FaceCut cut_of(Edge e, inout FaceTraits t) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
     FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, t.deepest);
     if (CREASES == 1u) {
-        // A plane that cuts nothing is none.
-        t.crease = t.crease.w < params.frame.support + cut.depth ? t.crease : CREASE_NONE;
+        // A plane that cuts nothing is none. That of a corner is the furthest.
+        bool cuts = t.crease.w < params.frame.support + cut.depth;
+        t.crease = cuts ? t.crease : CREASE_NONE;
+        t.corner = cuts ? t.corner : CORNER_NONE;
         cut = with_crease(cut, t.crease.w);
     }
     return cut;

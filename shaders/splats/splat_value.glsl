@@ -91,9 +91,19 @@ VolumePiece piece_in_volume(vec3 u) {
     return piece;
 }
 
+// Of a corner's third plane, not of unit length; faces of creases are plane.
+vec3 corner_normal() { return sign(face_form.corner) * cross(face_form.slope, face_form.crease.xyz); }
+
 FaceCrease crease_seen(vec3 p, vec3 u) {
     vec4 plane = face_form.crease;
-    return FaceCrease(dot(plane.xyz, p), dot(plane.xyz, u), plane.w, dot(plane.xyz, face_form.slope));
+    FaceCrease seen = FaceCrease(dot(plane.xyz, p), dot(plane.xyz, u), plane.w, dot(plane.xyz, face_form.slope), 0.0, 0.0, FACE_NOWHERE);
+    IF_ANY(abs(face_form.corner) < FACE_NO_WALL) {
+        vec3 third = normalize(corner_normal());
+        seen.corner_p = dot(third, p);
+        seen.corner_u = dot(third, u);
+        seen.corner_distance = abs(face_form.corner);
+    }
+    return seen;
 }
 
 // What the surface shows at one end of the ray's way through the kernel; `border`: the volume's normal where that ends there, else 0.
@@ -101,7 +111,7 @@ FaceCrease crease_seen(vec3 p, vec3 u) {
 vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
     vec3 slope = sight.slope + end.z * sight.turn;
-    if (CREASES == 1u) slope = end.crease ? face_form.crease.xyz : slope;
+    if (CREASES == 1u) slope = end.plane == 1 ? face_form.crease.xyz : end.plane == 2 ? corner_normal() : slope;
     // Both faces of a layer between two iso-values face the lower values.
     uint axis = number_material.y >> MAIN_AXIS_AT;
     float along = (axis & 3u) == 0u ? slope.x : (axis & 3u) == 1u ? slope.y : slope.z;
@@ -126,7 +136,7 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
     if (CREASES == 1u) crease = crease_seen(p, u);
     FaceFootprint f = footprint_face(sight.ray, face_form.cut, CREASES == 1u, crease, inside);
     f.integral = plain ? footprint_isotropic(sight.ray.rho2, slice) : f.integral;
-    if (plain) f.entry = FaceEnd(0.0, 1.0, false);
+    if (plain) f.entry = FaceEnd(0.0, 1.0, 0);
     return f;
 }
 #include "shaders/footprints/tabulated_footprint.glsl"

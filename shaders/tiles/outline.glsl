@@ -31,6 +31,9 @@ vec2 rate_across(vec3 gradient, float depth) {
     return pixel * vec2(dot(gradient, params.frame.ray_x), dot(gradient, params.frame.ray_y));
 }
 
+// Whether the point z of the ray lies inside of the planes of a corner, but for the first two.
+bool inside_corner(OutlinedSplat splat, float z) { return splat.crease.corner_p + z * splat.crease.corner_u < splat.crease.corner_distance; }
+
 // Of the splat's face: phi has its least value on the ray there, or of a wall's other face its largest.
 uint outline_of_face(OutlinedSplat splat) {
     Quadratic phi = splat.sight.ray.phi;
@@ -39,7 +42,7 @@ uint outline_of_face(OutlinedSplat splat) {
     float z = -0.5 * phi.b / (side * bend), depth = (splat.ahead + z) * splat.depth_along;
     float level = side * (quadratic_at(phi, z) + (opens ? 0.0 : face_form.cut.thickness));
     bool there = (opens || face_form.cut.thickness < FACE_NO_WALL) && depth > 0.0;
-    if (CREASES == 1u) there = there && splat.crease.p + z * splat.crease.u < splat.crease.distance;
+    if (CREASES == 1u) there = there && splat.crease.p + z * splat.crease.u < splat.crease.distance && inside_corner(splat, z);
     vec2 rate = side * rate_across(splat.sight.slope + z * splat.sight.turn, depth);
     return there ? outline_word(splat, level, rate, z) : NO_OUTLINE;
 }
@@ -55,7 +58,7 @@ uint outline_of_crease(OutlinedSplat splat) {
     float z = 0.5 * (at_face + at_crease), depth = (splat.ahead + z) * splat.depth_along;
     float along = splat.sight.ray.phi.b + 2.0 * at_face * splat.sight.ray.phi.a;
     vec2 rate = side * (rate_across(face_form.crease.xyz, depth) / u - rate_across(splat.sight.slope + at_face * splat.sight.turn, depth) / along);
-    bool there = roots.real && crease.distance < FACE_NO_WALL && depth > 0.0 && along * u < 0.0;
+    bool there = roots.real && crease.distance < FACE_NO_WALL && depth > 0.0 && along * u < 0.0 && inside_corner(splat, z);
     return there ? outline_word(splat, side * (at_face - at_crease), rate, z) : NO_OUTLINE;
 }
 

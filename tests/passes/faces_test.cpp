@@ -97,7 +97,11 @@ TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
             const auto &a = record.edge.crease, &b = want.crease;
             const bool same_crease = a.D < 3 ? std::abs(a.D - b.D) + glm::length(a.n - b.n) < 0.01 : !(b.D < 3);
             const bool same_way = record.edge.traced.has_value() == want.traced.has_value();
-            differ += same_edge(record.edge, want) && bending <= 0.02 && same_crease && same_way ? 0U : 1U;
+            const auto &third = record.edge.corner, &wanted = want.corner;
+            const bool same_corner =
+                third.D < 3 ? std::abs(third.D - wanted.D) + glm::length(third.n - wanted.n) < 0.01 : !(wanted.D < 3);
+            differ +=
+                same_edge(record.edge, want) && bending <= 0.02 && same_crease && same_corner && same_way ? 0U : 1U;
         }
         EXPECT_GT(faces, 500U);
         EXPECT_GT(most_bent, is_wall ? 1e-4 : 0.1);

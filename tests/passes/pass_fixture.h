@@ -11,6 +11,7 @@
 #include "engine/reference/1_estimate_edges.h"
 #include "engine/reference/2_collect_splats.h"
 #include "engine/reference/5_draw_splats.h"
+#include "engine/reference/creases.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
@@ -180,6 +181,9 @@ inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state
         if (traits[i].x >> 31U != 0) {
             const auto plane = decode_edge(traits[i].y, (traits[i].x & 0xffffU) | shader::EDGE_LOWER << 26U);
             edge.crease = {plane.n, plane.D};
+            const std::uint32_t third = traits[i].x >> 16U & 8191U;
+            const bool turned = (traits[i].x >> 29U & 1U) != 0;
+            if (third != 8191U) edge.corner = reference::square_to(edge.n, plane.n, third / 8190.0 * 4, turned);
             continue;
         }
         edge.bending = decode_bending(traits[i]);

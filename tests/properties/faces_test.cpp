@@ -133,6 +133,20 @@ TEST(Faces, AWallThatTheBorderCutsHasNoComb) {
     EXPECT_GE(faces - std::max(trilinear, cubic), 2);
 }
 
+TEST(Faces, ABinaryCubeHasSharpEdgesAndCorners) {
+    // The corner in the middle of the picture, and three edges: the spline rounds them by a voxel.
+    const AnalyticScene scene = builtin_scene("builtin:cube-hole");
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(scene));
+    shot.scene.iso_values = scene.iso_values;
+    shot.scene.materials = {{}, {{1, 0.85, 0.75}, 8}};
+    shot.camera = look(*shot.volume, {-9, -6, -12}, {4, 4, 4}, 14);
+    shot.width = shot.height = 64;
+    const auto [faces, trilinear, cubic] = nearness(exact_shot(scene, shot));
+    EXPECT_GE(faces, 34);
+    EXPECT_GE(faces - std::max(trilinear, cubic), 10);
+}
+
 TEST(Faces, DepthAndNormalAreThoseOfTheSurface) {
     const Exact scene = exact_scene("small-ball");
     Shot shot = scene.shot;

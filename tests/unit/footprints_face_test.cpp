@@ -100,16 +100,37 @@ TEST(Face, ACreaseIsWhereTheRayEnters) {
     FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face
     ray.crease = {0, -1};
     const FaceFootprint entered = FacePath(ray, cut).footprint(8);
-    EXPECT_TRUE(entered.entry.crease);
+    EXPECT_EQ(entered.entry.plane, 1);
     EXPECT_NEAR(entered.entry.z, -0.7, 1e-12);
     ray.crease = {0, 1};
-    EXPECT_FALSE(FacePath(ray, cut).footprint(8).entry.crease);
+    EXPECT_EQ(FacePath(ray, cut).footprint(8).entry.plane, 0);
     // Out of the other plane's reach nothing is cut.
     FaceCut plain = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     const double reach = plain.reach;
     add_crease(plain, {4, 0});
     EXPECT_FALSE(plain.crease.distance < 1e9);
     EXPECT_EQ(plain.reach, reach);
+}
+
+TEST(Face, ACornersThirdPlaneEndsTheMatter) {
+    FaceCut cut = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
+    add_crease(cut, {0.7, 0}, 0.4);
+    FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face and the crease
+    ray.crease = {0, 0};
+    ray.corner = {0, -1};
+    const FaceFootprint entered = FacePath(ray, cut).footprint(8);
+    EXPECT_EQ(entered.entry.plane, 2);
+    EXPECT_NEAR(entered.entry.z, -0.4, 1e-12);
+    EXPECT_EQ(FacePath(ray, cut).kernel_at(-0.41), 0);
+    EXPECT_GT(FacePath(ray, cut).kernel_at(-0.39), 0);
+    // Of two planes the nearer ends it.
+    ray.crease = {0, -1};
+    EXPECT_EQ(FacePath(ray, cut).footprint(8).entry.plane, 2);
+    cut.corner = 0.8;
+    EXPECT_EQ(FacePath(ray, cut).footprint(8).entry.plane, 1);
+    ray.crease = {0, 1};
+    ray.corner = {0, 1};
+    EXPECT_EQ(FacePath(ray, cut).footprint(8).leave.plane, 1);
 }
 
 TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {

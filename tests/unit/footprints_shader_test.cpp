@@ -159,11 +159,19 @@ TEST(FootprintShader, MirrorsFaces) {
         const double beside = i % 4 == 1 ? uniform(0.1, 2) : 9;
         FaceRay creased = ray;
         creased.crease = {glm::dot(normal, p), glm::dot(normal, u)};
-        add_crease(want, {beside, glm::dot(normal, own)});
+        const glm::dvec3 square = plane();
+        const double third = i % 8 == 1 ? beside + uniform(0, 1) : std::numeric_limits<double>::infinity();
+        creased.corner = {glm::dot(square, p), glm::dot(square, u)};
+        add_crease(want, {beside, glm::dot(normal, own)}, third);
         got = four::with_crease(got, f(beside));
         const bool cuts = want.crease.distance < 9;
-        const four::FaceCrease crease{f(creased.crease.p), f(creased.crease.u), cuts ? f(beside) : 1e9F,
-                                      f(glm::dot(normal, own))};
+        const four::FaceCrease crease{f(creased.crease.p),
+                                      f(creased.crease.u),
+                                      cuts ? f(beside) : 1e9F,
+                                      f(glm::dot(normal, own)),
+                                      f(creased.corner.p),
+                                      f(creased.corner.u),
+                                      cuts && third < 9 ? f(third) : 1e9F};
         EXPECT_NEAR(static_cast<double>(got.depth), want.depth, 1e-5);
         EXPECT_NEAR(std::sqrt(static_cast<double>(got.reach2)), want.reach, 1e-4);
         EXPECT_GE(static_cast<double>(got.shift + got.radius), want.kernel->radius - 0.01);
@@ -176,7 +184,7 @@ TEST(FootprintShader, MirrorsFaces) {
         ++cut;
         const auto differ = [](const four::FaceEnd& got_end, const FaceEnd& want_end) {
             return std::abs(static_cast<double>(got_end.z) - want_end.z) > 1e-3 ||
-                   (got_end.side < 0) != want_end.behind || got_end.crease != want_end.crease;
+                   (got_end.side < 0) != want_end.behind || got_end.plane != want_end.plane;
         };
         entries += differ(b.entry, a.entry) || differ(b.leave, a.leave) ? 1 : 0;
     }
