@@ -42,6 +42,18 @@ Nearness nearness(const Exact& scene) {
     return n;
 }
 
+/// A builtin scene, opaque, in a picture of 64 pixels that looks from one place (index space) at another, degrees wide.
+Exact seen_from(const char* name, const glm::dvec3& eye, const glm::dvec3& target, double fov) {
+    const AnalyticScene scene = builtin_scene(name);
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(sample(scene));
+    shot.scene.iso_values = scene.iso_values;
+    shot.scene.materials = {{}, {{1, 0.85, 0.75}, 8}};
+    shot.camera = look(*shot.volume, eye, target, fov);
+    shot.width = shot.height = 64;
+    return exact_shot(scene, shot);
+}
+
 class NearerToTheTruth : public testing::TestWithParam<Gain> {};
 
 TEST_P(NearerToTheTruth, ThanRays) {
@@ -122,27 +134,14 @@ TEST(Faces, ABallThatTheBorderCutsHasNoFlange) {
 
 /// A thin wall's cut at the border: rays enter the volume within it, and leave it through its side.
 TEST(Faces, AWallThatTheBorderCutsHasNoComb) {
-    const AnalyticScene scene = builtin_scene("builtin:plates");
-    Shot shot;
-    shot.volume = std::make_shared<const Volume>(sample(scene));
-    shot.scene.iso_values = scene.iso_values;
-    shot.scene.materials = {{}, {{1, 0.85, 0.75}, 8}};
-    shot.camera = look(*shot.volume, {46.07, -4.6, 26.96}, {46.07, 10, 26.96}, 35);
-    shot.width = shot.height = 64;
-    const auto [faces, trilinear, cubic] = nearness(exact_shot(scene, shot));
+    const auto [faces, trilinear, cubic] =
+        nearness(seen_from("builtin:plates", {46.07, -4.6, 26.96}, {46.07, 10, 26.96}, 35));
     EXPECT_GE(faces - std::max(trilinear, cubic), 2);
 }
 
 TEST(Faces, ABinaryCubeHasSharpEdgesAndCorners) {
     // The corner in the middle of the picture, and three edges: the spline rounds them by a voxel.
-    const AnalyticScene scene = builtin_scene("builtin:cube-hole");
-    Shot shot;
-    shot.volume = std::make_shared<const Volume>(sample(scene));
-    shot.scene.iso_values = scene.iso_values;
-    shot.scene.materials = {{}, {{1, 0.85, 0.75}, 8}};
-    shot.camera = look(*shot.volume, {-9, -6, -12}, {4, 4, 4}, 14);
-    shot.width = shot.height = 64;
-    const auto [faces, trilinear, cubic] = nearness(exact_shot(scene, shot));
+    const auto [faces, trilinear, cubic] = nearness(seen_from("builtin:cube-hole", {-9, -6, -12}, {4, 4, 4}, 14));
     EXPECT_GE(faces, 34);
     EXPECT_GE(faces - std::max(trilinear, cubic), 10);
 }
