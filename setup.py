@@ -17,10 +17,12 @@ class CMakeBuild(build_ext):
 
     def build_extension(self, ext):
         # A folder that has been built in already (./dev python) saves building everything once more.
-        build = pathlib.Path(os.environ.get("EDGESPLAT_BUILD_FOLDER") or self.build_temp).resolve()
-        options = ["-DCMAKE_BUILD_TYPE=Release", "-DEDGESPLAT_PYTHON=ON", "-DEDGESPLAT_TESTS=OFF"]
-        configure = ["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", f"-DPython_EXECUTABLE={sys.executable}"]
-        subprocess.run([*configure, *options], check=True)
+        folder = os.environ.get("EDGESPLAT_BUILD_FOLDER")
+        build = pathlib.Path(folder or self.build_temp).resolve()
+        if not folder:
+            options = ["-DCMAKE_BUILD_TYPE=Release", "-DEDGESPLAT_PYTHON=ON", "-DEDGESPLAT_TESTS=OFF"]
+            configure = ["cmake", "-S", SOURCE, "-B", build, "-G", "Ninja", f"-DPython_EXECUTABLE={sys.executable}"]
+            subprocess.run([*configure, *options], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "edgesplat_python"], check=True)
         target = pathlib.Path(self.get_ext_fullpath(ext.name)).resolve().parents[1]
         subprocess.run(["cmake", "--install", build, "--component", "python", "--prefix", target], check=True)
