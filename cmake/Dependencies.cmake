@@ -58,5 +58,4 @@ endif()
 
 if(EDGESPLAT_TESTS)
     find_package(GTest REQUIRED)
-    include(GoogleTest)
 endif()
