@@ -7,6 +7,7 @@
 
 #include "engine/accuracy/metrics.h"
 #include "engine/reference/parallel.h"
+#include "engine/reference/traced_face.h"
 #include "engine/scene/transfer_function.h"
 
 namespace edgesplat::accuracy {
@@ -40,13 +41,20 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
                                                   const reference::Footprints& footprints, const SurfacePoint& point,
                                                   const ProfileRange& range) {
     struct Splat {
-        const reference::VoxelEdge* edge;
+        reference::VoxelEdge edge;
         glm::dvec3 center;
         double reach;
     };
     const reference::Field field = prepared.field();
     const double reach = footprints.farthest_reach() + range.reach * glm::length(point.axis);
+    // Faces that rays find are as the profile's own ray, from outside, finds them.
+    const glm::dvec3 u = -glm::normalize(point.axis), eye = point.position - reach * u;
     std::vector<Splat> splats;
+    const auto add = [&](const reference::VoxelEdge& edge, const glm::dvec3& center) {
+        const double ahead = glm::dot(center - eye, u);
+        const reference::MetEdge met = met_edge(edge, field, eye, u, eye + ahead * u - center, ahead);
+        if (met.matter) splats.push_back({met.edge, center, footprints.reach(met.edge)});
+    };
     const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(point.position - reach)), glm::ivec3(0));
     const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(point.position + reach)), field.dims - 1);
     for (int z = low.z; z <= high.z; ++z) {
@@ -54,11 +62,9 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
             for (int x = low.x; x <= high.x; ++x) {
                 const std::size_t i = field.offset({x, y, z});
                 for (const reference::CarriedEdge& c : prepared.carried_by(i))
-                    if (c.material >= 1 && c.edge.D > -kKernelRadius)
-                        splats.push_back({&c.edge, {x, y, z}, footprints.reach(c.edge)});
+                    if (c.material >= 1 && c.edge.D > -kKernelRadius) add(c.edge, {x, y, z});
                 if (prepared.scaled_scene().material(static_cast<double>(field.values[i])) < 1) continue;
-                const reference::VoxelEdge& edge = prepared.edges()[i];
-                splats.push_back({&edge, {x, y, z}, footprints.reach(edge)});
+                add(prepared.edges()[i], {x, y, z});
             }
         }
     }
@@ -66,7 +72,7 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
         double sum = 0;
         for (const Splat& splat : splats) {
             const glm::dvec3 r = p - splat.center;
-            if (glm::dot(r, r) < splat.reach * splat.reach) sum += footprints.at_point(*splat.edge, r);
+            if (glm::dot(r, r) < splat.reach * splat.reach) sum += footprints.at_point(splat.edge, r);
         }
         return sum;
     };
