@@ -184,7 +184,7 @@ TEST(RefinedPixels, KeepTheirListsWhereAllOfThemHaveRoom) {
     plain.edges = EdgeEstimator::Off;
     faces.sheets = SheetCut::Sliced;  // so that its lists are many
     faces.sheet_spacing = 0.5;
-    for (const auto& [settings, pixels] : {std::pair(plain, 256), std::pair(faces, 80), std::pair(plain, 80)})
+    for (const auto& [settings, pixels] : {std::pair(plain, 256), std::pair(faces, 128), std::pair(plain, 128)})
         EXPECT_EQ(renderer.render(scene, camera, settings, pixels, pixels).stats.validation_messages, 0U);
 }
 
