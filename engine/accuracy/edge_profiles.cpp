@@ -52,7 +52,7 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
     std::vector<Splat> splats;
     const auto add = [&](const reference::VoxelEdge& edge, const glm::dvec3& center) {
         const double ahead = glm::dot(center - eye, u);
-        const reference::MetEdge met = met_edge(edge, field, eye, u, eye + ahead * u - center, ahead);
+        const auto met = reference::met_edge(edge, field, eye, u, eye + ahead * u - center, ahead);
         if (met.matter) splats.push_back({met.edge, center, footprints.reach(met.edge)});
     };
     const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(point.position - reach)), glm::ivec3(0));

@@ -240,11 +240,11 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
 
 TEST(AccuracyEdges, ProfilesMeetFacesAsRaysDo) {
     // Where noise leaves no quadric, what pictures show is the face that a ray finds.
-    const char* noisy = "builtin:vessels:noise=0.05";
-    const Volume volume = builtin_volume(noisy);
-    const SurfacePoints points = surface_points(builtin_scene(noisy), 200);
+    const AnalyticScene analytic = builtin_scene("builtin:vessels:noise=0.05");
+    const Volume volume = sample(analytic);
+    const SurfacePoints points = surface_points(analytic, 200);
     Scene scene;
-    scene.iso_values = builtin_scene(noisy).iso_values;
+    scene.iso_values = analytic.iso_values;
     scene.materials = {{}, {{1, 1, 1}, 8}};
     reference::PreparedVolume prepared(volume, scene, Settings{});
     const EdgeFigures met = edge_figures(prepared, points.points);
