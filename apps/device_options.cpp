@@ -7,7 +7,7 @@ namespace {
 void print_devices() {
     const std::vector<edgesplat::DeviceInfo> devices = edgesplat::list_devices();
     if (devices.empty())
-        fmt::print("no Vulkan device; the package mesa-vulkan-drivers brings one that runs on the processor\n");
+        fmt::print("no Vulkan device; the package mesa-vulkan-drivers provides one that runs on the processor\n");
     for (const edgesplat::DeviceInfo& d : devices) {
         fmt::print("{}: {} ({}), {} {}, Vulkan {}, profile {}\n", d.index, d.name, d.type, d.driver, d.driver_version,
                    d.api_version, d.profile);
@@ -25,19 +25,19 @@ void add_device_list(CLI::App& app) {
                print_devices();
                throw CLI::Success();
            },
-           "Print the Vulkan devices and leave")
+           "Print the Vulkan devices and exit")
         ->group("Device");
 }
 
 void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
     constexpr const char* kGroup = "Device";
-    command
-        .add_option("--device", choice.device, "A Vulkan device: its number in --list-devices, or a part of its name")
+    command.add_option("--device", choice.device, "Vulkan device: its number in --list-devices or a part of its name")
         ->type_name("DEVICE")
         ->group(kGroup);
     command
         .add_option("--device-profile", choice.profile,
-                    "How frames are made, lavapipe, generic or discrete, whatever the device is; --explain says which")
+                    "Use this device profile (lavapipe, generic or discrete) instead of the one for the device; "
+                    "--explain prints the profile in use")
         ->type_name("PROFILE")
         ->group(kGroup);
     add_device_list(command);
@@ -45,6 +45,7 @@ void add_device_options(CLI::App& command, edgesplat::DeviceChoice& choice) {
         ->group(kGroup);
     command
         .add_flag("--check-numbers", choice.check_numbers,
-                  "Look for numbers that are not finite; name the first pass and splat that come to one, and fail")
+                  "Check all results for numbers that are not finite; fail and name the first pass and splat that "
+                  "produce one")
         ->group(kGroup);
 }

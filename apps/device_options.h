@@ -1,12 +1,12 @@
-// Options about Vulkan devices, the same in every program.
+// Vulkan device options, shared by all programs.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
 #include "engine/renderer.h"
 
-/// --list-devices.
+/// Adds --list-devices.
 void add_device_list(CLI::App& app);
 
-/// --device, --device-profile, --list-devices, --validation, --check-numbers.
+/// Adds --device, --device-profile, --list-devices, --validation and --check-numbers.
 void add_device_options(CLI::App& app, edgesplat::DeviceChoice& choice);

@@ -19,7 +19,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
     return app.get_subcommands([](const CLI::App* command) { return !command->get_name().empty(); });
 }
 
-/// Options that --help shows, positional ones left out.
+/// Options that --help shows, without positional ones.
 Options options_of(const CLI::App& app) {
     return app.get_options(
         [](const CLI::Option* option) { return option->nonpositional() && !option->get_group().empty(); });
@@ -39,7 +39,7 @@ bool takes_value(const CLI::Option& option) {
     return option.get_items_expected_max() > 0 && option.get_type_size_max() > 0;
 }
 
-/// The values of "a|b|c"; empty where a type is no list of names.
+/// The values of "a|b|c"; empty if the type is not a list of names.
 std::vector<std::string> choices_of(const CLI::Option& option) {
     const std::string type = option.get_type_name();
     if (type.find('|') == std::string::npos) return {};
@@ -55,7 +55,7 @@ std::string one_line(std::string text) {
     return text;
 }
 
-/// As troff reads it: no escapes, no dash that could be broken at, no line that is a request.
+/// Escapes a text for troff: backslashes, dashes (no line break at them), and lines that would be requests.
 std::string troff(const std::string& text) {
     std::string out;
     for (const char c : text) {
@@ -117,14 +117,14 @@ std::string identifier(std::string name) {
     return name;
 }
 
-/// Every command with the words that lead to it, the program itself with none.
+/// Collects every command with its words, such as "scene new"; the program itself has none.
 void collect(const CLI::App& app, const std::string& words, std::vector<std::pair<std::string, const CLI::App*>>& out) {
     out.emplace_back(words, &app);
     for (const CLI::App* command : commands_of(app))
         collect(*command, words.empty() ? command->get_name() : words + " " + command->get_name(), out);
 }
 
-/// What may follow the words of a command.
+/// Words that may follow a command.
 std::string words_after(const CLI::App& app) {
     std::vector<std::string> words;
     for (const CLI::App* command : commands_of(app))
@@ -148,7 +148,7 @@ std::string bash_completion(const CLI::App& app) {
                     values += fmt::format("        '{} {}') values='{}' ;;\n", path, name,
                                           fmt::join(choices_of(*option), " "));
     }
-    // Commands are what the words before say, as far as these are commands.
+    // The script derives the command from the words before the cursor and skips words that are not commands.
     return fmt::format(R"(# Completion of {0} for bash, made from its options.
 {1}() {{
     local word=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD-1]}} path= next words= offered= values=none i
@@ -185,7 +185,7 @@ complete -o default -F {1} {0}
                        values, words);
 }
 
-/// In single quotes of a shell.
+/// Quotes a text for a shell, with single quotes.
 std::string in_quotes(const std::string& text) {
     std::string out = "'";
     for (const char c : text)
@@ -313,7 +313,7 @@ void add_page_options(CLI::App& app, std::string_view version) {
             fmt::print("{}", man_page(app, version));
             throw CLI::Success();
         },
-        "Print the manual page (troff) and leave");
+        "Print the manual page (troff) and exit");
     app.add_option_function<std::string>(
            "--completion",
            [&app](const std::string& shell) {
@@ -326,6 +326,6 @@ void add_page_options(CLI::App& app, std::string_view version) {
                fmt::print("{}", text);
                throw CLI::Success();
            },
-           "Print what a shell needs to complete command lines, and leave")
+           "Print the completion script of a shell and exit")
         ->type_name("bash|zsh|fish");
 }

@@ -1,11 +1,11 @@
-// What --version says.
+// Text of --version.
 #pragma once
 
 #include <string>
 #include <string_view>
 
-/// The commit that was built, with "-dirty" where files were changed; empty where the sources are in no repository.
+/// The commit that was built, with "-dirty" if files were changed; empty if the sources are not in a repository.
 std::string_view built_commit();
 
-/// "NAME VERSION (commit)" and a line with the libraries that it was built with and their versions.
+/// "NAME VERSION (commit)" and a line with the names and versions of the libraries.
 std::string version_text(std::string_view program);

@@ -1,4 +1,4 @@
-// Wall-clock time that something took.
+// Measures elapsed wall-clock time.
 #pragma once
 
 #include <chrono>

@@ -1,4 +1,4 @@
-// Which devices there are, which one to open, and what a device says of its work.
+// The Vulkan devices of this machine, the choice of one, and its timings and draw counts.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,23 @@ namespace edgesplat {
 struct DeviceInfo {
     int index = 0;
     std::string name, type, driver, driver_version, api_version;
-    std::vector<std::string> rejections;  ///< why it cannot be used; empty = usable
-    bool is_processor = false;            ///< it is the processor itself: its time is the processor's
-    std::string profile, profile_reason;  ///< how frames are made on it, and why so (gpu/device_profile.h)
+    std::vector<std::string> rejections;  ///< reasons why the device cannot be used; empty: usable
+    bool is_processor = false;            ///< a software device that runs on the processor
+    /// name of its profile (gpu/device_profile.h) and the reason for that profile
+    std::string profile, profile_reason;
 };
 
-/// Which device to open and how loudly to check it.
+/// The device to open and the checks that it runs.
 struct DeviceChoice {
-    std::string device;       ///< empty: the best usable one; else an index or a part of a name
-    bool validation = false;  ///< Khronos validation and synchronization validation; messages are counted
-    /// Pictures are looked through for numbers that are not finite: render() then throws Error, naming the first pass
-    /// and splat that came to one. For finding faults; without it nothing is read back or run for it.
+    std::string device;       ///< an index or part of a name; empty: the best usable device
+    bool validation = false;  ///< enables Khronos validation and synchronization validation; messages are counted
+    /// Searches every picture for non-finite numbers. render() then throws Error that names the first pass and splat
+    /// that produced one. For debugging; when false, nothing is run or read back for this check.
     bool check_numbers = false;
-    std::string profile;  ///< how frames are made, a name in gpu/device_profile.h; empty: as the device is
+    std::string profile;  ///< name of a profile in gpu/device_profile.h; empty: the device's own profile
 };
 
-/// Every device of this machine, best first. Empty where there is no Vulkan loader or driver.
+/// All Vulkan devices of this machine, best first. Empty without a Vulkan loader or driver.
 std::vector<DeviceInfo> list_devices();
 
 struct PassTime {
@@ -34,11 +35,12 @@ struct PassTime {
     double milliseconds = 0;
 };
 
-/// What drawing the splats of a picture came to.
+/// Pipeline statistics of the draws of a picture's splats.
 struct DrawCounts {
-    std::uint64_t vertices = 0;   ///< invocations of the vertex shader
-    std::uint64_t fragments = 0;  ///< of the fragment shader, as the driver counts them: some before the depth test
-    std::uint64_t shaded = 0;     ///< samples that passed the depth test
+    std::uint64_t vertices = 0;  ///< vertex shader invocations
+    /// fragment shader invocations as the driver counts them; some are counted before the depth test
+    std::uint64_t fragments = 0;
+    std::uint64_t shaded = 0;  ///< samples that passed the depth test
 };
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// The one exception users see: bad input, a missing file, a device that cannot do what was asked.
+// The exceptions that users of the library can catch, and `fail`, which throws them.
 #pragma once
 
 #include <fmt/format.h>
@@ -9,19 +9,20 @@
 
 namespace edgesplat {
 
-/// What went wrong in words a user can act on: names the file, the field, the value, and what was expected.
+/// Bad input, a missing file or a device that lacks a feature. The message names the file or field, the value and the
+/// expected value, so that the user can correct it.
 class Error : public std::runtime_error {
   public:
     using std::runtime_error::runtime_error;
 };
 
-/// Renderer::render was told to stop (Renderer::set_interruption): there is no picture.
+/// render() was interrupted (Renderer::set_interruption): no picture was made.
 class Interrupted : public Error {
   public:
     Interrupted() : Error("render: interrupted") {}
 };
 
-/// The device was lost (VK_ERROR_DEVICE_LOST), and again after it had been opened anew: there is no picture.
+/// The device was lost (VK_ERROR_DEVICE_LOST), and lost again after it was reopened: no picture was made.
 class DeviceLost : public Error {
   public:
     using Error::Error;

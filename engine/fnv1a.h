@@ -1,4 +1,4 @@
-// A checksum of bytes.
+// The FNV-1a checksum of bytes.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace edgesplat {
 
-/// 64-bit FNV-1a: tells damage from what is whole, and gives a long text a short name. No guard against malice.
+/// 64-bit FNV-1a. Detects accidental damage and gives a long text a short name; not secure against attacks.
 constexpr std::uint64_t fnv1a(std::string_view bytes) {
     std::uint64_t hash = 0xcbf29ce484222325U;
     for (const char byte : bytes)

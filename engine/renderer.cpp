@@ -14,7 +14,7 @@
 namespace edgesplat {
 namespace {
 
-/// Channels [first, first + count) of the RGBA picture in `pixels`.
+/// Extracts channels [first, first + count) of an RGBA picture.
 Image take(std::span<const float> pixels, const glm::ivec2& size, int first, int count) {
     Image image(size.x, size.y, count);
     for (std::size_t i = 0; i < image.pixels.size() / static_cast<std::size_t>(count); ++i) {
@@ -65,29 +65,29 @@ void Renderer::set_volume(std::shared_ptr<const Volume> volume) {
 }
 
 void Renderer::set_patience(double milliseconds) {
-    state_->orders.patience = milliseconds;
+    state_->options.patience = milliseconds;
 }
 
 void Renderer::set_interruption(std::function<bool()> wanted) {
-    state_->orders.interruption = std::move(wanted);
+    state_->options.interruption = std::move(wanted);
 }
 
 void Renderer::set_memory_budget(std::uint64_t bytes) {
-    state_->orders.memory_budget = bytes;
+    state_->options.memory_budget = bytes;
     state_->splats.forget_checked();
 }
 
 void Renderer::count_fragments(bool on) {
-    state_->orders.counting = on;
+    state_->options.counting = on;
     state_->session.commands().count_draws(on);
 }
 
 void Renderer::divide_sheets(PartExchange* exchange) {
-    state_->orders.exchange = exchange;
+    state_->options.exchange = exchange;
 }
 
 FrameForecast Renderer::forecast(const FrameRequest& request) {
-    need_samples(*request.volume, "a forecast of the frame");
+    require_samples(*request.volume, "a forecast of the frame");
     const CollectionPlan wanted = planned_collection(request);
     const auto known = request.volume == state_->splats.level().volume.volume()
                            ? state_->splats.collected_splats(wanted)
@@ -96,8 +96,8 @@ FrameForecast Renderer::forecast(const FrameRequest& request) {
                           kernel_reach(drawn_settings(request)), state_->session.profile());
 }
 
-std::vector<FittingChange> Renderer::what_fits(const FrameRequest& request) const {
-    return edgesplat::what_fits(state_->session.device(), request, state_->orders.memory_budget);
+std::vector<FittingChange> Renderer::fitting_changes(const FrameRequest& request) const {
+    return edgesplat::fitting_changes(state_->session.device(), request, state_->options.memory_budget);
 }
 
 std::uint64_t Renderer::held_bytes() const {
@@ -107,8 +107,8 @@ std::uint64_t Renderer::held_bytes() const {
 std::uint64_t Renderer::required_bytes(const PlannedResource& resource) const {
     const gpu::Device& device = state_->session.device();
     if (!resource.image) return gpu::Buffer::required_bytes(device, resource.bytes);
-    return gpu::beyond_limits(device, *resource.image).empty() ? gpu::required_bytes(device, *resource.image)
-                                                               : resource.bytes;
+    return gpu::exceeds_limits(device, *resource.image).empty() ? gpu::required_bytes(device, *resource.image)
+                                                                : resource.bytes;
 }
 
 RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Settings& wanted, int width, int height,
@@ -120,12 +120,12 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
     validate(scene);
     validate(wanted);
     need_layers(state_->session.device(), scene, wanted);
-    if (state_->orders.exchange && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
-        fail("sheets that are drawn in parts need --sheet-format tiles");
-    if (scene.effects.smooth_outlines && drawn_as(wanted, scene).sheet_format != SheetFormat::Tiles)
-        fail("effects.smooth_outlines: pixels of sheets in layers do not know outlines, expected --sheet-format tiles");
-    if (scene.effects.smooth_outlines && state_->orders.exchange)
-        fail("effects.smooth_outlines: a part of the sheets does not know the outlines of the others, expected false");
+    if (state_->options.exchange && canonical_settings(wanted, scene).sheet_format != SheetFormat::Tiles)
+        fail("dividing the sheets between renderers needs --sheet-format tiles");
+    if (scene.effects.smooth_outlines && canonical_settings(wanted, scene).sheet_format != SheetFormat::Tiles)
+        fail("effects.smooth_outlines: sheets in layers do not store outlines, expected --sheet-format tiles");
+    if (scene.effects.smooth_outlines && state_->options.exchange)
+        fail("effects.smooth_outlines: it cannot be combined with a division of sheets, expected false");
     return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });
 }
 
@@ -136,7 +136,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     const gpu::Device& device = self.session.device();
     const gpu::Commands& commands = self.session.commands();
     const gpu::Pipelines& pipelines = self.session.pipelines();
-    const Settings settings = drawn_as(wanted, scene);
+    const Settings settings = canonical_settings(wanted, scene);
     const glm::ivec2 size(width, height);
     RenderResult result;
     RenderStats& stats = result.stats;
@@ -157,14 +157,14 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     SampleMean mean(size);
     drawer.begin_share();
     for (const glm::dvec2& offset : sample_offsets(scene.effects.samples)) {
-        self.orders.heed_interruption();
+        self.options.throw_if_interrupted();
         draw(shader::PAYLOAD_COLOR, offset);
         add_times(times, drawer.times());
-        if (self.orders.counting) add_counts(drawer.counts(), stats);
+        if (self.options.counting) add_counts(drawer.counts(), stats);
         if (scene.effects.samples > 1) mean.add(floats(drawer.pixels()));
     }
     stats.frame_milliseconds = milliseconds_since(start);
-    if (self.orders.exchange) stats.share = drawer.share();
+    if (self.options.exchange) stats.share = drawer.share();
     stats.passes.insert(stats.passes.end(), times.begin(), times.end());
     stats.splats_drawn = drawer.splats_drawn();
     stats.sheets = drawer.drawn().params.sheet_count;
@@ -189,8 +189,8 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     stats.voxels = volume.geometry.voxel_count();
     const SplatLists& splats = level.splats.lists();
     stats.splats_collected = splats.splat_count;
-    // What is looked at twice has been looked at.
-    stats.splats_culled = splats.splat_count - std::min(drawer.drawn().looked_at, splats.splat_count);
+    // Two rounds may examine the same splat, so the count is clamped.
+    stats.splats_culled = splats.splat_count - std::min(drawer.drawn().splats_examined, splats.splat_count);
     stats.edge_splats = splats.edge_splat_count;
     stats.device_bytes = device.allocated_bytes();
     for (const auto& [name, allocation] : device.allocations())

@@ -1,4 +1,4 @@
-// Where what is kept from run to run lies.
+// The folder for files that are kept between runs.
 #pragma once
 
 #include <filesystem>

@@ -10,18 +10,19 @@ namespace edgesplat {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Where phi is this nearly linear along a ray, its second zero lies out of every kernel's reach.
+// Below this curvature phi counts as linear along a ray: its second zero is out of every kernel's reach.
 constexpr double kStraight = 1e-6;
 constexpr double kLeastSlope2 = 1e-8;
-constexpr double kNowhere = 1e9;  // voxels along a ray: out of every kernel's reach, and with a middle
+constexpr double kNowhere = 1e9;  // voxels along a ray: out of every kernel's reach, but finite
 
-/// A face that bounds the matter, and which way it faces.
+/// A face that bounds the matter, and its direction.
 struct End {
     double level = 0;  ///< phi = -level
     double side = 1;   ///< -1: matter lies where phi is larger
 };
 
-/// Where a ray meets that face at z. Within the reach it may be next to it only: then by the distance there.
+/// The tangent plane where a ray meets that face at z. If z is at the end of the reach, the face may be further away;
+/// then the plane lies at the distance to the face from there.
 FacePlane plane_at(const FaceRay& ray, double depth, double z, const End& end) {
     const double slope = std::sqrt(std::max(ray.slope2.at(z), kLeastSlope2));
     const double p = end.side * (ray.across + z * ray.turn) / slope;
@@ -33,13 +34,14 @@ FacePlane plane_at(const FaceRay& ray, double depth, double z, const End& end) {
 double reach2_of(double distance, double depth, double norm, double radius) {
     const double off = distance - depth;
     if (!(std::abs(off) < radius)) return 0;
-    // Normals turn by `norm` a voxel, which spreads what is moved along them, and the face leaves its tangent plane.
+    // Normals turn by `norm` per voxel, which spreads the points that are moved along them; and the face leaves its
+    // tangent plane.
     const double lateral = std::sqrt(radius * radius - off * off) * (1 + 1.2 * depth * norm);
     const double along = std::max(distance, 0.0) + 0.5 * norm * lateral * lateral;
     return lateral * lateral + along * along;
 }
 
-/// Where a ray enters and leaves what lies inside of planes, and by which (FaceEnd::plane).
+/// Where a ray enters and leaves the part of space inside all planes, and through which plane (FaceEnd::plane).
 struct PlaneEnds {
     double low = -kInfinity, high = kInfinity;
     int low_plane = 0, high_plane = 0;
@@ -70,12 +72,12 @@ FaceCut face_cut(double distance, double bend, double norm, double thickness, do
     cut.kernel = &kernel;
     cut.depth = deepest;
     cut.thickness = thickness;
-    // What is bent away from both sides is as deep as the ridge, where the slope is 0.
+    // If the face bends away on both sides, the ridge, where the slope is 0, limits the depth.
     if (bend > 0) cut.depth = std::min(cut.depth, 0.5 / bend);
     cut.depth = std::min(cut.depth, 0.5 * thickness);
     double reach2 = std::max(radius * radius, reach2_of(distance, cut.depth, norm, radius));
     if (thickness < kInfinity) reach2 = std::max(reach2, reach2_of(thickness - distance, cut.depth, norm, radius));
-    // No point is moved further than that.
+    // No point is moved by more than `depth`.
     cut.reach = std::min(std::sqrt(reach2), radius + cut.depth);
     return cut;
 }
@@ -84,7 +86,7 @@ void add_crease(FaceCut& cut, const FaceCut::Crease& crease, double corner) {
     if (!(crease.distance < cut.kernel->radius + cut.depth)) return;
     cut.crease = crease;
     cut.corner = corner;
-    // As far as what is moved by one and the other may come from.
+    // Points that both moves bring into the kernel may come from this far.
     const double further = std::max((2 * crease.distance - cut.depth) * cut.depth, 0.0);
     cut.reach = std::min(std::sqrt(cut.reach * cut.reach + further), kFaceFarthest);
 }
@@ -105,7 +107,7 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     const bool wall = cut.thickness < kInfinity;
     const FaceRoots face = face_roots(ray.phi, 0);
     const FaceRoots behind = wall ? face_roots(ray.phi, cut.thickness) : FaceRoots{};
-    // Along the ray phi has a least value between its zeros, or a largest.
+    // On the ray phi has a minimum between its zeros, or a maximum.
     const bool opens = ray.phi.a >= 0;
     const FaceRoots everywhere{true, -kNowhere, kNowhere};
     const FaceRoots outer = opens ? face : (wall ? behind : everywhere);
@@ -117,7 +119,7 @@ FacePath::FacePath(const FaceRay& ray, const FaceCut& cut, FacePieces choice)
     const End front, back{cut.thickness, -1};
     const End outer_end = opens || !wall ? front : back, inner_end = opens ? back : front;
     const auto add = [&](double low, double high, const End& entry, const End& leave) {
-        // A ray that meets no face is nearest to it where phi turns.
+        // A ray that meets no face is nearest to it at phi's extremum.
         const bool meets = low > -kNowhere || high < kNowhere;
         const double turn = -0.5 * ray.phi.b / std::min(ray.phi.a, -kStraight);
         const auto held = [this](double z) { return std::clamp(z, -half_chord_, half_chord_); };
@@ -164,8 +166,8 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
     FaceFootprint out;
     const double plain = std::sqrt(std::max(kernel_->radius * kernel_->radius - rho2_, 0.0));
     const QuadratureRule& rule = kept_gauss_legendre(nodes);
-    // Deeper than what is moved there is nothing beyond the plain kernel's reach. Of a wall that must be so all the
-    // way: its other face may be tilted.
+    // Below the depth at which points are moved, the kernel ends at the plain kernel's reach. In a wall no point may be
+    // moved all the way, since its other face may be tilted.
     const double far = thickness_ < kInfinity ? half_chord_ : plain;
     const auto deep = [&](const FacePlane& plane, double side) {
         return plane.is_deep(side * plain, side * far) && crease_.is_deep(side * plain, side * far);
@@ -180,8 +182,9 @@ FaceFootprint FacePath::footprint(int nodes, const Slice& slice) const {
             sum += rule.weights[k] * kernel(sampled_at(piece, z), *kernel_);
         }
         out.integral += std::max(end - begin, 0.0) * sum;
-        // Slices of a kernel show what its whole shows: from the first piece within its reach, else the last, on. Where
-        // a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last.
+        // All slices of a kernel show what the whole kernel shows, so the entry is that of the first piece within its
+        // reach, else of the last. Where a ray only touches a face, its path splits in two; leaving by the last piece
+        // avoids a jump.
         const bool first = &piece == &pieces().front(), last = &piece == &pieces().back();
         if (first ? last || overlap(piece) > 0 : !(overlap(pieces().front()) > 0))
             out.entry = end_at(piece.low, piece.from_plane);

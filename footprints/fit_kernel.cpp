@@ -1,4 +1,4 @@
-// Fits the reconstruction kernels anew and prints them beside those that are built in. Usage: fit_kernel [steps]
+// Refits the reconstruction kernels and prints them beside the built-in ones. Usage: fit_kernel [steps]
 #include <fmt/format.h>
 
 #include <cstdlib>

@@ -18,12 +18,12 @@ constexpr int kDistances = shader::TABLE_DISTANCES, kDirections = shader::TABLE_
 constexpr int kWidth = shader::TABLE_WIDTH, kRows = shader::TABLE_ROWS;
 constexpr int kBefore = shader::TABLE_BEFORE, kAcross = shader::TABLE_ACROSS, kBeside = shader::TABLE_BESIDE;
 constexpr double kSteps = shader::TABLE_BLEND_STEPS;
-constexpr int kNodes = 16;             // on either side of where the kernel is sampled no nearer to the face
-constexpr double kShortest = 1e-6;     // voxels: of a stretch of x that has texels
-constexpr double kLeastCosine = 1e-4;  // layers of faces seen edge-on are those of faces seen all but so
-constexpr double kNoWidth = 1e-9;      // to either side of where a stretch ends
+constexpr int kNodes = 16;             // on either side of the depth from which points are moved
+constexpr double kShortest = 1e-6;     // voxels: shortest stretch of x that has texels
+constexpr double kLeastCosine = 1e-4;  // layers of edge-on faces are computed at this cosine
+constexpr double kNoWidth = 1e-9;      // voxels to either side of the end of a stretch
 
-/// Sine of an angle by the tangent of its half, and back; cosine of it, beside.
+/// Sine and cosine of an angle from the tangent of its half, and the tangent from the sine.
 double sine_of(double tangent) {
     return 2 * tangent / (1 + tangent * tangent);
 }
@@ -34,7 +34,7 @@ double tangent_of(double sine) {
     return sine / (1 + std::sqrt(std::max(1 - sine * sine, 0.0)));
 }
 
-/// Of a row of a layer, where x goes from one stretch of texels to the next.
+/// The x at which one stretch of texels in a layer's row ends and the next begins.
 struct Stretches {
     double begin, across, beside, end;
 };
@@ -56,14 +56,14 @@ double texel_of(const Stretches& s, double x) {
     return kBefore + kAcross + share(s.beside, s.end) * (kBeside - 1);
 }
 
-/// The x of a texel, a little on its own side where it ends a stretch.
+/// The x of a texel, moved slightly to its own side at the end of a stretch.
 double place_of(const Stretches& s, int texel) {
     if (texel < kBefore) return std::lerp(s.begin, s.across, texel / (kBefore - 1.0)) - kNoWidth;
     if (texel < kBefore + kAcross) return std::lerp(s.across, s.beside, (texel - kBefore) / (kAcross - 1.0));
     return std::lerp(s.beside, s.end, (texel - kBefore - kAcross) / (kBeside - 1.0)) + kNoWidth;
 }
 
-/// The whole footprint along a ray, by what the reference integrates faces with.
+/// The whole footprint along a ray, by the reference's integral of faces.
 double plane_footprint(const Ray& ray, double distance, double depth) {
     const FaceCut cut =
         face_cut(distance, 0, 0, std::numeric_limits<double>::infinity(), depth, kernel_of_table(depth));

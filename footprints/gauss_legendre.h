@@ -15,7 +15,7 @@ struct QuadratureRule {
 /// The rule of n >= 1 nodes: exact for polynomials of degree 2n - 1.
 QuadratureRule gauss_legendre(int n);
 
-/// The same, made once, of 1 to 32 nodes. Throws std::out_of_range.
+/// The same rule, computed once, for 1 to 32 nodes. Throws std::out_of_range.
 const QuadratureRule& kept_gauss_legendre(int n);
 
 }  // namespace edgesplat

@@ -1,6 +1,6 @@
 // The reconstruction kernels K7 and their integrals over a line, part of a line, and a plane, all in closed form.
 //
-// K is a polynomial in w = max(0, 1 - r^2/R^2), so every integral along a straight line is one too (design (1), (2)).
+// K is a polynomial in w = max(0, 1 - r^2/R^2), so its integral along any straight line has a closed form, too.
 // The coefficients come from fit_kernel.cpp. Lengths are voxels; the integral of K over space is 1.
 #pragma once
 
@@ -11,17 +11,18 @@ namespace edgesplat {
 
 using KernelCoefficients = std::array<double, 6>;
 
-/// K.
+/// A kernel K(r).
 struct Kernel {
     double radius;                    ///< R, voxels
     KernelCoefficients coefficients;  ///< of w^2 ... w^7
 };
 
-/// That of plain splats, of the paper's, and of matter that one sees through: the sum over the lattice is 1 to 7e-5.
+/// The kernel of plain splats, of the paper's method and of translucent matter. Its sum over the lattice is 1 to within
+/// 7e-5.
 inline constexpr Kernel kKernel = {1.6,
                                    {0.0173624837, -0.0404017909, 0.531403221, -0.680940898, 1.37803587, -0.611612954}};
-/// That of scenes in which all matter hides what is behind it and faces cut it: nobody sees its sum, 1 to 1.2 %, and a
-/// ray passes .6 as many of them.
+/// The narrow kernel of scenes where faces cut kernels and all matter is opaque. Its sum is 1 to within 1.2 %, which
+/// does not show; a ray passes .6 as many of these kernels.
 inline constexpr Kernel kNarrowKernel = {1.21,
                                          {1.3647426, -7.69352155, 25.8377679, -41.6868634, 33.3112006, -10.4390086}};
 inline constexpr double kKernelRadius = kKernel.radius;
@@ -34,7 +35,7 @@ constexpr double kernel_line_factor(double radius, int n) {
     return factor;
 }
 
-/// Coefficients of w^2.5 ... w^7.5 in the footprint g (design (2)).
+/// Coefficients of w^2.5 ... w^7.5 in the footprint g.
 constexpr KernelCoefficients footprint_coefficients(const Kernel& k) {
     KernelCoefficients c{};
     for (std::size_t i = 0; i < c.size(); ++i)
@@ -42,7 +43,7 @@ constexpr KernelCoefficients footprint_coefficients(const Kernel& k) {
     return c;
 }
 
-/// K at a squared distance r2 >= 0 from its centre. 0 from R on.
+/// K at a squared distance r2 >= 0 from its centre; 0 from R on.
 inline double kernel(double r2, const Kernel& k = kKernel) {
     const KernelCoefficients& c = k.coefficients;
     const double v = 1 - r2 / (k.radius * k.radius);
@@ -50,10 +51,10 @@ inline double kernel(double r2, const Kernel& k = kKernel) {
     return w * w * (c[0] + w * (c[1] + w * (c[2] + w * (c[3] + w * (c[4] + w * c[5])))));
 }
 
-/// g: integral of K along a line that passes its centre at squared distance rho2 >= 0 (design (2)).
+/// g: integral of K along a line that passes its centre at squared distance rho2 >= 0.
 double kernel_footprint(double rho2, const Kernel& k = kKernel);
 
-/// Integral of K along that line from its point nearest to the centre to the point z voxels on; odd in z.
+/// Integral of K along that line, from its point nearest to the centre to the point z voxels further; odd in z.
 double kernel_chord(double rho2, double z, const Kernel& k = kKernel);
 
 /// Integral of K over a plane at squared distance r2 >= 0: the kernel of one-dimensional reconstruction.

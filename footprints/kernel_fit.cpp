@@ -22,7 +22,7 @@ class SmallestRipple {
     }
 
     Row solve() {
-        // Artificial columns +-e_r with a price no real column reaches make the first basis.
+        // The first basis consists of artificial columns +-e_r, whose price no real column reaches.
         const double penalty = 1e4;
         const std::size_t real = rows_.size();
         std::vector<std::size_t> basis;
@@ -43,7 +43,7 @@ class SmallestRipple {
             for (std::size_t r = 0; r < kUnknowns; ++r)
                 for (std::size_t c = 0; c < kUnknowns; ++c)
                     x[c] += bounds_[basis[r]] * inverse[r][c];
-            // The constraint violated most, in units of its own length, comes in.
+            // The constraint that is violated most, in units of its own length, enters the basis.
             std::size_t entering = rows_.size();
             double worst = 1e-11;
             for (std::size_t i = 0; i < real; ++i) {

@@ -119,7 +119,7 @@ PaperProfile paper_profile_for(const PaperEdge& edge) {
     const PaperShape& shape = edge.shape;
     PaperProfile q{0.5 - shape.inset, 0.5 + shape.inset, 0, 0, shape.curve};
     const double low = q.t1 / 3 + shape.rise, high = (2 + q.t2) / 3 - shape.rise;
-    // A hair inside the legal region, so that rounding does not put m1 below t1/3.
+    // Slightly inside the legal region, so that rounding does not put m1 below t1/3.
     const double position = std::clamp(edge.distance - paper_interval(edge), low + 1e-9, high - 1e-9);
     q.m1 = position - shape.rise;
     q.m2 = position + shape.rise;

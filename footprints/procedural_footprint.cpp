@@ -1,4 +1,4 @@
-// The rules that shaders/footprints/footprint.glsl computes, in double precision: keep the two alike.
+// The rules of shaders/footprints/footprint.glsl in double precision; keep both in step.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace edgesplat {
 namespace {
 
-// The ray as the rule sees it: turned so that t increases, with the piece of it that can reach the kernel.
+// The ray, turned so that t increases, with the piece that can reach the kernel.
 struct Chord {
     double rho2, pn, un;
     double low,
@@ -29,7 +29,7 @@ struct Chord {
     double z_of(double t) const { return (t - pn) / un; }
 };
 
-// Integral of the warped kernel over the part of the ray with t in [first, last], where `warp` gives w(t).
+// Integral of the warped kernel over the part of the ray with t in [first, last]; `warp` returns w(t).
 template <typename Warp>
 double piece(const Chord& chord, double first, double last, const QuadratureRule& rule, const Warp& warp) {
     const double start = std::max(chord.z_of(first), chord.low);
@@ -44,7 +44,7 @@ double piece(const Chord& chord, double first, double last, const QuadratureRule
     return length * sum;
 }
 
-// The plain kernel over the same part.
+// Integral of the plain kernel over the same part.
 double plain(const Chord& chord, double first, double last) {
     const auto upto = [&](double t) {
         return kernel_chord(chord.rho2, std::clamp(chord.z_of(t), chord.low, chord.high));
@@ -56,8 +56,7 @@ double whole_plain(const Chord& chord) {
     return kernel_chord(chord.rho2, chord.high) - kernel_chord(chord.rho2, chord.low);
 }
 
-// The footprint of the point where the ray passes nearest to the voxel, moved by delta along n as far as one can see
-// it.
+// The footprint of the ray's point nearest to the voxel, moved by delta along the part of n that is visible.
 double displaced(const Ray& ray, double delta, const Slice& slice) {
     const double s2 = 1 - ray.un * ray.un;
     return sliced_kernel_footprint(std::max(0.0, ray.rho2 + delta * (2 * ray.pn + s2 * delta)), slice);

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kTag = ".edgesplat-", kEnding = ".tmp";
-constexpr std::size_t kLongestName = 200;  ///< of a target in that of its temporary file, which may have 255 bytes
+constexpr std::size_t kLongestName = 200;  ///< bytes of the target's name in the temporary one, which may have 255
 constexpr int kAttempts = 1000;
 
 constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
@@ -39,7 +39,7 @@ volatile std::sig_atomic_t pending = 0;
     throw std::system_error(error, std::generic_category());
 }
 
-/// Whether a name is one that TemporaryFile gives: ends in .edgesplat-DIGITS-DIGITS.tmp.
+/// Whether a name is a TemporaryFile's: it ends in .edgesplat-DIGITS-DIGITS.tmp.
 bool is_temporary(std::string_view name) {
     const std::size_t tag = name.rfind(kTag);
     if (!name.starts_with('.') || !name.ends_with(kEnding) || tag == std::string_view::npos) return false;
@@ -55,8 +55,8 @@ bool is_temporary(std::string_view name) {
 
 enum class Lock { Taken, Held, None };
 
-/// Belongs to the open file, not to the process as fcntl's other locks do, which any close() of the file would end; and
-/// is another one than flock, which HDF5 takes of what it writes.
+/// The lock belongs to the open file. fcntl's other locks belong to the process and end with any close() of the file.
+/// It is also independent of flock, which HDF5 uses for the files that it writes.
 Lock lock(int descriptor) {
     struct flock whole {};
     whole.l_type = F_WRLCK;
@@ -70,14 +70,14 @@ void remove_if_stale(const fs::path& path) {
     if (descriptor < 0) return;
     struct stat opened {
     }, named{};
-    // Its writer may have renamed it since it was opened.
+    // The writer may have renamed the file since it was opened.
     if (lock(descriptor) == Lock::Taken && fstat(descriptor, &opened) == 0 && lstat(path.c_str(), &named) == 0 &&
         S_ISREG(opened.st_mode) && opened.st_ino == named.st_ino && opened.st_dev == named.st_dev)
         unlink(path.c_str());
     close(descriptor);
 }
 
-/// Whether a folder is seen for the first time.
+/// Whether this process uses a folder for the first time.
 bool first_visit(const fs::path& folder) {
     static std::mutex mutex;
     // Never destroyed: a static renderer writes its cache when the program ends.
@@ -153,7 +153,7 @@ bool TemporaryFile::open_new() {
         if (error == EEXIST) return false;
         throw_errno(error);
     }
-    // Before it was locked another process may have taken it for one that was left.
+    // Before it was locked, another process may have removed the file as stale.
     struct stat opened {};
     if (lock(descriptor_) != Lock::Held && fstat(descriptor_, &opened) == 0 && opened.st_nlink > 0) return true;
     path_.clear();
@@ -194,7 +194,7 @@ void remove_stale_temporaries(const fs::path& folder) noexcept {
         std::error_code error;
         for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
             if (is_temporary(it->path().filename().string())) remove_if_stale(it->path());
-    } catch (...) {  // NOLINT(bugprone-empty-catch): what cannot be removed now is removed another time
+    } catch (...) {  // NOLINT(bugprone-empty-catch): a later call removes the rest
     }
 }
 

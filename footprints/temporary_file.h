@@ -1,5 +1,6 @@
-// Files that appear whole or not at all: written under a temporary name beside their target, then renamed. All writers
-// go through here, so that what a killed one leaves has one name and is removed in one place.
+// Files that appear completely or not at all: written under a temporary name beside their target, then renamed. All
+// writers use this class. So the files that a killed process leaves have one pattern of names and are removed in one
+// place.
 #pragma once
 
 #include <filesystem>
@@ -7,23 +8,23 @@
 
 namespace edgesplat {
 
-/// While any lives, SIGINT, SIGTERM and SIGHUP are only noted; when the last one dies they take their course.
+/// Defers SIGINT, SIGTERM and SIGHUP while any instance lives; the last destructor delivers them.
 class DeferSignals {
   public:
     DeferSignals();
     ~DeferSignals();
-    /// Whether one lives. May be asked by a signal handler.
+    /// Whether an instance lives. Safe in a signal handler.
     static bool any() noexcept;
     DeferSignals(const DeferSignals&) = delete;
     DeferSignals& operator=(const DeferSignals&) = delete;
 };
 
-/// Appends all of it to an open file, however often it is interrupted. Throws std::system_error.
+/// Writes all bytes to an open file, however often it is interrupted. Throws std::system_error.
 void write_all(int descriptor, std::string_view bytes);
 
-/// A new and empty file beside its target, named .NAME.edgesplat-PID-COUNT.tmp; removed unless it is renamed. It is
-/// locked while this lives, and the lock dies with the process: what is not locked was left by one that was killed.
-/// The first one that a process makes in a folder removes what others left there. Throws std::system_error.
+/// A new, empty file beside its target, named .NAME.edgesplat-PID-COUNT.tmp. It is removed unless it is renamed. It is
+/// locked while this object lives; the lock ends with the process, so an unlocked file belongs to a killed process. The
+/// first file of a process in a folder removes those. Throws std::system_error.
 class TemporaryFile {
   public:
     explicit TemporaryFile(const std::filesystem::path& target);
@@ -35,7 +36,7 @@ class TemporaryFile {
     const std::filesystem::path& path() const { return path_; }
     /// Appends.
     void write(std::string_view bytes);
-    /// Everything, by whomever it was written, to the disk.
+    /// Flushes the whole file to disk, whoever wrote it.
     void sync();
     void rename_to_target();
 
@@ -46,8 +47,8 @@ class TemporaryFile {
     int descriptor_ = -1;
 };
 
-/// Removes what killed processes left of their TemporaryFiles in a folder; those of living ones, on other machines that
-/// share the folder too, are locked and stay. Where a file system has no locks all of them stay.
+/// Removes the temporary files of killed processes from a folder. Files of running processes are locked and stay, also
+/// those of other machines that share the folder. On a file system without locks all files stay.
 void remove_stale_temporaries(const std::filesystem::path& folder) noexcept;
 
 }  // namespace edgesplat

@@ -24,9 +24,9 @@ namespace viewer = edgesplat::viewer;
 constexpr const char* kBuiltin = "builtin:cube-hole";
 constexpr const char* kProgram = "edgesplat-fly " EDGESPLAT_VERSION;
 constexpr double kTargetSoftware = 150, kTarget = 33;
-constexpr double kSlicesShare = 0.34, kSlicesMost = 24;  // of the width beside the panels; lengths of text
-constexpr double kTextSize = 15;                         // pixels, on a screen of the usual density
-// Seconds that one waits for something to happen: while something moves, is drawn, and never mind.
+constexpr double kSlicesShare = 0.34, kSlicesMost = 24;  // of the width beside the panels; em
+constexpr double kTextSize = 15;                         // pixels, on a screen of normal density
+// Seconds to wait for events: while something moves, while something is computed, otherwise.
 constexpr double kWaitMoving = 0.004, kWaitBusy = 0.03, kWaitIdle = 0.5;
 
 bool usable(const std::vector<edgesplat::DeviceInfo>& devices, const std::string& name) {
@@ -42,7 +42,7 @@ App::App(const AppOptions& options) : options_(options), state_(!options.script.
     size_ = options_.size.x > 0 ? options_.size : glm::ivec2(remembered.width, remembered.height);
     state_.device = options_.device;
     state_.devices = edgesplat::list_devices();
-    // A device that was chosen once may be gone.
+    // The device of the last run may no longer exist.
     if (state_.device.device.empty() && usable(state_.devices, remembered.device))
         state_.device.device = remembered.device;
     if (!options_.script.empty()) {
@@ -102,7 +102,7 @@ void App::open_gui() {
         device_ = std::make_unique<edgesplat::gpu::Device>(choice, extensions);
         if (window_) surface_ = std::make_unique<Surface>(*device_, window_->handle());
     };
-    // Not every device that can draw pictures can draw to the screen.
+    // A device that can draw pictures may be unable to draw to the screen.
     std::string reasons;
     std::vector<std::string> candidates{state_.device.device};
     for (const edgesplat::DeviceInfo& device : state_.devices)
@@ -123,7 +123,7 @@ void App::open_gui() {
 }
 
 void App::close_gui() {
-    // What is on the device goes before it.
+    // Objects on the device are destroyed before it.
     surface_.reset();
     canvas_.reset();
     for (CanvasPicture* picture : {&state_.edges, &state_.plain, &state_.sharpening})
@@ -154,7 +154,7 @@ void App::finish_loading() {
     try {
         const glm::ivec2 size = state_.picture_size();
         viewer::Opened opened = loading->take();
-        // Its hole is seen from the top.
+        // From the top its hole is visible.
         if (options_.source.empty() && opened.path == kBuiltin) opened.document.camera.view = "top";
         state_.session.open(std::move(opened), glm::max(size, glm::ivec2(64)));
         state_.session.motion().set_collisions(state_.preferences.collisions);
@@ -165,7 +165,7 @@ void App::finish_loading() {
         if (window_) window_->set_title("Edgesplat: " + loading->path());
     } catch (const std::exception& error) {
         state_.error = error.what();
-        viewer::forget_lost(state_.preferences);
+        viewer::remove_missing(state_.preferences);
     }
 }
 
@@ -182,34 +182,34 @@ void App::finish_writing(bool wait) {
     });
 }
 
-void App::grant_wishes() {
-    Wishes wishes = std::exchange(state_.wishes, {});
-    if (!wishes.open.empty()) begin_loading(wishes.open);
-    if (wishes.full_screen && window_) window_->set_full_screen(!window_->full_screen());
-    if (wishes.device) {
-        state_.device.device = state_.preferences.device = *wishes.device;
+void App::apply_requests() {
+    PendingRequests pending_requests = std::exchange(state_.pending_requests, {});
+    if (!pending_requests.open.empty()) begin_loading(pending_requests.open);
+    if (pending_requests.full_screen && window_) window_->set_full_screen(!window_->full_screen());
+    if (pending_requests.device) {
+        state_.device.device = state_.preferences.device = *pending_requests.device;
         make_drawer();
-        state_.session.ask_again();
+        state_.session.force_next_request();
     }
-    leaving_ = leaving_ || wishes.quit;
+    leaving_ = leaving_ || pending_requests.quit;
     try {
         const glm::ivec2 shown = state_.picture_size();
-        if (!wishes.save_scene.empty()) {
-            edgesplat::SceneDocument document = state_.session.kept_document(shown);
+        if (!pending_requests.save_scene.empty()) {
+            edgesplat::SceneDocument document = state_.session.document_to_save(shown);
             auto& recorder = state_.session.recorder();
             if (!recorder.empty()) {
                 document.movie = {};
                 document.movie.path = recorder.path(0.1 * state_.session.volume().geometry.spacing().x).keys;
             }
-            viewer::save_scene(std::move(document), state_.session.volume(), wishes.save_scene);
-            state_.session.say("wrote " + wishes.save_scene);
+            viewer::save_scene(std::move(document), state_.session.volume(), pending_requests.save_scene);
+            state_.session.say("wrote " + pending_requests.save_scene);
         }
-        if (!wishes.save_picture.empty()) {
-            const glm::ivec2 size = wishes.picture_size.x > 0 ? wishes.picture_size : shown;
-            viewer::PictureOrder order{state_.session.opened().volume, state_.session.kept_document(size),
-                                       state_.device, wishes.save_picture, kProgram};
-            state_.writing.push_back(
-                {wishes.save_picture, std::async(std::launch::async, [order] { viewer::save_picture(order); })});
+        if (!pending_requests.save_picture.empty()) {
+            const glm::ivec2 size = pending_requests.picture_size.x > 0 ? pending_requests.picture_size : shown;
+            viewer::PictureJob order{state_.session.opened().volume, state_.session.document_to_save(size),
+                                     state_.device, pending_requests.save_picture, kProgram};
+            state_.writing.push_back({pending_requests.save_picture,
+                                      std::async(std::launch::async, [order] { viewer::save_picture(order); })});
             if (player_) finish_writing(true);
         }
     } catch (const std::exception& error) {
@@ -258,7 +258,7 @@ void App::show_panels() {
         ImGui::End();
     }
     slices_window(state_);
-    // What a hand let go of is what undo comes back to.
+    // When the user releases a widget or handle, the change becomes an undo step.
     if (!ImGui::IsAnyItemActive() && !state_.editing.clip.held) state_.session.finish_edit();
     status_line(state_, state_.area.w, canvas_->size().y - state_.area.w);
     help_window(state_);
@@ -278,7 +278,7 @@ void App::present() {
 
 void App::frame(const Input& input) {
     if (recorder_) recorder_->add(input);
-    if (input.size.x < 1 || input.size.y < 1) return;  // minimised: nothing to see, nothing to draw
+    if (input.size.x < 1 || input.size.y < 1) return;  // minimised: nothing to draw
     canvas_->resize(input.size);
     size_ = input.size;
     canvas_->begin();
@@ -287,8 +287,8 @@ void App::frame(const Input& input) {
     const ImGuiIO& io = ImGui::GetIO();
     lay_out(input);
     for (const std::string& path : input.dropped)
-        state_.wishes.open = path;
-    grant_wishes();
+        state_.pending_requests.open = path;
+    apply_requests();
     finish_loading();
     finish_writing(false);
     const bool over_picture = state_.cursor && !io.WantCaptureMouse;
@@ -301,7 +301,7 @@ void App::frame(const Input& input) {
     show_panels();
     draw_over_picture(state_);
     ImGui::Render();
-    if (std::exchange(lose_window_, false)) throw vk::DeviceLostError("as a script wants it");
+    if (std::exchange(lose_window_, false)) throw vk::DeviceLostError("simulated by a script");
     present();
 }
 
@@ -321,7 +321,7 @@ std::optional<Input> App::next_input() {
 }
 
 void App::run() {
-    // The first frames show the window, before anything is there to be drawn in it.
+    // The first frame shows the window before anything is loaded.
     Input first;
     first.size = size_;
     frame(first);
@@ -330,11 +330,11 @@ void App::run() {
             frame(*input);
             lost_ = 0;
         } catch (const vk::DeviceLostError&) {
-            if (++lost_ > 1) edgesplat::fail("window: the device {} was lost, twice", device_->info().name);
+            if (++lost_ > 1) edgesplat::fail("window: the device {} was lost twice in a row", device_->info().name);
             ImGui::EndFrame();
             close_gui();
             open_gui();
-            state_.session.ask_again();
+            state_.session.force_next_request();
         }
     }
     finish_writing(true);

@@ -1,4 +1,4 @@
-// The navigation app: a frame is input, session, picture, panels, in this order.
+// The navigation app. Each frame processes input, session, picture and panels, in this order.
 #pragma once
 
 #include <memory>
@@ -13,17 +13,17 @@
 #include "apps/edgesplat-fly/surface.h"
 #include "apps/edgesplat-fly/window.h"
 
-/// What scripts may expect, with commas between.
+/// The names of all values that scripts can compare, separated by commas.
 std::string value_names();
 
 struct AppOptions {
     std::string source;  ///< volume or scene file; empty: a builtin scene
     edgesplat::DeviceChoice device;
     std::string script, record;
-    bool headless = false;  ///< no window: only a script drives it
+    bool headless = false;  ///< no window: a script provides the input
     bool remember = true;   ///< read and write the user's preferences
     glm::ivec2 size{0};     ///< of the content; 0: as last time
-    double target = 0;      ///< milliseconds in motion; 0: as last time, else by the device
+    double target = 0;  ///< time limit of a picture in motion, milliseconds; 0: as last time, else chosen by the device
     std::uint64_t memory_budget = 0;
 };
 
@@ -44,7 +44,7 @@ class App {
     void lay_out(const Input& input);
     void show_panels();
     void present();
-    void grant_wishes();
+    void apply_requests();
     void begin_loading(const std::string& path);
     void finish_loading();
     void finish_writing(bool wait);
@@ -66,6 +66,6 @@ class App {
     glm::ivec2 size_{1280, 800};
     bool leaving_ = false;
     bool lose_window_ = false;
-    int lost_ = 0;                ///< devices in a row
-    std::uint64_t messages_ = 0;  ///< of validation, by devices that are gone
+    int lost_ = 0;                ///< consecutive losses of devices
+    std::uint64_t messages_ = 0;  ///< validation messages of destroyed devices
 };

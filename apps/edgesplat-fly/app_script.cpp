@@ -1,4 +1,4 @@
-// App: what scripts ask of it.
+// App: the functions that scripts call.
 #include "apps/edgesplat-fly/app.h"
 #include "apps/edgesplat-fly/picture_view.h"
 #include "engine/error.h"
@@ -12,7 +12,7 @@ namespace viewer = edgesplat::viewer;
 
 edgesplat::Image as_image(const viewer::ScreenPicture& picture) {
     edgesplat::Image image(picture.width, picture.height, 3);
-    // encode_png turns linear light into sRGB; this undoes it beforehand, so that bytes stay what they are.
+    // encode_png converts linear light to sRGB; the inverse before it keeps the bytes unchanged.
     for (std::size_t i = 0; i < image.pixels.size() / 3; ++i)
         for (std::size_t c = 0; c < 3; ++c)
             image.pixels[3 * i + c] = static_cast<float>(edgesplat::to_linear(picture.pixels[4 * i + c] / 255.0));
@@ -34,8 +34,8 @@ ScriptHost App::script_host() {
         edgesplat::write_image(path, as_image(part_of(canvas_->read(), state_.area)));
     };
     host.save = [this](const std::string& path) {
-        state_.wishes.save_scene = path;
-        grant_wishes();
+        state_.pending_requests.save_scene = path;
+        apply_requests();
         if (!state_.error.empty()) edgesplat::fail("{}", state_.error);
     };
     host.report = [this](const std::string& path) {
@@ -50,14 +50,14 @@ ScriptHost App::script_host() {
         for (const auto& [known, place] : state_.places)
             names.push_back(known);
         const std::string nearest = edgesplat::nearest_name(name, names);
-        edgesplat::fail("'{}' is no widget that can be seen now{}", name,
+        edgesplat::fail("no visible widget is called '{}'{}", name,
                         nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
     };
-    host.lose_device = [this](bool window) {
+    host.simulate_device_loss = [this](bool window) {
         if (window)
             lose_window_ = true;
         else
-            state_.drawer->lose_device();
+            state_.drawer->simulate_device_loss();
     };
     host.value = [this](const std::string& name) { return value(name); };
     return host;

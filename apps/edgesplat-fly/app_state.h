@@ -1,4 +1,4 @@
-// What the parts of the window share: the session, and how it is looked at.
+// State shared by the parts of the window: the session, and how it is displayed.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@
 
 /// What a click in the picture does.
 enum class Tool {
-    Move,       ///< nothing: the mouse moves the eye
+    Move,       ///< no action: the mouse moves the eye
     Measure,    ///< picks the surface
-    PathStart,  ///< where the guided path begins, then PathEnd
+    PathStart,  ///< sets the start of the guided path, then PathEnd
     PathEnd,
 };
 
@@ -31,15 +31,15 @@ struct Writing {
     std::future<void> done;
 };
 
-/// A question to the rest of the app that a panel asks; done before the next frame.
-struct Wishes {
+/// Requests of the panels to the app, carried out before the next frame.
+struct PendingRequests {
     std::string open;                   ///< path
     std::string save_scene;             ///< path
     std::string save_picture;           ///< path
-    glm::ivec2 picture_size{0};         ///< of it; 0: as it is shown
+    glm::ivec2 picture_size{0};         ///< of the picture; 0: as displayed
     std::optional<std::string> device;  ///< see DeviceChoice
     bool quit = false;
-    bool full_screen = false;  ///< to be toggled
+    bool full_screen = false;  ///< toggle it
 };
 
 struct AppState {
@@ -50,37 +50,37 @@ struct AppState {
     std::unique_ptr<edgesplat::viewer::Drawer> drawer;
     std::unique_ptr<edgesplat::viewer::Loading> loading;
     std::vector<Writing> writing;
-    Wishes wishes;
+    PendingRequests pending_requests;
 
     std::optional<edgesplat::viewer::DrawnPicture> shown;  ///< without its pixels once they are on the canvas
-    edgesplat::Image last_edges, last_plain;               ///< its pixels
-    bool has_plain = false;                                ///< it was drawn with conventional splatting beside it
-    bool sharpening_due = false;                           ///< not made of them yet
+    edgesplat::Image last_edges, last_plain;               ///< the pixels of `shown`
+    bool has_plain = false;                                ///< `shown` has a conventional picture, too
+    bool sharpening_due = false;                           ///< `sharpening` must be computed from them
     CanvasPicture edges, plain, sharpening;
-    std::vector<Placed> pictures;  ///< what this frame paints under the panels, lowest first
+    std::vector<Placed> pictures;  ///< pictures that this frame paints under the panels, lowest first
 
-    glm::ivec4 area{0};         ///< of the picture in the window: left, top, right, bottom
-    glm::ivec4 slices_area{0};  ///< of the slices; empty without them
+    glm::ivec4 area{0};         ///< rectangle of the picture in the window: left, top, right, bottom
+    glm::ivec4 slices_area{0};  ///< rectangle of the slices; empty without them
     Tool tool = Tool::Move;
     bool panels = true, help = false, slices = false;
     bool overlays = true;  ///< scale bar, orientation, picks
-    double boost = 1;      ///< factor on flying speed, by the wheel
+    double boost = 1;      ///< factor on flying speed, set with the wheel
     edgesplat::viewer::Drawer::Options::Rays rays = edgesplat::viewer::Drawer::Options::Rays::OnProcessor;
-    double target = 150;               ///< milliseconds a picture may take while something moves
-    std::string error;                 ///< to be shown until it is clicked away
-    std::optional<glm::dvec2> cursor;  ///< pixel of the picture below the mouse
+    double target = 150;               ///< time limit of a picture in motion, milliseconds
+    std::string error;                 ///< shown until the user closes it
+    std::optional<glm::dvec2> cursor;  ///< pixel of the picture under the mouse
 
     SceneEditing editing;
     SliceView slice_view;
     SlicePictures slice_pictures;
-    std::map<std::string, glm::dvec4> places;  ///< of widgets in the last frame, for scripts: left, top, right, bottom
+    std::map<std::string, glm::dvec4> places;  ///< widgets of the last frame, for scripts: left, top, right, bottom
     std::string scope;                         ///< see Scope
-    bool wait;                                 ///< what else happens on threads is done before a frame ends
+    bool wait;                                 ///< frames wait for background threads
 
     explicit AppState(bool waits) : session(waits), wait(waits) {}
-    /// How the picture is looked at: as the session says, or until what that needs is drawn, edge-preserved.
+    /// How the picture is shown: as the session says, but edge-preserved until a conventional picture is drawn.
     edgesplat::viewer::Show visible() const { return has_plain ? session.show() : edgesplat::viewer::Show::Edges; }
     glm::ivec2 picture_size() const { return {area.z - area.x, area.w - area.y}; }
-    /// A length of text and widgets, pixels.
+    /// Height of text, pixels: the unit of widget sizes.
     double em = 16;
 };

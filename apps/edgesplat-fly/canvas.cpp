@@ -85,7 +85,7 @@ Canvas::~Canvas() {
     try {
         device_.handle().waitIdle();
     } catch (const vk::SystemError&) {
-        // A lost device has nothing left to wait for.
+        // There is no work to wait for on a lost device.
     }
     ImGui_ImplVulkan_Shutdown();
 }
@@ -118,7 +118,7 @@ void Canvas::begin() {
     if (std::exchange(pending_, false)) {
         if (device_.handle().waitForFences(*fence_, VK_TRUE, std::numeric_limits<std::uint64_t>::max()) !=
             vk::Result::eSuccess)
-            edgesplat::fail("window: the device does not answer");
+            edgesplat::fail("window: the device does not respond");
         device_.handle().resetFences(*fence_);
     }
     commands_.reset();
@@ -163,7 +163,7 @@ void Canvas::paint(const Placed& placed) {
     const glm::dvec2 from(placed.picture->size_);
     const auto x = [&](double share) { return static_cast<int>(std::lround(share * from.x)); };
     const auto y = [&](double share) { return static_cast<int>(std::lround(share * from.y)); };
-    // Blits may not leave the image: what lies outside is taken off source and target in proportion.
+    // Blits must stay inside the image: source and target are clipped in proportion.
     glm::dvec4 part = placed.part, at(placed.at);
     const glm::dvec2 limit(size_);
     for (int axis = 0; axis < 2; ++axis) {

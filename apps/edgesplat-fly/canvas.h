@@ -1,4 +1,4 @@
-// What the window's content is painted on: pictures first, the panels over them.
+// The image of the window's content: pictures first, panels over them.
 #pragma once
 
 #include <functional>
@@ -11,10 +11,10 @@
 
 struct ImDrawData;
 
-/// A picture on the device, as large as it was made for or smaller.
+/// A picture on the device.
 class CanvasPicture {
   public:
-    /// What is to be shown from the next frame on.
+    /// Sets the picture that is shown from the next frame on.
     void set(edgesplat::viewer::ScreenPicture picture);
     bool empty() const { return size_ == glm::ivec2(0); }
     glm::ivec2 size() const { return size_; }
@@ -28,17 +28,17 @@ class CanvasPicture {
     edgesplat::gpu::Buffer staging_;
 };
 
-/// A part of a picture: left, top, right, bottom, within it.
+/// A copy of a part of a picture: left, top, right, bottom, within it.
 edgesplat::viewer::ScreenPicture part_of(const edgesplat::viewer::ScreenPicture& picture, const glm::ivec4& part);
 
-/// A part of a picture, and where it is shown; both as low and high corners in pixels.
+/// A part of a picture, and its place on the canvas; both as low and high corners.
 struct Placed {
     CanvasPicture* picture = nullptr;
     glm::dvec4 part{0, 0, 1, 1};  ///< shares of the picture's width and height
     glm::ivec4 at{0};             ///< pixels of the canvas
 };
 
-/// An image that Dear ImGui draws into. One frame is in flight at a time.
+/// An image that Dear ImGui draws into. At most one frame is in flight.
 class Canvas {
   public:
     explicit Canvas(const edgesplat::gpu::Device& device);
@@ -46,20 +46,20 @@ class Canvas {
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
 
-    /// Throws Error where the device cannot do that.
+    /// Throws Error if the device cannot create the image.
     void resize(const glm::ivec2& size);
     glm::ivec2 size() const { return size_; }
 
-    /// Waits for the frame before; ImGui's fonts are brought there with the first one.
+    /// Waits for the previous frame. The first call uploads ImGui's fonts.
     void begin();
-    /// Paints the pictures in their order, then the panels. `finish` records what becomes of the image, and `signals`
-    /// says what the submission waits for and signals.
+    /// Paints the pictures in order, then the panels. `finish` records commands that use the image. `signals`: the
+    /// semaphores that the submission waits for and signals.
     struct Signals {
         vk::Semaphore wait, done;
     };
     void end(const std::vector<Placed>& pictures, ImDrawData* panels, const Signals& signals = {},
              const std::function<void(const vk::raii::CommandBuffer&, vk::Image)>& finish = {});
-    /// The frame just ended.
+    /// The last frame.
     edgesplat::viewer::ScreenPicture read();
 
   private:

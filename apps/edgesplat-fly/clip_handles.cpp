@@ -63,7 +63,7 @@ void draw_box(const AppState& state, const Pen& pen, const edgesplat::ClipBox& b
 void draw_handle(AppState& state, const Pen& pen, const Handle& handle, bool bright) {
     const auto& camera = state.session.motion().camera();
     const glm::ivec2 size = state.picture_size();
-    const auto at = viewer::seen_at(handle, camera, size, kInset * state.em);
+    const auto at = viewer::handle_pixel(handle, camera, size, kInset * state.em);
     if (!at) return;
     const ImU32 color = bright ? kInk : color_of(handle.kind);
     const double depth = glm::dot(handle.place - camera.eye, glm::normalize(camera.direction));
@@ -71,7 +71,7 @@ void draw_handle(AppState& state, const Pen& pen, const Handle& handle, bool bri
     const auto place = viewer::project(camera, size, handle.place);
     auto tip = viewer::project(camera, size, handle.place + length * handle.normal);
     if (tip) {
-        *tip += *at - *place;  // as it points where the handle itself is
+        *tip += *at - *place;  // parallel to the arrow at the handle's own place
         const glm::dvec2 way = *tip - *at;
         const double pixels = glm::length(way);
         pen.line(*at, *tip, color, 2);
@@ -99,7 +99,7 @@ bool clip_handles(AppState& state, const Input& input, bool over_picture) {
     const glm::dvec2 pixel = input.mouse - glm::dvec2(state.area.x, state.area.y);
     const auto handles = hand.shown ? handles_of(state) : std::vector<Handle>();
     if (hand.held) {
-        // Another scene may have come under the hand.
+        // The scene may have changed during the drag.
         const bool there = std::ranges::any_of(handles, [&](const Handle& h) { return same(h, *hand.held); });
         if (left && there) {
             drag(state, pixel);

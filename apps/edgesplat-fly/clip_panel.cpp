@@ -19,7 +19,7 @@ glm::dvec3 towards_eye(const AppState& state) {
     return -edgesplat::unit(state.session.motion().camera().direction);
 }
 
-/// The world axis that is nearest, either way.
+/// The nearest world axis, with the direction's sign.
 glm::dvec3 along_axis(const glm::dvec3& direction) {
     const glm::dvec3 size = glm::abs(direction);
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -43,7 +43,7 @@ void one_plane(AppState& state, std::size_t i) {
     const auto turn = [&](const glm::dvec3& to) {
         session.edit([&](SceneDocument& d) { d.effects.clip.keep.at(i).normal = to; });
     };
-    if (button(state, "to me")) turn(towards_eye(state));
+    if (button(state, "to eye")) turn(towards_eye(state));
     ImGui::SameLine();
     if (button(state, "along an axis")) turn(along_axis(plane.normal));
     ImGui::SameLine();
@@ -72,7 +72,7 @@ void box(AppState& state, const char* name, const char* label, std::optional<Cli
           [&](SceneDocument& d, const glm::dvec3& v) { (d.*member)->high = glm::max(v, now->low + voxel / 2); });
 }
 
-/// The eighth of the volume that is nearest to the eye.
+/// The eighth of the volume nearest to the eye.
 ClipBox near_corner(const AppState& state) {
     const auto& geometry = state.session.volume().geometry;
     ClipBox out = viewer::volume_box(geometry);
@@ -97,8 +97,9 @@ void clip_panel(AppState& state) {
     ImGui::BeginDisabled(!clip.remove.empty());
     box(state, "cut", "cut a box out", &SceneDocument::remove_box, near_corner(state));
     ImGui::EndDisabled();
-    if (!fits) ImGui::TextDisabled("beside a box: at most %zu planes", kBesideBox);
-    if (!clip.remove.empty()) ImGui::TextDisabled("the scene cuts out what lies before %zu planes", clip.remove.size());
+    if (!fits) ImGui::TextDisabled("with a box, at most %zu planes", kBesideBox);
+    if (!clip.remove.empty())
+        ImGui::TextDisabled("the scene already cuts out matter with %zu planes", clip.remove.size());
     for (std::size_t i = 0; i < session.document().effects.clip.keep.size(); ++i) {
         ImGui::Separator();
         one_plane(state, i);

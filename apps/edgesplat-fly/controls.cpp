@@ -14,7 +14,7 @@ using edgesplat::viewer::MotionMode;
 using edgesplat::viewer::Session;
 using edgesplat::viewer::Show;
 
-constexpr double kRadiansPerHeight = 3.5;  // that a drag over the picture's height turns
+constexpr double kRadiansPerHeight = 3.5;  // turned by a drag over the picture's height
 constexpr double kClickPixels = 4, kDoubleClickSeconds = 0.4;
 constexpr double kDividerPixels = 8;
 
@@ -26,7 +26,7 @@ void toggle_mode(AppState& s) {
     auto& motion = s.session.motion();
     const bool fly = motion.mode() == MotionMode::Orbit;
     motion.set_mode(fly ? MotionMode::Fly : MotionMode::Orbit);
-    s.session.say(fly ? "fly: W A S D to move, mouse to look" : "orbit: drag to turn, wheel to come nearer");
+    s.session.say(fly ? "fly: W A S D to move, mouse to look" : "orbit: drag to turn, wheel to zoom");
 }
 
 void go_home(AppState& s) {
@@ -40,9 +40,9 @@ void next_show(AppState& s) {
     s.session.set_show(kAll[(now + 1) % kAll.size()]);
 }
 
-/// Under the first name that neither stands for a file nor for one that is being written.
+/// Saves under the first name that does not exist as a file and is not being written.
 void save_picture(AppState& s) {
-    s.wishes.save_picture =
+    s.pending_requests.save_picture =
         edgesplat::viewer::free_path(".", "picture", ".png", [&](const std::filesystem::path& path) {
             return std::ranges::count(s.writing, path.string(), &Writing::path) > 0;
         }).string();
@@ -50,15 +50,15 @@ void save_picture(AppState& s) {
 
 constexpr std::array<Shortcut, 43> kShortcuts{{
     {"F1", "this help", [](AppState& s) { s.help = !s.help; }},
-    {"Tab", "panels on and off", [](AppState& s) { s.panels = !s.panels; }},
-    {"F", "fly, or orbit like a model on a table", toggle_mode},
+    {"Tab", "show or hide the panels", [](AppState& s) { s.panels = !s.panels; }},
+    {"F", "switch between flying and orbiting", toggle_mode},
     {"Home", "back to the first view", go_home},
-    {"Space", "plain or edge-preserved", [](AppState& s) { toggle(s.session, Show::Plain); }},
-    {"X", "wipe between the two", [](AppState& s) { toggle(s.session, Show::Wipe); }},
-    {"H", "where and how much was sharpened", [](AppState& s) { toggle(s.session, Show::Sharpening); }},
-    {"B", "most accurate picture on standstill",
+    {"Space", "plain or edge-preserved picture", [](AppState& s) { toggle(s.session, Show::Plain); }},
+    {"X", "wipe between plain and edge-preserved", [](AppState& s) { toggle(s.session, Show::Wipe); }},
+    {"H", "show where edges were sharpened, and how much", [](AppState& s) { toggle(s.session, Show::Sharpening); }},
+    {"B", "most accurate picture when nothing moves",
      [](AppState& s) { s.session.set_best_when_still(!s.session.best_when_still()); }},
-    {"C", "walls stop the flight",
+    {"C", "switch collisions with walls on or off",
      [](AppState& s) {
          auto& motion = s.session.motion();
          motion.set_collisions(!motion.collisions());
@@ -66,46 +66,46 @@ constexpr std::array<Shortcut, 43> kShortcuts{{
      }},
     {"M", "measure: click to pick the surface",
      [](AppState& s) { s.tool = s.tool == Tool::Measure ? Tool::Move : Tool::Measure; }},
-    {"Delete", "forget the picks", [](AppState& s) { s.session.clear_picks(); }},
+    {"Delete", "delete the picks", [](AppState& s) { s.session.clear_picks(); }},
     {"G", "guided path: click its two ends",
      [](AppState& s) { s.tool = s.tool == Tool::PathStart || s.tool == Tool::PathEnd ? Tool::Move : Tool::PathStart; }},
-    {"Enter", "travel along the path, stop", [](AppState& s) { s.session.tour().toggle(); }},
-    {"L", "slices through the last pick", [](AppState& s) { s.slices = !s.slices; }},
-    {"O", "scale bar, orientation and picks", [](AppState& s) { s.overlays = !s.overlays; }},
+    {"Enter", "start or stop travelling along the path", [](AppState& s) { s.session.tour().toggle(); }},
+    {"L", "show or hide slices through the last pick", [](AppState& s) { s.slices = !s.slices; }},
+    {"O", "show or hide scale bar, orientation and picks", [](AppState& s) { s.overlays = !s.overlays; }},
     {"Ctrl+Z", "undo", [](AppState& s) { s.session.undo(); }},
     {"Ctrl+Y", "redo", [](AppState& s) { s.session.redo(); }},
-    {"Ctrl+S", "save the scene into the working folder",
-     [](AppState& s) { s.wishes.save_scene = edgesplat::viewer::free_path(".", "scene", ".toml").string(); }},
-    {"F12", "save the picture there, too", save_picture},
-    {"Ctrl+R", "record the flight, stop", toggle_recording},
-    {"F11", "full screen", [](AppState& s) { s.wishes.full_screen = true; }},
-    {"Ctrl+Q", "leave", [](AppState& s) { s.wishes.quit = true; }},
-    {"Escape", "stop travelling, put the tool away",
+    {"Ctrl+S", "save the scene in the working folder",
+     [](AppState& s) { s.pending_requests.save_scene = edgesplat::viewer::free_path(".", "scene", ".toml").string(); }},
+    {"F12", "save the picture in the working folder", save_picture},
+    {"Ctrl+R", "start or stop recording the flight", toggle_recording},
+    {"F11", "full screen", [](AppState& s) { s.pending_requests.full_screen = true; }},
+    {"Ctrl+Q", "quit", [](AppState& s) { s.pending_requests.quit = true; }},
+    {"Escape", "stop travelling, leave the tool, close the help",
      [](AppState& s) {
          s.session.tour().playing = false;
          s.tool = Tool::Move;
          s.help = false;
      }},
-    {"W A S D", "fly forward, left, back, right (orbit: shift)", nullptr},
+    {"W A S D", "fly forward, left, back, right (orbit: pan)", nullptr},
     {"Q E", "down, up", nullptr},
-    {"Z V", "roll", nullptr},
-    {"Shift", "three times as fast", nullptr},
-    {"left drag", "orbit, or look around", nullptr},
-    {"right drag", "shift", nullptr},
-    {"wheel", "nearer (orbit), faster (fly)", nullptr},
-    {"double click", "go to that surface and turn about it", nullptr},
+    {"Z V", "roll left, right", nullptr},
+    {"Shift", "move three times as fast", nullptr},
+    {"left drag", "orbit, or look around when flying", nullptr},
+    {"right drag", "pan when orbiting", nullptr},
+    {"wheel", "zoom when orbiting, change the speed when flying", nullptr},
+    {"double click", "fly to that surface and orbit around it", nullptr},
     {"Ctrl+click", "pick the surface", nullptr},
     {"drag the divider", "move the wipe", nullptr},
-    {"drag a handle", "move a clip plane, or a side of a box", nullptr},
-    {"histogram", "drag; double click adds, right click removes", nullptr},
-    {"slices", "click or drag: the point; wheel: the next slice", nullptr},
+    {"drag a handle", "move a clip plane or a side of a box", nullptr},
+    {"histogram", "drag to move, double click adds, right click removes", nullptr},
+    {"slices", "click or drag to set the point, wheel: next slice", nullptr},
     {"drop a file or folder", "open it", nullptr},
-    {"left stick, right stick", "gamepad: fly, look; triggers: down and up", nullptr},
-    {"PadX", "gamepad: plain or edge-preserved", [](AppState& s) { toggle(s.session, Show::Plain); }},
-    {"PadB", "the next way of looking: plain, wipe, sharpening", next_show},
-    {"PadA", "fly, or orbit", toggle_mode},
-    {"PadY", "back to the first view", go_home},
-    {"PadStart", "save the picture into the working folder", save_picture},
+    {"left stick, right stick", "gamepad: fly, look around; triggers: down, up", nullptr},
+    {"PadX", "gamepad: plain or edge-preserved picture", [](AppState& s) { toggle(s.session, Show::Plain); }},
+    {"PadB", "gamepad: next display: plain, wipe, sharpening", next_show},
+    {"PadA", "gamepad: switch between flying and orbiting", toggle_mode},
+    {"PadY", "gamepad: back to the first view", go_home},
+    {"PadStart", "gamepad: save the picture in the working folder", save_picture},
 }};
 
 bool pressed(const Input& input, std::string_view keys) {
@@ -125,7 +125,7 @@ void toggle_recording(AppState& s) {
     auto& recorder = s.session.recorder();
     if (recorder.recording()) {
         recorder.stop();
-        s.session.say(fmt::format("recorded {:.1f} s; a saved scene brings it along", recorder.seconds()));
+        s.session.say(fmt::format("recorded {:.1f} s; it is saved with the scene", recorder.seconds()));
     } else {
         recorder.start();
         s.session.say("recording the flight");
@@ -140,7 +140,7 @@ void PictureControls::click(AppState& state, const glm::dvec2& pixel, bool twice
     Session& session = state.session;
     const glm::ivec2 size = state.picture_size();
     if (twice && state.tool == Tool::Move) {
-        if (!session.fly_to(pixel, size)) session.say("nothing to fly to there");
+        if (!session.fly_to(pixel, size)) session.say("no surface there to fly to");
         return;
     }
     if (picking || state.tool == Tool::Measure) {
@@ -151,10 +151,10 @@ void PictureControls::click(AppState& state, const glm::dvec2& pixel, bool twice
     const auto found =
         edgesplat::viewer::pick(session.volume(), session.scene(), session.motion().camera(), size, pixel);
     if (!found || !session.walls()) {
-        session.say(found ? "the walls are still being found" : "no surface there; click into the cavity");
+        session.say(found ? "walls are still being computed" : "no surface there; click in the cavity");
         return;
     }
-    // The clicked wall's own foot is no place to travel to: its opposite side may be far.
+    // The end lies two voxels off the clicked wall: on the wall itself, the path might run on its opposite side.
     const glm::dvec3 place = found->world + 2 * session.walls()->voxel() * found->normal;
     auto& tour = session.tour();
     if (state.tool == Tool::PathStart) {
@@ -186,12 +186,12 @@ void PictureControls::mouse(AppState& state, const Input& input, bool over_pictu
     }
     const glm::dvec2 way = at - last_;
     last_ = at;
-    // Also with the button up again: what was dragged between two slow frames counts.
+    // Also if the button is up again: movement between two slow frames counts.
     if (drag_ != Drag::None) {
         travelled_ += glm::length(way);
         const glm::dvec2 turned = kRadiansPerHeight * state.preferences.turn / std::max(size.y, 1) * way;
         const double sign = state.preferences.invert_look ? 1 : -1;
-        // A drag that is shorter than a hand's tremble is a click.
+        // A drag shorter than a hand's tremble is a click.
         if (travelled_ > kClickPixels || drag_ == Drag::Wipe) {
             if (drag_ == Drag::Wipe) session.set_wipe(at.x / std::max(size.x, 1));
             if (drag_ == Drag::Look) controls.look += glm::dvec2(turned.x, sign * turned.y) * 0.5;

@@ -1,5 +1,4 @@
-// From what a person did in the picture to what becomes of it. Which key does what stands in one table, which the help
-// shows.
+// Turns user input on the picture into actions. One table lists all keys with their actions; the help shows it.
 #pragma once
 
 #include <span>
@@ -7,22 +6,22 @@
 
 #include "apps/edgesplat-fly/app_state.h"
 
-/// A key, with "Ctrl+" before it, and what it does.
+/// A key, optionally with "Ctrl+" before it, and its action.
 struct Shortcut {
     std::string_view keys;
     std::string_view what;
-    void (*act)(AppState&);  ///< null: held rather than pressed, or done with the mouse
+    void (*act)(AppState&);  ///< null: held rather than pressed, or a mouse action
 };
 std::span<const Shortcut> shortcuts();
 
-/// Begins to record the flight, or ends it, and says so.
+/// Starts or stops recording the flight, with a message.
 void toggle_recording(AppState& state);
 
-/// Mouse, keys and gamepad of one frame.
+/// Handles mouse, keys and gamepad of one frame.
 class PictureControls {
   public:
-    /// Carries out shortcuts, picks and drags, and returns what moves the eye. `over_picture`: the mouse is on the
-    /// picture and no panel; `typing`: a text field takes the keys.
+    /// Carries out shortcuts, picks and drags, and returns the controls that move the eye. `over_picture`: the mouse is
+    /// on the picture and on no panel. `typing`: a text field receives the keys.
     edgesplat::viewer::Controls apply(AppState& state, const Input& input, bool over_picture, bool typing);
 
   private:
@@ -33,7 +32,7 @@ class PictureControls {
     Drag drag_ = Drag::None;
     bool was_down_ = false;
     glm::dvec2 last_{0}, pressed_at_{0};
-    double travelled_ = 0;      ///< pixels since the button went down
+    double travelled_ = 0;      ///< pixels since the button was pressed
     double since_click_ = 1e9;  ///< seconds
     glm::dvec2 clicked_at_{-1e6};
 };

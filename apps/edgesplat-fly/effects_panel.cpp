@@ -9,7 +9,7 @@ namespace {
 
 using edgesplat::SceneDocument;
 
-/// mm: the diagonal of the volume.
+/// Diagonal of the volume, mm.
 double extent(const AppState& state) {
     const auto box = edgesplat::viewer::volume_box(state.session.volume().geometry);
     return glm::length(box.high - box.low);
@@ -21,7 +21,7 @@ void fog(AppState& state) {
     flag(state, "fog", state.session.document().effects.fog.has_value(), [&](SceneDocument& d, bool on) {
         d.effects.fog.reset();
         if (!on) return;
-        // From the near side of the volume on, half of what is at its far side.
+        // Fog begins at the near side of the volume and absorbs half of the light up to its far side.
         const auto& camera = state.session.motion().camera();
         const auto box = edgesplat::viewer::volume_box(state.session.volume().geometry);
         const double middle = glm::length((box.low + box.high) / 2.0 - camera.eye);
@@ -94,5 +94,5 @@ void effects_panel(AppState& state) {
     slide(state, "samples a pixel", effects.samples, 1, edgesplat::kMaxSamples,
           [](SceneDocument& d, int v) { d.effects.samples = v; });
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("so many across and down: %d pictures", effects.samples * effects.samples);
+        ImGui::SetTooltip("across and down the pixel: renders %d pictures", effects.samples * effects.samples);
 }

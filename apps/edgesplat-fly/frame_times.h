@@ -1,4 +1,4 @@
-// What pictures took, for reports.
+// Collects the times of pictures, for reports.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@ class FrameTimes {
         edgesplat::viewer::Rung rung;
     };
     std::vector<Moving> moving_;
-    std::vector<double> standstills_;  ///< milliseconds from the request to its complete picture
+    std::vector<double> standstills_;  ///< milliseconds from a request to its complete picture
     std::uint64_t number_ = 0;
     double spent_ = 0;
 };

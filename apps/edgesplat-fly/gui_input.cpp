@@ -8,7 +8,7 @@
 
 namespace {
 
-/// The keys that text fields and menus know.
+/// The keys that text fields and menus use.
 constexpr std::array<std::pair<std::string_view, int>, 19> kKeys{{{"Tab", ImGuiKey_Tab},
                                                                   {"Left", ImGuiKey_LeftArrow},
                                                                   {"Right", ImGuiKey_RightArrow},
@@ -33,7 +33,7 @@ constexpr std::array<std::pair<std::string_view, int>, 19> kKeys{{{"Tab", ImGuiK
 
 void prepare_gui_input() {
 #if IMGUI_VERSION_NUM < 18700
-    // Codes of our own: the place in the table.
+    // The key codes are indices into the table.
     for (std::size_t i = 0; i < kKeys.size(); ++i)
         ImGui::GetIO().KeyMap[kKeys[i].second] = static_cast<int>(i);
 #endif

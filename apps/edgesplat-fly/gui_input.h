@@ -1,9 +1,9 @@
-// Dear ImGui's side of what a person did.
+// Passes user input to Dear ImGui.
 #pragma once
 
 #include "apps/edgesplat-fly/input.h"
 
-/// Once, after the context is made.
+/// Call once, after the context was created.
 void prepare_gui_input();
-/// Before every ImGui::NewFrame.
+/// Call before every ImGui::NewFrame.
 void feed_gui(const Input& input);

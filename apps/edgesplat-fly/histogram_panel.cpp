@@ -1,4 +1,4 @@
-// Iso-values and points of a transfer function, dragged over the histogram.
+// Edits iso-values and points of a transfer function over the histogram.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -23,7 +23,7 @@ double gap_of(const edgesplat::Volume& volume) {
     return viewer::kIsoGap * static_cast<double>(volume.max_value - volume.min_value);
 }
 
-/// What lies under the mouse, points before lines.
+/// The point or line under the mouse; points have priority.
 Target target_at(const AppState& state, const ValuePlot& plot) {
     const SceneDocument& document = state.session.document();
     Target target;
@@ -53,7 +53,7 @@ glm::dvec2 place_of(const AppState& state, const ValuePlot& plot, const Target& 
     return {plot.x_of(point.value), plot.y_of(point.extinction)};
 }
 
-/// The value at x, or the suggested iso-value that it nearly is.
+/// The value at x, snapped to a suggested iso-value nearby.
 double snapped(AppState& state, const ValuePlot& plot, double x) {
     const auto* statistics = state.editing.counter.of(state.session.opened().volume, state.wait);
     if (statistics != nullptr)
@@ -62,7 +62,7 @@ double snapped(AppState& state, const ValuePlot& plot, double x) {
     return plot.value_at(x);
 }
 
-/// Where a point is added: in the strip and without a function, an iso-value.
+/// Adds a point of the transfer function; in the strip, or without a function, an iso-value.
 Target added(AppState& state, const ValuePlot& plot) {
     auto& session = state.session;
     const auto& volume = session.volume();
@@ -101,7 +101,7 @@ void take_away(AppState& state, const Target& target) {
         gone = target.kind == PlotKind::Iso ? viewer::remove_iso_value(d, target.place)
                                             : viewer::remove_transfer_point(d.transfer, target.place);
     });
-    if (!gone) state.session.say("the last one stays");
+    if (!gone) state.session.say("the last one cannot be removed");
     if (gone && target.kind == PlotKind::Point) state.editing.plot.chosen.reset();
 }
 
@@ -151,7 +151,7 @@ void visible_range(AppState& state) {
     }
     note(state, "range");
     ImGui::SameLine();
-    if (!button(state, "all")) return;
+    if (!button(state, "reset")) return;
     now.low = static_cast<double>(low);
     now.high = static_cast<double>(high);
 }

@@ -8,7 +8,7 @@
 
 namespace {
 
-/// For each key the code of GLFW's key tokens; modifiers stand for both of their keys.
+/// A key's name and GLFW's code of it. A modifier has an entry for each of its two keys.
 struct KeyName {
     std::string_view name;
     int code;
@@ -51,7 +51,7 @@ constexpr std::array<KeyName, 36> kNamed{{{"Space", GLFW_KEY_SPACE},
                                           {"F11", GLFW_KEY_F11},
                                           {"F12", GLFW_KEY_F12}}};
 
-/// Buttons of a gamepad, by GLFW's numbers of those.
+/// Buttons of a gamepad, with GLFW's numbers.
 constexpr std::array<KeyName, 5> kPad{{{"PadA", GLFW_GAMEPAD_BUTTON_A},
                                        {"PadB", GLFW_GAMEPAD_BUTTON_B},
                                        {"PadX", GLFW_GAMEPAD_BUTTON_X},

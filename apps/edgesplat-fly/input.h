@@ -1,4 +1,4 @@
-// What a person did with mouse, keyboard and gamepad since the last frame: from a window, or from a script.
+// User input since the last frame: mouse, keyboard and gamepad, from a window or from a script.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ enum class Button { Left, Right, Middle };
 
 struct Gamepad {
     glm::dvec2 left{0}, right{0};  ///< sticks: right, up, -1..1
-    double rise = 0;               ///< triggers: right less left; buttons are keys: PadA, PadB, PadX, PadY, PadStart
+    double rise = 0;               ///< triggers: right minus left; buttons are keys: PadA, PadB, PadX, PadY, PadStart
 };
 
 struct Input {
@@ -24,11 +24,11 @@ struct Input {
     glm::ivec2 size{1280, 800};  ///< of the window's content, pixels; 0 while it is minimised
     glm::dvec2 mouse{-1e6};      ///< pixels from the top left corner
     std::array<bool, 3> buttons{};
-    double wheel = 0;                  ///< steps, > 0 away from the person
+    double wheel = 0;                  ///< steps, > 0 away from the user
     std::set<Key> held;                ///< keys that are down
-    std::vector<Key> pressed;          ///< went down since the last frame, repeats included
-    std::u32string text;               ///< typed
-    std::vector<std::string> dropped;  ///< paths
+    std::vector<Key> pressed;          ///< pressed since the last frame, repeats included
+    std::u32string text;               ///< typed text
+    std::vector<std::string> dropped;  ///< dropped paths
     Gamepad gamepad;
     bool close = false;
 
@@ -38,7 +38,7 @@ struct Input {
     bool ctrl() const { return holds("Ctrl"); }
 };
 
-/// Whether a key of that name is known.
+/// Whether a key of that name exists.
 bool is_key(std::string_view name);
 /// The name of a gamepad's button by GLFW's number; empty: none.
 std::string_view pad_button_name(int button);

@@ -18,7 +18,7 @@ constexpr double kDisc = 2.6;  // em: radius
 constexpr std::array<std::pair<Kind, const char*>, 3> kKinds{
     {{Kind::Headlight, "headlight"}, {Kind::Directional, "directional"}, {Kind::Point, "point"}}};
 
-/// Columns: right, up, towards the eye.
+/// The eye's axes as columns: right, up, towards the eye.
 glm::dmat3 eyes_axes(const AppState& state) {
     const edgesplat::CameraFrame frame = edgesplat::camera_frame(state.session.motion().camera());
     return {frame.right, frame.up, -frame.forward};
@@ -36,7 +36,7 @@ void kind_choice(AppState& state, std::size_t i) {
         if (!chosen) continue;
         state.session.edit([&, k = kind](SceneDocument& d) {
             Light& changed = d.lights.at(i);
-            // From where it shone until now, so that nothing jumps.
+            // Start from the current direction or place, so that nothing jumps.
             const glm::dmat3 axes = eyes_axes(state);
             if (k == Kind::Directional && changed.kind == Kind::Headlight) changed.direction = axes[2];
             if (k == Kind::Point && changed.kind != Kind::Point) changed.position = state.session.motion().camera().eye;
@@ -47,7 +47,8 @@ void kind_choice(AppState& state, std::size_t i) {
     ImGui::EndCombo();
 }
 
-/// A small sphere as the eye sees it: its inner circle shines from the side, its rim from behind.
+/// All directions as the eye sees them: light from the eye in the middle, from the side on the inner circle, from
+/// behind on the rim.
 void direction_disc(AppState& state, std::size_t i) {
     const double radius = kDisc * state.em;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
@@ -61,7 +62,7 @@ void direction_disc(AppState& state, std::size_t i) {
         state.session.edit([&](SceneDocument& d) { d.lights.at(i).direction = world; }, false);
     }
     if (ImGui::IsItemHovered())
-        ImGui::SetTooltip("where it shines from: the middle is you,\nthe rim is behind the object");
+        ImGui::SetTooltip("where the light comes from: the middle is the eye,\nthe rim is behind the object");
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto r = static_cast<float>(radius);
     list->AddCircleFilled(to_im(middle), r, IM_COL32(24, 24, 28, 255));
@@ -85,7 +86,7 @@ void place(AppState& state, std::size_t i) {
             if (glm::length(v) > 0) d.lights.at(i).direction = v;
         });
         ImGui::TextDisabled("towards the light");
-        if (button(state, "from here"))
+        if (button(state, "from the eye"))
             state.session.edit([&](SceneDocument& d) { d.lights.at(i).direction = eyes_axes(state)[2]; });
         ImGui::EndGroup();
     } else if (light.kind == Kind::Point) {
@@ -98,7 +99,7 @@ void place(AppState& state, std::size_t i) {
     }
 }
 
-/// Whether it is still there.
+/// Edits a light. Returns whether it still exists.
 bool one_light(AppState& state, std::size_t i) {
     const Scope scope(state, fmt::format("light{}", i));
     const Light light = state.session.document().lights[i];
@@ -124,7 +125,7 @@ void background(AppState& state) {
     const SceneDocument document = state.session.document();
     color(state, "background", document.background, [](SceneDocument& d, const glm::dvec3& v) { d.background = v; });
     ImGui::SameLine();
-    flag(state, "another at the top", document.effects.background_top.has_value(),
+    flag(state, "vertical gradient", document.effects.background_top.has_value(),
          [](SceneDocument& d, bool on) { d.effects.background_top = on ? std::optional(d.background) : std::nullopt; });
     const auto top = state.session.document().effects.background_top;
     if (!top) return;
@@ -149,7 +150,7 @@ void lights_panel(AppState& state) {
         });
     slide(state, "ambient light", session.document().ambient, {0, 1},
           [](SceneDocument& d, double v) { d.ambient = v; });
-    flag(state, "only edges are lit", session.document().lit == edgesplat::Lit::Edges,
+    flag(state, "light edges only", session.document().lit == edgesplat::Lit::Edges,
          [](SceneDocument& d, bool on) { d.lit = on ? edgesplat::Lit::Edges : edgesplat::Lit::Everywhere; });
     background(state);
 }

@@ -1,4 +1,4 @@
-// edgesplat-fly: look at a volume from outside like a model on a table, or from inside like an endoscope.
+// edgesplat-fly: shows a volume from outside, like a model on a table, or from inside, like an endoscope.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -36,19 +36,19 @@ void add_options(CLI::App& app, AppOptions& options) {
                    options.size.y > 16384)
                    throw CLI::ValidationError("--size " + text, "expected WIDTHxHEIGHT, 1 to 16384 pixels each");
            },
-           "Pixels of the window (default: as last time)")
+           "Size of the window, pixels (default: as last time)")
         ->type_name("WxH");
     app.add_option("--target", options.target,
-                   "Milliseconds a picture may take while something moves (default: 33, 150 without a GPU)")
+                   "Time limit of a picture while something moves, milliseconds (default: 33; 150 without a GPU)")
         ->check(CLI::Range(1.0, 10000.0));
     app.add_option_function<double>(
            "--memory-budget",
            [&options](double megabytes) { options.memory_budget = static_cast<std::uint64_t>(megabytes * 1048576); },
-           "Device memory a picture may take, MB")
+           "Limit of the device memory of a picture, MiB")
         ->check(CLI::PositiveNumber);
-    auto* script = app.add_option("--script", options.script, "Replays input from a file, with a fixed time step");
-    app.add_flag("--headless", options.headless, "Without a window; with --script")->needs(script);
-    app.add_option("--record", options.record, "Writes what is done as a script")->excludes(script);
+    auto* script = app.add_option("--script", options.script, "Replay input from a script, with a fixed time step");
+    app.add_flag("--headless", options.headless, "Run without a window; needs --script")->needs(script);
+    app.add_option("--record", options.record, "Record the input as a script")->excludes(script);
     app.add_flag("!--no-preferences", options.remember, "Neither read nor write the user's preferences");
     app.add_flag_callback(
         "--script-help",
@@ -56,13 +56,13 @@ void add_options(CLI::App& app, AppOptions& options) {
             print_script_help();
             throw CLI::Success();
         },
-        "Print what scripts are made of and leave");
+        "Print the commands, values and keys of scripts");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-    CLI::App app{"Fly through a volume: edge-preserving splatting, interactively"};
+    CLI::App app{"Interactive volume splatting with edge preservation"};
     app.name("edgesplat-fly");
     app.set_version_flag("--version", version_text("edgesplat-fly"));
     add_page_options(app, EDGESPLAT_VERSION);

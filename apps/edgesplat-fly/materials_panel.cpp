@@ -15,7 +15,7 @@ namespace viewer = edgesplat::viewer;
 using edgesplat::MaterialChoice;
 using edgesplat::SceneDocument;
 
-/// "bone, from 300"
+/// For example "bone, from 300".
 std::string title(const edgesplat::Scene& scene, std::size_t m) {
     const auto& iso = scene.iso_values;
     std::string text = scene.materials[m].name;
@@ -33,19 +33,19 @@ void name_field(AppState& state, std::size_t m) {
     if (changed) state.session.edit([&](SceneDocument& d) { viewer::material_choice(d, m).name = name; }, false);
 }
 
-/// Light on it; `member` of the document's material.
+/// A slider of the light response; `member` of the document's material.
 void response(AppState& state, std::size_t m, const char* label, double value, const SlideRange& range,
               std::optional<double> MaterialChoice::*member) {
     slide(state, label, value, range,
           [m, member](SceneDocument& d, double v) { viewer::material_choice(d, m).*member = v; });
 }
 
-/// Whether it is still there.
+/// Edits an iso-value. Returns whether it still exists.
 bool iso_value(AppState& state, std::size_t m) {
     auto& session = state.session;
     const auto& volume = session.volume();
     const double value = session.scene().iso_values[m - 1];
-    // Past the others it goes in the plot: here the slider would be another material's then.
+    // This slider stops at the neighbouring iso-values, since beyond them it would belong to another material.
     const auto iso = session.scene().iso_values;
     const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
     const double gap = viewer::kIsoGap * (high - low);
@@ -71,7 +71,7 @@ void details(AppState& state, std::size_t m) {
         response(state, m, "per mm", material.extinction, {0, scale.most, "%.4f", true}, &MaterialChoice::extinction);
         name_field(state, m);
         presets_choice(state, "preset", edgesplat::PresetKind::Material, [&](const edgesplat::ScenePreset& preset) {
-            session.edit([&](SceneDocument& d) { viewer::take_material(d, session.volume(), m, preset); });
+            session.edit([&](SceneDocument& d) { viewer::apply_material_preset(d, session.volume(), m, preset); });
         });
     }
     const edgesplat::LightResponse light = session.scene().materials.at(m).response;
@@ -100,7 +100,7 @@ void material(AppState& state, std::size_t m) {
 }  // namespace
 
 void materials_panel(AppState& state) {
-    // From the top, since the matter that is opaque comes last.
+    // From the highest values down, since these are usually the opaque ones.
     for (std::size_t m = state.session.scene().materials.size(); m-- > 0;)
         if (m < state.session.scene().materials.size()) material(state, m);
 }

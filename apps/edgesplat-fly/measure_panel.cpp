@@ -7,10 +7,10 @@ void measure_panel(AppState& state) {
     if (!state.session.is_open()) return;
     const auto& session = state.session;
     const bool measuring = state.tool == Tool::Measure;
-    if (ImGui::Button(measuring ? "click at surfaces..." : "pick surfaces"))
+    if (ImGui::Button(measuring ? "click on surfaces..." : "pick surfaces"))
         state.tool = measuring ? Tool::Move : Tool::Measure;
     ImGui::SameLine();
-    if (ImGui::Button("forget")) state.session.clear_picks();
+    if (ImGui::Button("delete")) state.session.clear_picks();
     if (const auto ruler = session.ruler()) ImGui::Text("last two: %.2f ± %.2f mm", ruler->length, ruler->uncertainty);
     const auto& picks = session.picks();
     for (std::size_t i = picks.size(); i-- > 0 && i + 6 > picks.size();) {

@@ -1,4 +1,4 @@
-// The panels: each one file. They show the state, and change it through the session or through wishes.
+// The panels, one file each. They show the state and change it through the session or pending_requests.
 #pragma once
 
 #include <functional>
@@ -14,18 +14,18 @@ void measure_panel(AppState& state);
 void slices_window(AppState& state);
 void status_line(AppState& state, double top, double height);
 void help_window(AppState& state);
-/// Progress while something is read, and what went wrong.
+/// Shows the progress of reading, and errors.
 void notices(AppState& state);
 
-// What the scene's panel is made of; a session must be open.
+// Parts of the scene panel; they need an open session.
 void histogram_panel(AppState& state);
-/// Whether materials or a transfer function say what is seen.
+/// The choice between materials and a transfer function.
 void color_source(AppState& state);
 void transfer_panel(AppState& state);
 void materials_panel(AppState& state);
 void lights_panel(AppState& state);
 void effects_panel(AppState& state);
 void clip_panel(AppState& state);
-/// A list of the presets of a kind.
+/// A list of the presets of one kind.
 void presets_choice(AppState& state, const char* label, edgesplat::PresetKind kind,
                     const std::function<void(const edgesplat::ScenePreset&)>& take);

@@ -8,19 +8,19 @@ void path_panel(AppState& state) {
     auto& session = state.session;
     auto& tour = session.tour();
     const bool choosing = state.tool == Tool::PathStart || state.tool == Tool::PathEnd;
-    if (ImGui::Button(choosing ? "click into the picture..." : "click two points"))
+    if (ImGui::Button(choosing ? "click in the picture..." : "click two points"))
         state.tool = choosing ? Tool::Move : Tool::PathStart;
     if (choosing) {
         ImGui::SameLine();
-        ImGui::TextUnformatted(state.tool == Tool::PathStart ? "the first" : "the second");
+        ImGui::TextUnformatted(state.tool == Tool::PathStart ? "first point" : "second point");
     }
-    if (ImGui::Button("from here")) tour.from = session.motion().camera().eye;
+    if (ImGui::Button("start here")) tour.from = session.motion().camera().eye;
     ImGui::SameLine();
-    if (ImGui::Button("to here")) {
+    if (ImGui::Button("end here")) {
         tour.to = session.motion().camera().eye;
         tour.find(session.walls());
     }
-    if (tour.searching()) ImGui::TextUnformatted("looking for the way...");
+    if (tour.searching()) ImGui::TextUnformatted("searching the path...");
     if (!tour.line()) return;
     auto at = static_cast<float>(tour.position());
     if (ImGui::SliderFloat("mm", &at, 0, static_cast<float>(tour.line()->length), "%.1f")) {
@@ -32,7 +32,7 @@ void path_panel(AppState& state) {
     ImGui::SameLine();
     if (ImGui::Button("look ahead")) tour.look = glm::dvec2(0);
     ImGui::SameLine();
-    if (ImGui::Button("to the scene's movie")) {
+    if (ImGui::Button("set as movie")) {
         const edgesplat::CameraPath path = tour.path(session.motion().camera().up);
         session.edit([&](edgesplat::SceneDocument& d) {
             d.movie.orbit.reset();
@@ -41,7 +41,7 @@ void path_panel(AppState& state) {
             d.movie.path = path.keys;
             d.movie.loop = path.loop;
         });
-        session.say("the saved scene flies this way: edgesplat movie SCENE");
+        session.say("the scene's movie follows the path: save it, then edgesplat movie SCENE");
     }
     auto speed = static_cast<float>(tour.speed), fov = static_cast<float>(tour.fov);
     if (ImGui::SliderFloat("mm/s", &speed, 1, 200, "%.0f", ImGuiSliderFlags_Logarithmic))

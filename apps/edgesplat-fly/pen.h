@@ -1,4 +1,4 @@
-// Lines and words over the picture.
+// Lines and text over the picture.
 #pragma once
 
 #include <imgui.h>
@@ -13,7 +13,8 @@ inline ImVec2 to_im(const glm::dvec2& p) {
     return {static_cast<float>(p.x), static_cast<float>(p.y)};
 }
 
-/// Draws in the picture's pixels, on what is below all panels. Everything has a shade, to be seen on any ground.
+/// Draws in pixels of the picture, below all panels. Everything has a dark outline, so that it is visible on any
+/// background.
 struct Pen {
     ImDrawList* list;
     glm::dvec2 corner;
@@ -34,6 +35,6 @@ struct Pen {
     }
 };
 
-/// A world line; none where an end lies behind the eye or far outside the picture.
+/// A line between world points; not drawn if an end is behind the eye or far outside the picture.
 void world_line(const AppState& state, const Pen& pen, const glm::dvec3& a, const glm::dvec3& b, ImU32 color,
                 double width = 1.5);

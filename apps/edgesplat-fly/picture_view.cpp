@@ -57,10 +57,10 @@ void draw_path(AppState& state, const Pen& pen) {
 void draw_scale_bar(const AppState& state, const Pen& pen) {
     const glm::dvec2 size(state.picture_size());
     const Session& session = state.session;
-    // Where there is a wall ahead the length is that at its depth, else at the depth of the volume's centre.
+    // The scale bar is valid at the depth of the wall ahead, or without one at the depth of the volume's centre.
     const edgesplat::Camera& camera = session.motion().camera();
     auto bar = edgesplat::scale_bar(session.volume(), camera, state.picture_size().y, 0.2 * size.x);
-    const double ahead = session.walls() ? session.walls()->free_way(camera.eye, camera.direction) : 0;
+    const double ahead = session.walls() ? session.walls()->free_distance(camera.eye, camera.direction) : 0;
     if (ahead > 0 && std::isfinite(ahead))
         bar = edgesplat::scale_bar(edgesplat::viewer::pixel_size(camera, state.picture_size(), ahead), 0.2 * size.x);
     if (!bar) return;
@@ -101,7 +101,7 @@ Placed whole(CanvasPicture& picture, const glm::ivec4& at) {
     return {&picture, {0, 0, 1, 1}, at};
 }
 
-/// Made only while it is shown.
+/// Computed only while it is shown.
 void make_sharpening(AppState& state) {
     const auto &edges = state.last_edges, &plain = state.last_plain;
     const bool both = edges.width > 0 && edges.width == plain.width && edges.height == plain.height;
@@ -157,7 +157,7 @@ void place_pictures(AppState& state) {
             break;
         case Show::Wipe: {
             state.pictures.push_back(whole(state.edges, at));
-            // In whole pixels of the picture, so that its two sides meet where their pixels do.
+            // Rounded to whole pixels of the picture, so that both sides meet at a pixel border.
             const double columns = state.plain.size().x;
             const double share = std::round(state.session.wipe() * columns) / columns;
             glm::ivec4 left = at;

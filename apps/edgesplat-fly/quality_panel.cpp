@@ -14,7 +14,7 @@ using edgesplat::Knob;
 using edgesplat::SceneDocument;
 using edgesplat::Settings;
 
-/// Sets a knob; true where its value could be.
+/// Sets a knob. Returns whether it accepts the value.
 bool set(Settings& settings, const Knob& knob, const std::string& value) {
     try {
         knob.set(settings, value);
@@ -69,7 +69,7 @@ void pass_times(const AppState& state) {
         const std::string text = fmt::format("{} {:.1f} ms", name, milliseconds);
         ImGui::ProgressBar(most > 0 ? static_cast<float>(milliseconds / most) : 0, {-1, 0}, text.c_str());
     }
-    ImGui::TextDisabled("%s splats drawn of %s, %u sheets", fmt::format("{}", stats.splats_drawn).c_str(),
+    ImGui::TextDisabled("%s of %s splats drawn, %u sheets", fmt::format("{}", stats.splats_drawn).c_str(),
                         fmt::format("{}", stats.splats_collected).c_str(), stats.sheets);
     ImGui::TextDisabled("%.0f MB on the device", static_cast<double>(state.drawer->device_bytes()) / 1e6);
 }
@@ -82,7 +82,7 @@ void device_choice(AppState& state) {
         if (!device.rejections.empty()) {
             ImGui::TextDisabled("%s: %s", label.c_str(), device.rejections.front().c_str());
         } else if (ImGui::Selectable(label.c_str(), device.name == current)) {
-            state.wishes.device = device.name;
+            state.pending_requests.device = device.name;
         }
     }
     ImGui::EndCombo();
@@ -93,12 +93,12 @@ void device_choice(AppState& state) {
 void quality_panel(AppState& state) {
     if (!state.session.is_open()) return;
     presets(state);
-    const Settings now = state.session.document().quality.settings;  // an edit would move it
+    const Settings now = state.session.document().quality.settings;  // a copy: an edit replaces the document
     for (const Knob& knob : edgesplat::ladder())
         if (knob.used(now)) step_slider(state, knob);
     bool best = state.session.best_when_still();
-    if (ImGui::Checkbox("accurate on standstill", &best)) state.session.set_best_when_still(best);
-    constexpr std::array<const char*, 4> kRays{"splats", "rays on a processor", "rays", "rays through the spline"};
+    if (ImGui::Checkbox("accurate when nothing moves", &best)) state.session.set_best_when_still(best);
+    constexpr std::array<const char*, 4> kRays{"splats", "rays without a GPU", "rays", "rays, B-spline"};
     int rays = static_cast<int>(state.rays);
     if (ImGui::Combo("in motion", &rays, kRays.data(), static_cast<int>(kRays.size()))) {
         state.rays = static_cast<edgesplat::viewer::Drawer::Options::Rays>(rays);

@@ -1,4 +1,4 @@
-// What the scene's panels hold between frames, beside the document itself.
+// State of the scene panels between frames, besides the document.
 #pragma once
 
 #include <cstddef>
@@ -12,26 +12,26 @@
 #include "engine/viewer/handles.h"
 #include "engine/volume/filters.h"
 
-/// How a volume's values are distributed.
+/// Distribution of a volume's values.
 struct ValueStatistics {
     edgesplat::Histogram histogram;
     std::vector<edgesplat::IsoSuggestion> suggestions;
 };
 
-/// Counted on a thread, once per volume.
+/// Computes statistics on a thread, once per volume.
 class ValueCounter {
   public:
-    /// Null until they are there. `wait`: they are there at once.
+    /// Null until they are computed. `wait`: waits for them.
     const ValueStatistics* of(const std::shared_ptr<const edgesplat::Volume>& volume, bool wait);
     bool busy() const;
 
   private:
-    std::shared_ptr<const edgesplat::Volume> volume_, counted_;  ///< being counted; that `found_` is of
+    std::shared_ptr<const edgesplat::Volume> volume_, counted_;  ///< being counted; the volume of `found_`
     std::future<ValueStatistics> to_come_;
     ValueStatistics found_;
 };
 
-/// The plot over the value axis.
+/// State of the plot over the value axis.
 struct PlotState {
     enum class Kind { None, Iso, Point };
     struct Target {
@@ -39,25 +39,25 @@ struct PlotState {
         std::size_t place = 0;
     };
     Target grabbed;
-    glm::dvec2 offset{0};               ///< pixels from what is grabbed to the mouse
-    std::optional<std::size_t> chosen;  ///< point of the transfer function whose colour is edited
+    glm::dvec2 offset{0};               ///< pixels from the grabbed target to the mouse
+    std::optional<std::size_t> chosen;  ///< the point of the transfer function that is edited in the panel
     double low = 0, high = 1;           ///< values at the plot's sides
 };
 
-/// A clip handle that is dragged in the picture.
+/// A drag of a clip handle in the picture.
 struct ClipHand {
     bool shown = true;
     bool was_down = false;
     std::optional<std::size_t> hovered;
-    std::optional<edgesplat::viewer::Handle> held;  ///< as it was when it was taken
-    std::optional<double> start;                    ///< mm along its normal where the mouse took it
+    std::optional<edgesplat::viewer::Handle> held;  ///< as it was when the drag began
+    std::optional<double> start;                    ///< mm along its normal, where the drag began
 };
 
 struct SceneEditing {
     ValueCounter counter;
     PlotState plot;
     ClipHand clip;
-    std::vector<edgesplat::TransferPoint> put_away;   ///< a transfer function while materials are shown
-    std::vector<edgesplat::ScenePreset> presets;      ///< read when they were first looked at
-    std::shared_ptr<const edgesplat::Volume> volume;  ///< that all of this is about
+    std::vector<edgesplat::TransferPoint> stored_transfer;  ///< the transfer function, while materials are used
+    std::vector<edgesplat::ScenePreset> presets;            ///< read on first use
+    std::shared_ptr<const edgesplat::Volume> volume;        ///< volume of this state
 };

@@ -5,8 +5,8 @@
 
 namespace {
 
-/// What is kept between frames belongs to one volume.
-void begin_anew(AppState& state) {
+/// Resets the state kept between frames when the volume changes.
+void reset_for_volume(AppState& state) {
     const auto& volume = state.session.opened().volume;
     SceneEditing& editing = state.editing;
     if (editing.volume == volume) return;
@@ -14,10 +14,10 @@ void begin_anew(AppState& state) {
     editing.plot = {};
     editing.plot.low = static_cast<double>(volume->min_value);
     editing.plot.high = static_cast<double>(volume->max_value);
-    editing.put_away.clear();
+    editing.stored_transfer.clear();
 }
 
-void steps_back(AppState& state) {
+void undo_buttons(AppState& state) {
     auto& session = state.session;
     ImGui::BeginDisabled(!session.can_undo());
     if (button(state, "undo")) session.undo();
@@ -32,7 +32,7 @@ void values_panel(AppState& state) {
     presets_choice(state, "look", edgesplat::PresetKind::Look, [&](const edgesplat::ScenePreset& preset) {
         state.session.edit([&](edgesplat::SceneDocument& d) {
             const edgesplat::VolumeSource read = d.volume;
-            edgesplat::use_look(d, preset.name);
+            edgesplat::apply_look(d, preset.name);
             d.volume = read;
         });
     });
@@ -46,9 +46,9 @@ void values_panel(AppState& state) {
 
 void scene_panel(AppState& state) {
     if (!state.session.is_open()) return;
-    begin_anew(state);
+    reset_for_volume(state);
     const Scope scope(state, "scene");
-    steps_back(state);
+    undo_buttons(state);
     if (!ImGui::BeginTabBar("parts")) return;
     constexpr std::array<std::pair<const char*, void (*)(AppState&)>, 4> kParts{
         {{"Values", values_panel}, {"Light", lights_panel}, {"Effects", effects_panel}, {"Clip", clip_panel}}};

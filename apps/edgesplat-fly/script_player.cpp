@@ -51,7 +51,7 @@ std::optional<Input> ScriptPlayer::next() {
             settling_ = !host_.settled();
             if (!settling_) continue;
             if (++settle_frames_ > kMostSettleFrames)
-                edgesplat::fail("{}: settle: no complete picture came within {} frames", commands_[at_ - 1].where,
+                edgesplat::fail("{}: settle: the picture was not complete within {} frames", commands_[at_ - 1].where,
                                 kMostSettleFrames);
             frame();
             break;
@@ -59,7 +59,7 @@ std::optional<Input> ScriptPlayer::next() {
         if (at_ == commands_.size()) return std::nullopt;
         begin(commands_[at_++]);
     }
-    // cppcheck-suppress containerOutOfBounds; begin() above adds to what is pending
+    // cppcheck-suppress containerOutOfBounds; begin() above adds to pending_
     const Change change = std::move(pending_.front());
     pending_.pop_front();
     if (change) change(input_);
@@ -143,12 +143,12 @@ void ScriptPlayer::begin(const ScriptCommand& c) {
     if (c.verb == "picture") host_.picture(c.words[0]);
     if (c.verb == "save") host_.save(c.words[0]);
     if (c.verb == "expect") expect(c);
-    if (c.verb == "lose") host_.lose_device(c.words[0] == "window");
+    if (c.verb == "lose") host_.simulate_device_loss(c.words[0] == "window");
     if (c.verb == "report") host_.report(c.words[0]);
 }
 
 void ScriptPlayer::aim(const ScriptCommand& command, const glm::dvec2& share) {
-    // Where it is when it comes to it, not now.
+    // The widget's place is read in that frame, not now.
     frame([this, where = command.where, name = command.words[0], share](Input& in) {
         try {
             const glm::dvec4 at = host_.widget(name);
@@ -161,12 +161,12 @@ void ScriptPlayer::aim(const ScriptCommand& command, const glm::dvec2& share) {
 
 void ScriptPlayer::wander(double seconds, unsigned seed) {
     std::mt19937 random(seed);
-    // By hand, since distributions differ from one standard library to another.
+    // Without distributions, because they differ between standard libraries.
     const auto uniform = [&random] { return static_cast<double>(random()) / 4294967296.0; };
     const auto frames = static_cast<int>(std::lround(seconds / input_.seconds));
     for (int i = 0; i < frames;) {
         const int length = std::min(static_cast<int>((0.5 + uniform()) / input_.seconds) + 1, frames - i);
-        const double angle = 2 * std::numbers::pi * uniform(), rate = 120 + 360 * uniform();  // pixels a second
+        const double angle = 2 * std::numbers::pi * uniform(), rate = 120 + 360 * uniform();  // pixels per second
         const glm::dvec2 way = rate * input_.seconds * glm::dvec2(std::cos(angle), std::sin(angle));
         const bool forward = uniform() < 0.85;
         for (int j = 0; j < length; ++j) {

@@ -1,4 +1,4 @@
-// Input from a script in place of a hand's, a frame at a time.
+// Plays a script: provides the user input of one frame at a time.
 #pragma once
 
 #include <deque>
@@ -11,21 +11,21 @@
 #include "apps/edgesplat-fly/input.h"
 #include "engine/viewer/script.h"
 
-/// What the app does for a script beside taking its input.
+/// What the app does for a script, besides processing its input.
 struct ScriptHost {
-    std::function<void(const std::string& path)> open;  ///< returns when it is there
-    std::function<bool()> settled;                      ///< no better picture will come
+    std::function<void(const std::string& path)> open;  ///< returns when it is loaded
+    std::function<bool()> settled;                      ///< no better picture will follow
     std::function<void(const std::string&path)> screenshot, picture, save, report;
     std::function<void(bool fixed)> fix_quality;
-    std::function<void(bool window)> lose_device;               ///< the window's, or the one that pictures are drawn on
-    std::function<glm::dvec4(const std::string& name)> widget;  ///< its place; throws Error where it is not to be seen
+    std::function<void(bool window)> simulate_device_loss;  ///< of the window's device, else of the pictures' device
+    std::function<glm::dvec4(const std::string& name)> widget;  ///< its rectangle; throws Error if it is not visible
     std::function<std::string(const std::string& name)> value;  ///< for `expect`; throws Error for an unknown name
 };
 
 class ScriptPlayer {
   public:
     ScriptPlayer(std::vector<edgesplat::viewer::ScriptCommand> commands, ScriptHost host, const glm::ivec2& size);
-    /// The next frame's input; nothing at the end. Throws Error: an `expect` that does not hold.
+    /// The next frame's input; nullopt at the end. Throws Error if an `expect` is false.
     std::optional<Input> next();
 
   private:

@@ -7,7 +7,7 @@
 
 void ScriptRecorder::add(const Input& input) {
     std::string done;
-    long frames = 0;  // that the commands below take by themselves
+    long frames = 0;  // that the commands below advance by themselves
     const auto write = [&](const std::string& line) {
         done += line + "\n";
         ++frames;

@@ -1,4 +1,4 @@
-// A hand's input as a script.
+// Records user input as a script.
 #pragma once
 
 #include <string>
@@ -13,7 +13,7 @@ class ScriptRecorder {
 
   private:
     double step_, time_ = 0;
-    long written_ = 0;  ///< frames that the text lasts
+    long written_ = 0;  ///< frames that the text covers
     Input last_;
     bool first_ = true;
     std::string text_;

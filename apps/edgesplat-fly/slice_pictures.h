@@ -1,4 +1,4 @@
-// The three slices as they are on the canvas.
+// The three slices as pictures on the canvas.
 #pragma once
 
 #include <array>
@@ -9,13 +9,13 @@
 #include "apps/edgesplat-fly/canvas.h"
 #include "engine/viewer/slices.h"
 
-/// How slices are looked at.
+/// How slices are displayed.
 struct SliceView {
-    std::shared_ptr<const edgesplat::Volume> volume;  ///< that the window is of
+    std::shared_ptr<const edgesplat::Volume> volume;  ///< whose slices are shown
     double low = 0, high = 1;                         ///< values shown as black and white
 };
 
-/// A slice, and what it was made for.
+/// A slice, and the values for which it was made.
 struct SlicePicture {
     CanvasPicture picture;
     std::optional<edgesplat::viewer::Slice> slice;

@@ -26,7 +26,7 @@ bool inside(const edgesplat::VolumeGeometry& geometry, const glm::dvec3& world) 
            glm::all(glm::lessThanEqual(voxel, glm::dvec3(geometry.dims) - 0.5));
 }
 
-/// The last pick; without one the eye where it is inside, else the middle.
+/// The last pick; without one, the eye if it is inside the volume, else the volume's centre.
 glm::dvec3 linked_point(const AppState& state) {
     const auto& session = state.session;
     if (session.point()) return *session.point();
@@ -48,12 +48,12 @@ void update(AppState& state, int axis, const glm::dvec3& voxel) {
     const auto& volume = state.session.volume();
     const SliceView& view = state.slice_view;
     const int depth = std::clamp(static_cast<int>(std::lround(voxel[axis])), 0, volume.geometry.dims[axis] - 1);
-    // What could not be read is not tried again until something else is wanted.
+    // A failed read is not repeated until another slice is requested.
     if (shown.volume == &volume && shown.depth == depth && shown.low == view.low && shown.high == view.high) {
         if (shown.slice) shown.slice->cross = viewer::pixel_at(*shown.slice, voxel);
         return;
     }
-    // Of a file slices are read once the eye stands: they must not hold up the flight.
+    // Slices of a file are read when the eye stands still: reading must not delay the flight.
     if (shown.slice && shown.volume == &volume && volume.packed && state.session.moving()) return;
     shown.slice.reset();
     try {
@@ -72,7 +72,7 @@ void update(AppState& state, int axis, const glm::dvec3& voxel) {
 struct Cell {
     ImDrawList* list;
     const Slice& slice;
-    glm::dvec2 low, high;  ///< of the slice's picture
+    glm::dvec2 low, high;  ///< corners of the slice's picture
 
     glm::dvec2 scale() const { return (high - low) / glm::dvec2(slice.width, slice.height); }
     glm::dvec2 place(const glm::dvec2& pixel) const { return low + pixel * scale(); }
@@ -87,7 +87,7 @@ void letters(const AppState& state, const Cell& cell) {
     const Pen pen{cell.list, glm::dvec2(0), state.em};
     const glm::dvec2 middle = (cell.low + cell.high) / 2.0, half = 0.5 * state.em * glm::dvec2(0.6, 1.1);
     const double edge = 0.3 * state.em;
-    // A slice of few voxels has no room for all of them.
+    // A slice of few voxels has no room for all letters.
     if (cell.high.x - cell.low.x > 4 * state.em) {
         pen.text({cell.low.x + edge, middle.y - half.y}, letter(0));
         pen.text({cell.high.x - edge - 2 * half.x, middle.y - half.y}, letter(1));
@@ -104,7 +104,7 @@ void cross(const Cell& cell) {
     cell.list->AddLine(to_im({at.x, cell.low.y}), to_im({at.x, cell.high.y}), kCross);
 }
 
-/// Where the eye is and looks, projected into the slice; an eye beyond the slice is shown at its side.
+/// Draws the eye and its view direction, projected into the slice. An eye outside the slice is drawn at its side.
 void eye(const AppState& state, const Cell& cell) {
     const auto& geometry = state.session.volume().geometry;
     const auto& camera = state.session.motion().camera();
@@ -114,7 +114,7 @@ void eye(const AppState& state, const Cell& cell) {
     const glm::dvec2 there = seen(camera.eye), margin(0.5 * state.em);
     const glm::dvec2 at = glm::clamp(there, cell.low + margin, cell.high - margin);
     const glm::dvec2 way = seen(camera.eye + edgesplat::unit(camera.direction)) - there;
-    // A view along the slice's axis has no direction in it.
+    // A view along the slice's axis has no direction in the slice.
     const double flat = glm::length(way) / glm::length(cell.scale() / cell.slice.pixel_mm);
     const auto radius = static_cast<float>(0.22 * state.em);
     if (flat > 0.05) {
@@ -146,7 +146,7 @@ void mouse(AppState& state, const Cell& cell, const glm::dvec3& voxel) {
     if (to != voxel && (wheel != 0 || ImGui::IsItemActive())) state.session.set_point(geometry.to_world(to));
 }
 
-/// One slice in a rectangle; all around it is painted, since the window is transparent over the slice.
+/// Shows a slice in a rectangle and paints the area around it: the window is transparent over the slice.
 void show(AppState& state, int axis, const glm::dvec3& voxel, const glm::dvec2& low, const glm::dvec2& high) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     SlicePicture& shown = state.slice_pictures[static_cast<std::size_t>(axis)];
@@ -187,13 +187,13 @@ void window_sliders(AppState& state) {
     ImGui::SetNextItemWidth(-3.5F * static_cast<float>(state.em));
     ImGui::SliderScalar("white", ImGuiDataType_Double, &view.high, &least, &most, "%.5g");
     note(state, "white");
-    // Black stays below white, whichever of them was moved.
+    // Keep black below white, whichever was moved.
     const double gap = 1e-3 * (most - least);
     view.low = std::clamp(view.low, least, most - gap);
     view.high = std::clamp(view.high, view.low + gap, most);
 }
 
-/// The linked point in the picture.
+/// Marks the linked point in the picture.
 void mark(const AppState& state, const glm::dvec3& world) {
     const auto at = viewer::project(state.session.motion().camera(), state.picture_size(), world);
     if (!at || !state.overlays) return;

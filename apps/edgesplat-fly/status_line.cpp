@@ -13,14 +13,14 @@ namespace {
 std::string picture_text(const AppState& state) {
     const auto& shown = *state.shown;
     std::string text = fmt::format("{}x{}", state.picture_size().x, state.picture_size().y);
-    if (shown.rung.scale < 1) text += fmt::format(" drawn at {:g} %", 100 * shown.rung.scale);
-    if (shown.rung.rays) text += ", by rays";
-    if (shown.rung.level > 0) text += fmt::format(", voxels of {}", 1 << shown.rung.level);
-    if (!shown.stats.complete) text += ", more is being read";
+    if (shown.rung.scale < 1) text += fmt::format(" at {:g} % scale", 100 * shown.rung.scale);
+    if (shown.rung.rays) text += ", ray cast";
+    if (shown.rung.level > 0) text += fmt::format(", voxels {} times as wide", 1 << shown.rung.level);
+    if (!shown.stats.complete) text += ", reading more data";
     text += shown.moving ? " | moving" : !shown.finished ? " | refining" : shown.best ? " | accurate" : " | complete";
     text += fmt::format(" | {:.0f} ms", shown.milliseconds);
     if (shown.coarse_error && shown.coarse_rung)
-        text += fmt::format(" | in motion off by {:.1f} % RMS", 100 * *shown.coarse_error);
+        text += fmt::format(" | error in motion {:.1f} % RMS", 100 * *shown.coarse_error);
     const std::string knobs = edgesplat::difference(state.session.document().quality.settings);
     if (!knobs.empty()) text += " | " + knobs;
     return text;

@@ -19,13 +19,13 @@ vk::SurfaceFormatKHR chosen_format(const std::vector<vk::SurfaceFormatKHR>& form
     for (const vk::Format wanted : kFormats)
         for (const vk::SurfaceFormatKHR& format : formats)
             if (format.format == wanted && format.colorSpace == vk::ColorSpaceKHR::eSrgbNonlinear) return format;
-    fail("window: the screen takes none of the formats that pictures are shown in (8 bit RGBA, BGRA)");
+    fail("window: the screen supports no suitable format (8 bit RGBA or BGRA)");
 }
 
 vk::ImageMemoryBarrier2 transition(vk::Image image, vk::ImageLayout from, vk::ImageLayout to) {
     const auto all = vk::PipelineStageFlagBits2::eAllCommands;
     const auto access = vk::AccessFlagBits2::eMemoryRead | vk::AccessFlagBits2::eMemoryWrite;
-    // The wait for the image's semaphore is at the transfer stage, so that is what the first transition comes after.
+    // The image's semaphore is waited for at the transfer stage, so the first transition starts at that stage.
     const bool first = from == vk::ImageLayout::eUndefined;
     return {first ? vk::PipelineStageFlagBits2::eTransfer : all,
             first ? vk::AccessFlags2{} : vk::AccessFlags2(access),
@@ -52,7 +52,7 @@ Surface::~Surface() {
     try {
         device_.handle().waitIdle();
     } catch (const vk::SystemError&) {
-        // A lost device has nothing left to wait for.
+        // There is no work to wait for on a lost device.
     }
 }
 
@@ -61,7 +61,8 @@ void Surface::make_surface() {
     surface_ = nullptr;
     VkSurfaceKHR made = VK_NULL_HANDLE;
     const VkResult result = glfwCreateWindowSurface(*device_.instance(), window_, nullptr, &made);
-    if (result != VK_SUCCESS) fail("window: no Vulkan surface ({})", vk::to_string(static_cast<vk::Result>(result)));
+    if (result != VK_SUCCESS)
+        fail("window: cannot create a Vulkan surface ({})", vk::to_string(static_cast<vk::Result>(result)));
     surface_ = {device_.instance(), made};
     outdated_ = true;
 }
@@ -78,7 +79,7 @@ void Surface::make_swapchain(const glm::ivec2& size) {
     extent_ = {static_cast<int>(extent.width), static_cast<int>(extent.height)};
     if (extent.width == 0 || extent.height == 0) return;
     if (!(abilities.supportedUsageFlags & vk::ImageUsageFlagBits::eTransferDst))
-        fail("window: the screen's images cannot be copied to");
+        fail("window: the screen does not allow copies to its images");
     const vk::SurfaceFormatKHR format = chosen_format(device_.physical().getSurfaceFormatsKHR(*surface_));
     std::uint32_t count = abilities.minImageCount + 1;
     if (abilities.maxImageCount > 0) count = std::min(count, abilities.maxImageCount);

@@ -14,17 +14,17 @@ namespace {
 namespace viewer = edgesplat::viewer;
 using edgesplat::SceneDocument;
 
-constexpr double kStep = 1.0 / 1024;  // of the volume's range: width of a step made of an iso-value
+constexpr double kStep = 1.0 / 1024;  // width of an iso-value's step, as a share of the volume's range
 
 void to_materials(AppState& state) {
     auto& session = state.session;
-    state.editing.put_away = session.document().transfer;
+    state.editing.stored_transfer = session.document().transfer;
     session.edit([&](SceneDocument& d) { viewer::use_materials(d, session.volume()); });
 }
 
 void to_transfer(AppState& state) {
     auto& session = state.session;
-    auto points = std::exchange(state.editing.put_away, {});
+    auto points = std::exchange(state.editing.stored_transfer, {});
     if (points.empty()) {
         const auto low = static_cast<double>(session.volume().min_value);
         const auto high = static_cast<double>(session.volume().max_value);
@@ -81,7 +81,7 @@ void transfer_panel(AppState& state) {
     auto& chosen = state.editing.plot.chosen;
     if (chosen && *chosen >= points.size()) chosen.reset();
     if (!chosen) {
-        ImGui::TextDisabled("%zu points; click one to edit it here", points.size());
+        ImGui::TextDisabled("%zu points; click one in the plot to edit it here", points.size());
         return;
     }
     const std::size_t i = *chosen;

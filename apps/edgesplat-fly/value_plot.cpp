@@ -17,11 +17,11 @@ ImVec2 at(double x, double y) {
     return to_im({x, y});
 }
 
-/// `number` in steps that are a power of ten, at most `step`.
+/// `number` rounded to a multiple of a power of ten, which is at most `step`.
 double rounded(double number, double step) {
     const double power = std::pow(10.0, std::floor(std::log10(step)));
     const double steps = std::round(number / power);
-    // Dividing by a whole number gives the double that is nearest to the decimal one.
+    // Dividing by a whole number gives the double nearest to the decimal number.
     return power < 1 ? steps / std::round(1 / power) : steps * power;
 }
 

@@ -11,7 +11,7 @@ ValueStatistics counted(const edgesplat::Volume& volume) {
     try {
         return {edgesplat::histogram(volume, kBins), edgesplat::suggest_iso_values(volume, kSuggestions)};
     } catch (const edgesplat::Error&) {
-        return {};  // a packed file that cannot be read any more is told by the drawer
+        return {};  // the drawer reports packed files that have become unreadable
     }
 }
 

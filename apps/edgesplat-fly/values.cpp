@@ -1,4 +1,4 @@
-// What scripts may expect.
+// The values that scripts can compare.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -99,19 +99,19 @@ const Values& values() {
 }  // namespace
 
 std::string value_names() {
-    std::string names = "scene.KEY of any number in the scene file";
+    std::string names = "scene.KEY (any number of the scene file)";
     for (const auto& [known, get] : values())
         names += ", " + known;
     return names;
 }
 
 std::string App::value(const std::string& name) {
-    // scene.effects.fog.density and the like: any number of the scene file.
+    // For example scene.effects.fog.density: any number of the scene file.
     constexpr std::string_view kScene = "scene.";
     if (name.starts_with(kScene))
         return text(edgesplat::number_at(state_.session.document(), name.substr(kScene.size())));
     const auto found = values().find(name);
-    if (found == values().end()) edgesplat::fail("'{}' is no value; there are {}", name, value_names());
+    if (found == values().end()) edgesplat::fail("'{}' is not a value; known values: {}", name, value_names());
     // cppcheck-suppress derefInvalidIteratorRedundantCheck; fail() does not return
     return found->second(state_);
 }

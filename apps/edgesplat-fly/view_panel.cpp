@@ -42,7 +42,7 @@ void movement(AppState& state) {
         state.preferences.speed = static_cast<double>(speed);
     if (ImGui::SliderFloat("turning", &turn, 0.1F, 10, "%.2f", ImGuiSliderFlags_Logarithmic))
         state.preferences.turn = static_cast<double>(turn);
-    ImGui::Checkbox("push the mouse to look down", &state.preferences.invert_look);
+    ImGui::Checkbox("invert looking up and down", &state.preferences.invert_look);
 }
 
 void named_views(AppState& state) {

@@ -21,7 +21,7 @@ std::string name_of(std::string label) {
     return label;
 }
 
-/// Without the label beside it.
+/// Notes the field without the label beside it.
 void note_field(AppState& state, const char* label, float width) {
     if (!ImGui::IsItemVisible()) return;
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();

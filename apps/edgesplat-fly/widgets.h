@@ -1,5 +1,5 @@
-// Widgets on the scene's document: what they change goes through the session, and all that one hold of the mouse
-// changes is one step back.
+// Widgets for the scene document. They change it through the session; all changes during one mouse press are one undo
+// step.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 #include "apps/edgesplat-fly/app_state.h"
 
-/// A part of a panel: its widgets' identifiers, and their names for scripts ("light0.intensity").
+/// A part of a panel: it prefixes its widgets' identifiers, and their names in scripts ("light0.intensity").
 class Scope {
   public:
     Scope(AppState& state, const std::string& name);
@@ -20,12 +20,12 @@ class Scope {
     std::size_t length_;
 };
 
-/// Remembers where a widget is, so that scripts find it. Without a rectangle, the one that was just made, if it can be
-/// seen; of its label only what stands before "##", with underscores for spaces, or else what stands behind.
+/// Stores a widget's rectangle for scripts. Without `corners`: that of the last widget, if it is visible. Its name is
+/// the label before "##", or after it if nothing precedes it, with underscores for spaces.
 void note(AppState& state, const std::string& name, const std::array<glm::dvec2, 2>& corners);
 void note(AppState& state, const char* label);
 
-/// What numbers a slider offers.
+/// Range and format of a slider.
 struct SlideRange {
     double low = 0, high = 1;
     const char* format = "%.2f";
@@ -37,12 +37,12 @@ using Setter = std::function<void(edgesplat::SceneDocument&, const T&)>;
 
 void slide(AppState& state, const char* label, double value, const SlideRange& range, const Setter<double>& set);
 void slide(AppState& state, const char* label, int value, int low, int high, const Setter<int>& set);
-/// Three numbers; `speed` a pixel.
+/// Three numbers; `speed`: change per pixel.
 void drag3(AppState& state, const char* label, const glm::dvec3& value, double speed, const Setter<glm::dvec3>& set);
 void flag(AppState& state, const char* label, bool value, const Setter<bool>& set);
-/// Linear light, picked as sRGB. A swatch that opens a picker.
+/// A swatch that opens a colour picker. The value is linear light, edited as sRGB.
 void color(AppState& state, const char* label, const glm::dvec3& linear, const Setter<glm::dvec3>& set);
 bool button(AppState& state, const char* label);
 
-/// Linear light as Dear ImGui paints it.
+/// Linear light as a colour of Dear ImGui.
 unsigned painted(const glm::dvec3& linear, double alpha = 1);

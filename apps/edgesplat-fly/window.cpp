@@ -13,7 +13,7 @@
 
 namespace {
 
-/// Inner dead zone of a stick, where hands rest.
+/// Value of a stick without the inner dead zone, where hands rest.
 double stick(float value) {
     constexpr double kDead = 0.15;
     const double size = std::abs(static_cast<double>(value));
@@ -40,7 +40,7 @@ void Window::on_button(GLFWwindow* window, int button, int action, int /*modifie
 }
 
 std::optional<glm::dvec2> Window::take_events() {
-    // What goes down and comes up between two frames is seen by both of them, however slow they are.
+    // A press and a release between two frames go to two different frames, however slow these are.
     std::optional<glm::dvec2> at;
     bool went_down = false, came_up = false;
     for (; !events_.empty(); events_.pop_front()) {
@@ -64,11 +64,11 @@ Window::Window(const glm::ivec2& size, const std::string& title) {
     static std::string reason;
     glfwSetErrorCallback([](int, const char* text) { reason = text; });
     if (glfwInit() == GLFW_FALSE)
-        edgesplat::fail("window: no screen to open one on ({}); --script FILE --headless needs none", reason);
+        edgesplat::fail("window: no screen ({}); --script FILE --headless runs without one", reason);
     if (glfwVulkanSupported() == GLFW_FALSE) {
         glfwTerminate();
         edgesplat::fail(
-            "window: no Vulkan here ({}); a driver is needed (software driver on Debian: "
+            "window: Vulkan is not available ({}); install a driver (software driver on Debian: "
             "mesa-vulkan-drivers)",
             reason);
     }
@@ -76,7 +76,7 @@ Window::Window(const glm::ivec2& size, const std::string& title) {
     window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);
     if (window_ == nullptr) {
         glfwTerminate();
-        edgesplat::fail("window: none of {}x{} could be opened ({})", size.x, size.y, reason);
+        edgesplat::fail("window: cannot open a window of {}x{} pixels ({})", size.x, size.y, reason);
     }
     glfwSetWindowSizeLimits(window_, 320, 240, GLFW_DONT_CARE, GLFW_DONT_CARE);
     glfwSetWindowUserPointer(window_, this);
@@ -85,7 +85,7 @@ Window::Window(const glm::ivec2& size, const std::string& title) {
     glfwSetCharCallback(window_, [](GLFWwindow* w, unsigned int c) { of(w).input_.text.push_back(c); });
     glfwSetScrollCallback(window_, [](GLFWwindow* w, double, double y) { of(w).input_.wheel += y; });
     glfwSetWindowFocusCallback(window_, [](GLFWwindow* w, int focused) {
-        if (focused == GLFW_FALSE) of(w).input_.held.clear();  // releases go to whoever has the focus now
+        if (focused == GLFW_FALSE) of(w).input_.held.clear();  // another window receives the releases
     });
     glfwSetDropCallback(window_, [](GLFWwindow* w, int count, const char** paths) {
         of(w).input_.dropped.insert(of(w).input_.dropped.end(), paths, paths + count);
@@ -185,6 +185,6 @@ void Window::install_clipboard(GLFWwindow* window) {
         glfwSetClipboardString(static_cast<GLFWwindow*>(user), text);
     };
 #else
-    (void)window;  // later versions keep a clipboard of their own until told otherwise through their platform table
+    (void)window;  // later versions use their own clipboard unless their platform table says otherwise
 #endif
 }

@@ -1,4 +1,4 @@
-// The window on the screen: what is done in it, and how its content gets there.
+// The window on the screen: collects user input and provides the handle for drawing.
 #pragma once
 
 #include <deque>
@@ -11,32 +11,32 @@ struct GLFWwindow;
 
 class Window {
   public:
-    /// Throws Error where there is no screen.
+    /// Throws Error if there is no screen.
     Window(const glm::ivec2& size, const std::string& title);
     ~Window();
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// What the device needs to draw to it.
+    /// Vulkan instance extensions for drawing to the window.
     static std::vector<const char*> instance_extensions();
     GLFWwindow* handle() const { return window_; }
-    /// What happened since the last call; waits at most so long for something to happen.
+    /// Input since the last call. Waits at most `wait` seconds for events.
     Input poll(double wait);
-    /// The screen's factor on the size of text.
+    /// The screen's scale factor for text.
     double content_scale() const;
     void set_title(const std::string& title);
     void set_full_screen(bool on);
     bool full_screen() const { return full_screen_; }
-    /// For Dear ImGui, which copies and pastes.
+    /// Gives Dear ImGui access to the clipboard.
     static void install_clipboard(GLFWwindow* window);
 
   private:
-    /// A key or a mouse button that went down or came up.
+    /// A key or a mouse button that was pressed or released.
     struct Event {
-        Key key;  ///< empty: a button
+        Key key;  ///< empty: a mouse button
         Button button = Button::Left;
         bool down = false;
-        glm::dvec2 at{0};  ///< of the mouse then, window coordinates
+        glm::dvec2 at{0};  ///< mouse position at that time, window coordinates
     };
     void read_gamepad();
     std::optional<glm::dvec2> take_events();
@@ -45,8 +45,8 @@ class Window {
     static Window& of(GLFWwindow* window);
     GLFWwindow* window_ = nullptr;
     Input input_;
-    std::deque<Event> events_;  ///< that no frame has seen yet
+    std::deque<Event> events_;  ///< not yet passed to a frame
     double last_ = 0;
     bool full_screen_ = false;
-    glm::ivec4 windowed_{0};  ///< place and size before it filled the screen
+    glm::ivec4 windowed_{0};  ///< position and size before full screen
 };

@@ -28,7 +28,7 @@ using edgesplat::accuracy::ReportOptions;
 
 constexpr int kFullOrbit = 360;
 
-/// Everything the command line said.
+/// Values of the command line.
 struct AccuracyCommand {
     std::string volume_path;
     VolumeOptions volume;
@@ -42,7 +42,7 @@ struct AccuracyCommand {
     edgesplat::DeviceChoice device;
 };
 
-/// The scene that the options make, on nothing.
+/// The scene that the options describe, without a scene file.
 edgesplat::SceneDocument document_of(const AccuracyCommand& command) {
     edgesplat::SceneDocument document;
     document.volume.path = command.volume_path;
@@ -60,7 +60,7 @@ ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const
     ReportInput input;
     input.volume =
         std::make_shared<const edgesplat::Volume>(load_with_progress(source, edgesplat::volume_folders({}), quiet));
-    need_samples(*input.volume, "accuracy");
+    require_samples(*input.volume, "accuracy");
     input.scene = resolve_scene(document, *input.volume);
     input.analytic = edgesplat::accuracy::analytic_scene_of(source);
     input.program = "edgesplat " EDGESPLAT_VERSION;
@@ -68,7 +68,7 @@ ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const
     return input;
 }
 
-/// Six integers with commas between: the first and the last voxel.
+/// Six comma-separated integers: the first and the last voxel. nullopt for any other text.
 std::optional<std::array<glm::ivec3, 2>> parse_box(const std::string& text) {
     std::array<int, 6> values{};
     const char* at = text.data();
@@ -121,7 +121,7 @@ void run(const AccuracyCommand& command, const std::string& command_line) {
 
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(input.volume);
-    const StopRequest stop("stopped; the same command goes on from the measurements that are there");
+    const StopRequest stop("stopped; run the same command again to continue from the saved measurements");
     edgesplat::accuracy::Measured measured;
     {
         ProgressBar bar(command.quiet);
@@ -141,7 +141,7 @@ void run(const AccuracyCommand& command, const std::string& command_line) {
 void add_report_options(CLI::App& app, AccuracyCommand& command) {
     constexpr const char* kGroup = "Report";
     app.add_option("--report", command.folder,
-                   "Folder for index.html, report.json, steps.csv and what is needed to go on after Ctrl-C")
+                   "Folder for index.html, report.json, steps.csv and the data needed to continue after Ctrl-C")
         ->required()
         ->type_name("DIR")
         ->group(kGroup);
@@ -152,27 +152,29 @@ void add_report_options(CLI::App& app, AccuracyCommand& command) {
                if (!size) throw CLI::ValidationError("--size", fmt::format("'{}' is not WxH, such as 192x192", text));
                command.report.size = *size;
            },
-           "Pixels of the pictures that are measured")
+           "Size of the measured pictures, pixels")
         ->type_name("WxH")
         ->default_str("192x192")
         ->group(kGroup);
     add_number(app, "--tolerance", command.report.tolerance, {1e-7, 0.01},
-               "Largest error of a pixel of the references, full scale = 1")
+               "Largest error of a pixel of the reference pictures; full scale is 1")
         ->group(kGroup);
-    add_number(app, "--repeats", command.repeats, {1, 1000}, "Rounds in which times are taken")->group(kGroup);
-    add_number(app, "--orbit", command.orbit, {0, 3600}, "Frame pairs, one degree apart, for popping; 0: none")
+    add_number(app, "--repeats", command.repeats, {1, 1000}, "Number of timing rounds")->group(kGroup);
+    add_number(app, "--orbit", command.orbit, {0, 3600},
+               "Number of frame pairs, one degree apart, that measure popping; 0: none")
         ->group(kGroup);
-    app.add_flag("--full", command.full, "A whole turn of 360 frames")->group(kGroup);
+    app.add_flag("--full", command.full, "Measure popping over a full turn of 360 frames")->group(kGroup);
     const auto add_names = [&](const char* option, std::vector<std::string>& names, const char* type,
                                const char* help) {
         app.add_option(option, names, help)->type_name(type)->delimiter(',')->allow_extra_args(false)->group(kGroup);
     };
-    add_names("--knobs", command.report.knobs, "NAME,...", "Only the steps of these, and no combinations");
-    add_names("--cameras", command.report.cameras, "far,near,grazing,inside", "Only these");
-    app.add_flag("--restart", command.report.restart, "Throw away what an earlier run left in the folder")
+    add_names("--knobs", command.report.knobs, "NAME,...", "Measure only these settings, and no combinations");
+    add_names("--cameras", command.report.cameras, "far,near,grazing,inside", "Measure only these cameras");
+    app.add_flag("--restart", command.report.restart, "Delete the results of an earlier run in the folder")
         ->group(kGroup);
     app.add_option("--downsample", command.downsample,
-                   "Instead: what copies of the volume that are coarser by these factors lose and win back")
+                   "Measure something else: the detail lost by copies of the volume that are coarser by these factors, "
+                   "and the part that edge preservation recovers")
         ->type_name("2,4")
         ->delimiter(',')
         ->allow_extra_args(false)
@@ -184,14 +186,14 @@ void add_report_options(CLI::App& app, AccuracyCommand& command) {
                command.crop = parse_box(text);
                if (!command.crop)
                    throw CLI::ValidationError(
-                       "--crop", fmt::format("'{}' is not the first and the last voxel, X,Y,Z,X,Y,Z", text));
+                       "--crop", fmt::format("'{}' is not X,Y,Z,X,Y,Z, the first and the last voxel", text));
            },
-           "Look at this part of the volume only")
+           "Use only this part of the volume: first and last voxel, both included")
         ->type_name("X,Y,Z,X,Y,Z")
         ->group(kGroup);
-    app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
+    app.add_flag("-q,--quiet", command.quiet, "Print only warnings and errors")->group(kGroup);
     app.add_option("--device", command.device.device,
-                   "A Vulkan device: its number in --list-devices, or a part of its name")
+                   "Vulkan device: its number in --list-devices or a part of its name")
         ->type_name("DEVICE")
         ->group("Device");
 }
@@ -199,9 +201,9 @@ void add_report_options(CLI::App& app, AccuracyCommand& command) {
 }  // namespace
 
 void add_accuracy_command(CLI::App& app, const std::string& command_line, int& exit_status) {
-    CLI::App& sub = *app.add_subcommand("accuracy", "Measure what each step of accuracy costs in time");
+    CLI::App& sub = *app.add_subcommand("accuracy", "Measure error and time of each accuracy setting");
     const auto command = std::make_shared<AccuracyCommand>();
-    sub.add_option("VOLUME", command->volume_path, "A volume, or builtin:NAME, of which the truth is known")
+    sub.add_option("VOLUME", command->volume_path, "A volume, or builtin:NAME, whose exact picture is known")
         ->required()
         ->type_name("");
     add_report_options(sub, *command);

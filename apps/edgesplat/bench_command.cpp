@@ -14,7 +14,7 @@
 
 namespace {
 
-/// Everything the command line said.
+/// Values of the command line.
 struct BenchCommand {
     std::string suite = "standard", folder, earlier, later, cases;
     edgesplat::bench::BenchOptions options;
@@ -66,33 +66,35 @@ void run(const BenchCommand& command, const std::string& command_line) {
 }  // namespace
 
 void add_bench_command(CLI::App& app, const std::string& command_line, int& exit_status) {
-    CLI::App& sub = *app.add_subcommand("bench", "Measure frames, setup, work and memory next to the ray caster");
+    CLI::App& sub =
+        *app.add_subcommand("bench", "Measure frame time, setup time, work and memory, compared with the ray caster");
     const auto command = std::make_shared<BenchCommand>();
-    sub.add_option("SUITE", command->suite, "standard, scaling, full, or a file (.toml, docs/benchmarks.md)")
+    sub.add_option("SUITE", command->suite, "standard, effects, scaling, full, or a file (.toml, docs/benchmarks.md)")
         ->type_name("")
         ->default_str("standard");
     sub.add_option("-o,--output", command->folder, "Folder for bench.json, bench.csv and plots (SVG)")
         ->type_name("DIR");
-    CLI::Option* compare =
-        sub.add_option("--compare", command->earlier, "Print every figure over that of an earlier bench.json")
-            ->type_name("EARLIER.json");
-    sub.add_option("--with", command->later, "Measure nothing: compare this bench.json")
+    CLI::Option* compare = sub.add_option("--compare", command->earlier,
+                                          "Print the ratio of every figure to that of an earlier bench.json")
+                               ->type_name("EARLIER.json");
+    sub.add_option("--with", command->later, "Compare this bench.json instead of measuring")
         ->type_name("LATER.json")
         ->needs(compare);
-    sub.add_flag("--list", command->list, "Print the suite's cases and leave");
-    sub.add_option("--cases", command->cases, "Only cases with such a name: 'sphere-*', '*/plain/512x512'")
+    sub.add_flag("--list", command->list, "Print the suite's cases and exit");
+    sub.add_option("--cases", command->cases,
+                   "Run only cases whose name matches, such as 'sphere-*' or '*/plain/512x512'")
         ->type_name("GLOB");
-    CLI::Option* repeat = add_number(sub, "--repeat", command->rounds, {1, 1000}, "Exactly so many rounds");
+    CLI::Option* repeat = add_number(sub, "--repeat", command->rounds, {1, 1000}, "Number of rounds");
     add_number(sub, "--budget", command->options.budget, {0, 1e6, true},
-               "Rounds begin as long as they will be over by then; default: the suite's")
+               "Time for all rounds; no round starts that would exceed it. Default: the suite's")
         ->type_name("SECONDS")
         ->excludes(repeat);
     sub.add_option("--device", command->options.device.device,
-                   "A Vulkan device: its number in --list-devices, or a part of its name")
+                   "Vulkan device: its number in --list-devices or a part of its name")
         ->type_name("DEVICE");
-    sub.add_flag("-q,--quiet", command->quiet, "No progress and no tables");
+    sub.add_flag("-q,--quiet", command->quiet, "Print no progress and no tables");
     sub.footer(
-        "Volumes are looked for in the folders that EDGESPLAT_VOLUMES names; cases without theirs are skipped.\n"
+        "Volumes are searched in the folders of EDGESPLAT_VOLUMES. A case without its volume is skipped.\n"
         "Examples:\n"
         "  edgesplat bench -o before\n"
         "  edgesplat bench -o after --compare before/bench.json\n"

@@ -43,5 +43,5 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_stat
         "  edgesplat info head.nrrd\n"
         "  edgesplat render head.nrrd --iso -400 -o head.png\n"
         "  edgesplat compare new.png old.png --max-diff 0.01\n"
-        "Each command has a --help of its own.");
+        "Each command has its own --help.");
 }

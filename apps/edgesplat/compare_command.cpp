@@ -31,8 +31,8 @@ int run(const CompareOptions& options) {
 
     const bool within = options.min_psnr ? d.psnr >= *options.min_psnr : d.share <= options.max_share;
     fmt::print(
-        "RMSE   {:.6g}\nmax    {:.6g} at pixel {},{} channel {}\nPSNR   {:.2f} dB\nbeyond {:.4g} % of pixels by more "
-        "than {:g}\n{}\n",
+        "RMSE   {:.6g}\nmax    {:.6g} at pixel {},{} channel {}\nPSNR   {:.2f} dB\npixels {:.4g} % differ by more than "
+        "{:g}\n{}\n",
         d.rmse, d.max, d.x, d.y, d.channel, d.psnr, 100 * d.share, options.max_diff, within ? "same" : "different");
     return within ? 0 : 1;
 }
@@ -40,23 +40,24 @@ int run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare_command(CLI::App& app, int& exit_status) {
-    CLI::App& command = *app.add_subcommand("compare", "Compare two pictures, in linear light");
+    CLI::App& command = *app.add_subcommand("compare", "Compare two pictures in linear light");
     const auto options = std::make_shared<CompareOptions>();
     command.add_option("A", options->a, "A picture (any format OpenImageIO reads)")->required()->type_name("");
-    command.add_option("B", options->b, "Another of the same size and channels")->required()->type_name("");
-    CLI::Option* max_diff =
-        add_number(command, "--max-diff", options->max_diff, {0}, "Difference of a channel that is still the same");
+    command.add_option("B", options->b, "A picture of the same size and channels")->required()->type_name("");
+    CLI::Option* max_diff = add_number(command, "--max-diff", options->max_diff, {0},
+                                       "Largest difference of a channel that counts as equal");
     CLI::Option* max_share =
-        add_number(command, "--max-share", options->max_share, {0, 1}, "Share of pixels that may be further apart");
-    add_number(command, "--min-psnr", options->min_psnr, {}, "Judge by PSNR in dB instead")
+        add_number(command, "--max-share", options->max_share, {0, 1}, "Share of pixels that may differ by more");
+    add_number(command, "--min-psnr", options->min_psnr, {},
+               "Smallest PSNR that passes, dB; replaces --max-diff and --max-share")
         ->excludes(max_diff)
         ->excludes(max_share);
     command.add_option("--diff", options->difference, "Write the absolute difference as a picture, .png or .exr")
         ->type_name("FILE");
     add_number(command, "--gain", options->gain, {0, std::numeric_limits<double>::infinity(), true},
-               "Brightness of the --diff picture");
+               "Factor on the values of the --diff picture");
     command.footer(
-        "Exit status: 0 within the limits (without options: equal), 1 different, 2 could not compare.\n"
+        "Exit status: 0 within the limits (without options: equal), 1 different, 2 the comparison failed.\n"
         "Example:\n  edgesplat compare new.png golden.png --max-diff 0.02 --max-share 0.001 --diff diff.png --gain 10");
     command.callback([options, &exit_status] { exit_status = run(*options); });
 }

@@ -21,8 +21,8 @@ double seconds_since(Clock::time_point begin) {
     return std::chrono::duration<double>(Clock::now() - begin).count();
 }
 
-/// The scene behind a builtin volume, on the volume's grid.
-edgesplat::AnalyticScene scene_behind(const edgesplat::Volume& volume) {
+/// The analytic scene of a builtin volume, on the volume's grid.
+edgesplat::AnalyticScene exact_scene_of(const edgesplat::Volume& volume) {
     const std::string name = volume.name.substr(volume.name.find(':') + 1);
     const edgesplat::AnalyticScene scene = edgesplat::analytic_scene(name.substr(0, name.find(':')));
     return scene.dims == volume.geometry.dims ? scene : edgesplat::resized(scene, volume.geometry.dims);
@@ -39,19 +39,20 @@ void check_cpu_request(const edgesplat::SceneDocument& document) {
     for (const std::string& aov : output.aovs)
         if (!reference || aov != "tau")
             edgesplat::fail("--aov {}: --renderer {} has {}", aov, name,
-                            reference ? "no extra output but tau" : "no extra outputs");
+                            reference ? "only the extra output tau" : "no extra outputs");
     if (output.renderer != RendererKind::Truth) return;
     if (!edgesplat::is_builtin(volume.path))
         edgesplat::fail(
-            "{}: --renderer truth needs the exact scene, which only builtin:NAME volumes have; "
-            "--renderer reference takes any volume",
+            "{}: --renderer truth needs the exact scene, which only builtin:NAME volumes have; --renderer reference "
+            "accepts any volume",
             volume.path);
     if (volume.threshold || volume.box_filter)
-        edgesplat::fail("--{}: --renderer truth shows the exact scene and knows of no filtered samples",
+        edgesplat::fail("--{}: --renderer truth shows the exact scene, which has no samples to filter",
                         volume.threshold ? "threshold" : "box-filter");
     if (volume.crop_low || volume.crop_high)
-        edgesplat::fail("volume.crop_low, crop_high: --renderer truth shows the whole scene");
-    if (output.compare_plain) edgesplat::fail("--compare plain: --renderer truth has no kernels that could be plain");
+        edgesplat::fail("volume.crop_low, crop_high: --renderer truth cannot crop the exact scene");
+    if (output.compare_plain)
+        edgesplat::fail("--compare plain: --renderer truth draws no kernels, so there is no plain picture");
 }
 
 CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume& volume, const edgesplat::Scene& scene,
@@ -87,8 +88,8 @@ CpuFrames render_on_processor(const CpuRequest& request, const edgesplat::Volume
             return std::move(picture.image);
         };
         if (request.output.renderer == RendererKind::Truth) {
-            frame.result.color = take(edgesplat::reference::truth(scene_behind(volume), volume.geometry, scene, camera,
-                                                                  width, height, options));
+            frame.result.color = take(edgesplat::reference::truth(exact_scene_of(volume), volume.geometry, scene,
+                                                                  camera, width, height, options));
         } else {
             const edgesplat::reference::PreparedVolume prepared(volume, scene, frame.settings);
             const auto picture = [&](Output output) {

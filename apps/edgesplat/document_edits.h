@@ -1,5 +1,5 @@
-// What the command line changes in a scene: each option leaves an edit, done in the order of --help once the scene
-// that the options stand on is there.
+// Changes that command-line options make to a scene. Each option records an edit; all edits are applied, in the order
+// of --help, after the scene is read.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -16,7 +16,7 @@ class DocumentEdits {
     using Edit = std::function<void(edgesplat::SceneDocument&)>;
 
     void add(Edit edit) { edits_.push_back(std::move(edit)); }
-    /// Throws edgesplat::Error naming the option that does not fit the scene.
+    /// Applies all edits. Throws edgesplat::Error naming the option that does not fit the scene.
     void apply(edgesplat::SceneDocument& document) const {
         for (const Edit& edit : edits_)
             edit(document);
@@ -26,8 +26,8 @@ class DocumentEdits {
     std::vector<Edit> edits_;
 };
 
-// Each adds an option that leaves an edit; `set(document, value)` is what the edit does. `edits` must outlive the
-// parse. A text that does not fit throws CLI::ValidationError.
+// Each function adds an option that records the edit `set(document, value)`. `edits` must outlive the parse. An invalid
+// value throws CLI::ValidationError.
 
 template <typename Set>
 CLI::Option* add_number_edit(CLI::App& app, DocumentEdits& edits, const std::string& name, Range range,

@@ -35,7 +35,7 @@ struct EffectsOptions {
     bool markdown = false, quiet = false;
 };
 
-/// What a picture cost, ms.
+/// Times of a picture, ms.
 struct Cost {
     double frame = 0, setup = 0;
 };
@@ -45,7 +45,7 @@ struct Measured {
     const Effect* effect;
     double frame_ratio = 1, setup_ratio = 1;  ///< with / without, medians
     double frame = 0, setup = 0;              ///< ms without, medians
-    std::int64_t bytes = 0;                   ///< held more with it
+    std::int64_t bytes = 0;                   ///< additional device memory
 };
 
 double processor_milliseconds() {
@@ -54,7 +54,8 @@ double processor_milliseconds() {
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// The scene that effects are added to, every one of them off: the volume's strongest surface in a view of all of it.
+/// The base scene, with every effect off: a builtin volume's own surfaces, otherwise the strongest one, in a view of
+/// the whole volume.
 FrameRequest base_request(std::shared_ptr<const edgesplat::Volume> volume, const glm::ivec2& size) {
     FrameRequest request;
     if (edgesplat::is_builtin(volume->name)) {
@@ -64,7 +65,7 @@ FrameRequest base_request(std::shared_ptr<const edgesplat::Volume> volume, const
         for (const auto& suggestion : edgesplat::suggest_iso_values(*volume, 1))
             request.scene.iso_values.push_back(suggestion.value);
     }
-    if (request.scene.iso_values.empty()) edgesplat::fail("{}: no surface to show", volume->name);
+    if (request.scene.iso_values.empty()) edgesplat::fail("{}: no surface found", volume->name);
     const glm::dvec3 spacing = volume->geometry.spacing();
     request.scene.materials.resize(request.scene.iso_values.size() + 1);
     for (std::size_t m = 1; m < request.scene.materials.size(); ++m) {
@@ -92,7 +93,7 @@ class Measuring {
         row.bytes = static_cast<std::int64_t>(bytes_of(with)) - static_cast<std::int64_t>(held);
         std::vector<double> frames, setups, frame_ratios, setup_ratios;
         for (int repeat = 0; repeat < options_->repeats; ++repeat) {
-            // Without, with, without again: what disturbs the machine disturbs all three alike.
+            // Without, with, without again: a disturbance of the machine then affects all three alike.
             const Cost before = cost_of(without), between = cost_of(with), after = cost_of(without);
             frames.insert(frames.end(), {before.frame, after.frame});
             setups.insert(setups.end(), {before.setup, after.setup});
@@ -119,14 +120,14 @@ class Measuring {
         return draw(request).device_bytes;
     }
 
-    /// A first picture with its setup, and one more without. Pipelines are made by the pictures before.
+    /// Draws one picture with setup and one without. Earlier pictures have built the pipelines.
     Cost cost_of(const FrameRequest& request) const {
         renderer_->set_volume(request.volume);
         if (!processor_) {
             Cost cost;
             (void)draw(request);
             renderer_->set_volume(request.volume);
-            // Every draw of the picture: extra outputs are part of it.
+            // Sums over every draw of the picture, extra outputs included.
             for (const auto& pass : draw(request).passes) {
                 const bool setup = pass.name.starts_with('1') || pass.name.starts_with('2');
                 (setup ? cost.setup : cost.frame) += pass.milliseconds;
@@ -157,9 +158,9 @@ std::string bytes(std::int64_t value) {
 }
 
 void print(const std::vector<Measured>& rows, bool markdown) {
-    std::vector<std::vector<std::string>> cells{{"effect", "calls for it with", "frame x", "setup x", "memory"}};
+    std::vector<std::vector<std::string>> cells{{"effect", "enabled with", "frame x", "setup x", "memory"}};
     for (const Measured& row : rows) {
-        // What adds nothing before the first frame has no setup of its own: the ratio would be noise.
+        // An effect without setup work has no setup ratio: it would be noise.
         const Effect& effect = *row.effect;
         const bool sets_up = !effect.passes.empty() || !effect.resources.empty() || !effect.scene_fields.empty();
         cells.push_back({std::string(effect.name), std::string(effect.call), ratio(row.frame_ratio),
@@ -208,7 +209,7 @@ void run(const EffectsOptions& options) {
     apply(options.volume, source);
     const auto volume = std::make_shared<const edgesplat::Volume>(
         load_with_progress(source, edgesplat::volume_folders({}), options.quiet));
-    need_samples(*volume, "effects");
+    require_samples(*volume, "effects");
     edgesplat::Renderer renderer(edgesplat::DeviceChoice{.device = options.device});
     const FrameRequest plain = base_request(volume, options.size);
     const Measuring measuring(options, renderer);
@@ -224,7 +225,7 @@ void run(const EffectsOptions& options) {
     }
     print(rows, options.markdown);
     const glm::ivec3 dims = volume->geometry.dims;
-    fmt::print("\n{}, {} x {} x {} voxels, {} x {} pixels on {}: {}, medians of {} with and without in turns\n",
+    fmt::print("\n{}, {} x {} x {} voxels, {} x {} pixels on {}: {}, medians of {} alternating runs with and without\n",
                volume->name, dims.x, dims.y, dims.z, options.size.x, options.size.y, renderer.device().name,
                measuring.clock(), options.repeats);
 }
@@ -234,14 +235,14 @@ void run(const EffectsOptions& options) {
 void add_effects_command(CLI::App& app) {
     const auto options = std::make_shared<EffectsOptions>();
     CLI::App& command =
-        *app.add_subcommand("effects", "Measure what each effect costs: a small scene with it and without it");
+        *app.add_subcommand("effects", "Measure the cost of each effect: a small scene with and without it");
     command.add_option("VOLUME", options->path, "A volume file or builtin:NAME")
         ->type_name("")
         ->default_str("builtin:phantom:48");
-    command.add_option("--only", options->only, "Effects by their names, with commas between; default: all")
+    command.add_option("--only", options->only, "Names of effects, comma-separated; default: all")
         ->delimiter(',')
         ->type_name("EFFECT,...");
-    command.add_option("--repeats", options->repeats, "Pictures with and without each, in turns")
+    command.add_option("--repeats", options->repeats, "Number of alternating runs with and without each effect")
         ->check(CLI::Range(1, 100))
         ->default_str("5");
     command
@@ -252,13 +253,14 @@ void add_effects_command(CLI::App& app) {
                 if (!size) throw CLI::ValidationError("--size", fmt::format("'{}' is not WxH, each 1 to 16384", text));
                 options->size = *size;
             },
-            "Pixels")
+            "Picture size, pixels")
         ->type_name("WxH")
         ->default_str("160x120");
     command.add_flag("--markdown", options->markdown, "Print the table as Markdown");
-    command.add_option("--json", options->json, "Print JSON: -")->check(CLI::IsMember({"-"}));
-    command.add_option("--device", options->device, "A Vulkan device: its number, or a part of its name");
-    command.add_flag("-q,--quiet", options->quiet, "No progress");
+    command.add_option("--json", options->json, "Print JSON to stdout: -")->check(CLI::IsMember({"-"}));
+    command.add_option("--device", options->device,
+                       "Vulkan device: its number in --list-devices or a part of its name");
+    command.add_flag("-q,--quiet", options->quiet, "Print no progress");
     add_volume_options(command, options->volume);
     command.callback([options] { run(*options); });
 }

@@ -1,4 +1,4 @@
-// `edgesplat effects`: what each effect of the table costs, measured.
+// Command `edgesplat effects`: measures the cost of each effect of the table.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -14,7 +14,7 @@ using edgesplat::Light;
 using edgesplat::Plane;
 using edgesplat::SceneDocument;
 
-/// Six finite numbers with commas between them.
+/// Six finite numbers, comma-separated.
 std::array<glm::dvec3, 2> read_two_vectors(const std::string& option, const std::string& text, const char* type) {
     std::array<double, 6> v{};
     std::istringstream in(text);
@@ -28,23 +28,23 @@ std::array<glm::dvec3, 2> read_two_vectors(const std::string& option, const std:
         ++count;
     }
     if (!good || count != v.size() || text.ends_with(','))
-        throw CLI::ValidationError(option,
-                                   fmt::format("'{}' is not six numbers {} with commas and no spaces", text, type));
+        throw CLI::ValidationError(
+            option, fmt::format("'{}' is not six numbers {}, comma-separated without spaces", text, type));
     return {glm::dvec3(v[0], v[1], v[2]), glm::dvec3(v[3], v[4], v[5])};
 }
 
 Plane read_plane(const std::string& option, const std::string& text) {
     const auto [point, normal] = read_two_vectors(option, text, "PX,PY,PZ,NX,NY,NZ");
     if (normal == glm::dvec3(0))
-        throw CLI::ValidationError(option, fmt::format("'{}': its normal, the last three, must not be 0,0,0", text));
+        throw CLI::ValidationError(option, fmt::format("'{}': the normal NX,NY,NZ must not be 0,0,0", text));
     return {point, normal};
 }
 
 edgesplat::ClipBox read_box(const std::string& option, const std::string& text) {
     const auto [low, high] = read_two_vectors(option, text, "X0,Y0,Z0,X1,Y1,Z1");
     if (!glm::all(glm::lessThan(low, high)))
-        throw CLI::ValidationError(
-            option, fmt::format("'{}': each of the last three numbers must be above that of the first three", text));
+        throw CLI::ValidationError(option,
+                                   fmt::format("'{}': X1,Y1,Z1 must be greater than X0,Y0,Z0 along each axis", text));
     return {low, high};
 }
 
@@ -58,8 +58,7 @@ void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group
                         d.effects.clip.keep.push_back(plane);
                     });
             },
-            "Cut away what lies beyond the plane through a point (world mm), on the side its normal points to; "
-            "repeatable")
+            "Clip at the plane through a point (world mm): removes the side that its normal points to; repeatable")
         ->type_name("PX,PY,PZ,NX,NY,NZ")
         ->allow_extra_args(false)
         ->group(group);
@@ -69,7 +68,7 @@ void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group
             [&edits](const std::string& text) {
                 edits.add([box = read_box("--clip-box", text)](SceneDocument& d) { d.keep_box = box; });
             },
-            "Keep only what lies in the box, world mm")
+            "Keep only the inside of the box, world mm")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1")
         ->group(group);
     command
@@ -81,7 +80,7 @@ void add_clip_options(CLI::App& command, DocumentEdits& edits, const char* group
                     d.remove_box = box;
                 });
             },
-            "Cut the box out, world mm")
+            "Remove the inside of the box, world mm")
         ->type_name("X0,Y0,Z0,X1,Y1,Z1")
         ->group(group);
 }
@@ -92,24 +91,26 @@ void cast_shadows(SceneDocument& document) {
         light.shadows = light.kind != Light::Kind::Headlight;
         any = any || light.shadows;
     }
-    if (!any) edgesplat::fail("--shadows: a headlight casts none that the eye can see; give --light X,Y,Z");
+    if (!any) edgesplat::fail("--shadows: the eye cannot see the shadows of a headlight; give --light X,Y,Z");
 }
 
 }  // namespace
 
 void add_effects_options(CLI::App& command, DocumentEdits& edits) {
-    constexpr const char* kGroup = "Effects (what is not asked for costs nothing)";
-    add_number_edit(command, edits, "--fog", {0}, "Far things fade: density per mm",
+    constexpr const char* kGroup = "Effects (an unused effect costs nothing)";
+    add_number_edit(command, edits, "--fog", {0}, "Fog over the distance: density per mm",
                     [](SceneDocument& d, double density) {
                         if (!d.effects.fog) d.effects.fog.emplace();
                         d.effects.fog->density = density;
                     })
         ->group(kGroup);
-    add_flag_edit(command, edits, "--silhouette", "Lines where surfaces turn away from the eye", [](SceneDocument& d) {
-        if (!d.effects.silhouette) d.effects.silhouette.emplace();
-    })->group(kGroup);
+    add_flag_edit(command, edits, "--silhouette", "Draw lines where surfaces turn away from the eye",
+                  [](SceneDocument& d) {
+                      if (!d.effects.silhouette) d.effects.silhouette.emplace();
+                  })
+        ->group(kGroup);
     add_number_edit(command, edits, "--occlusion", {0, std::numeric_limits<double>::infinity(), true},
-                    "Ambient light does not reach into hollows: radius in mm beyond which the sky is open",
+                    "Ambient occlusion darkens hollows: radius in mm; matter farther away does not occlude",
                     [](SceneDocument& d, double radius) {
                         if (!d.effects.occlusion) d.effects.occlusion.emplace();
                         d.effects.occlusion->radius = radius;
@@ -118,10 +119,10 @@ void add_effects_options(CLI::App& command, DocumentEdits& edits) {
     add_flag_edit(command, edits, "--shadows", "Lights other than a headlight cast shadows", cast_shadows)
         ->group(kGroup);
     add_clip_options(command, edits, kGroup);
-    add_flag_edit(command, edits, "--antialias", "No footprint smaller than a pixel", [](SceneDocument& d) {
+    add_flag_edit(command, edits, "--antialias", "Widen footprints to at least one pixel", [](SceneDocument& d) {
         d.effects.antialias = true;
     })->group(kGroup);
-    add_flag_edit(command, edits, "--smooth-outlines", "A pixel that an outline passes shows what is on both its sides",
+    add_flag_edit(command, edits, "--smooth-outlines", "Pixels on an outline blend both of its sides",
                   [](SceneDocument& d) { d.effects.smooth_outlines = true; })
         ->group(kGroup);
     command
@@ -133,12 +134,12 @@ void add_effects_options(CLI::App& command, DocumentEdits& edits) {
                     throw CLI::ValidationError("--samples", fmt::format("'{}' is not a whole number", text));
                 edits.add([n](SceneDocument& d) { d.effects.samples = static_cast<int>(n); });
             },
-            "N x N rays a pixel")
+            "N x N rays per pixel")
         ->type_name("N")
         ->default_str("1")
         ->group(kGroup);
     add_vector_edit(command, edits, "--background-top", "R,G,B",
-                    "The background goes from --background at the bottom to this at the top",
+                    "Background colour at the top; --background is the colour at the bottom",
                     [](SceneDocument& d, const glm::dvec3& color) { d.effects.background_top = color; })
         ->group(kGroup);
     command
@@ -153,7 +154,7 @@ void add_effects_options(CLI::App& command, DocumentEdits& edits) {
                     }
                 });
             },
-            "Signs over the picture, with commas between")
+            "Overlays on the picture, comma-separated")
         ->type_name("orientation,scale-bar,legend")
         ->delimiter(',')
         ->allow_extra_args(false)

@@ -22,13 +22,12 @@ void add_explain_options(CLI::App& command, ExplainOption& option) {
     constexpr const char* kGroup = "Plan and memory";
     command
         .add_flag("--explain", option.explain,
-                  "Print the plan: passes, memory, splat record, each with what calls for it; and what was left out, "
-                  "with its price. Without -o nothing is rendered and no device is needed")
+                  "Print the plan: passes, memory and splat record, each with its reason, and the effects left out, "
+                  "with their cost. Without -o nothing is rendered and no device is needed")
         ->group(kGroup);
-    add_number(
-        command, "--memory-budget", option.memory_budget, {0, 1e9},
-        "MiB of device memory that may be held; a picture that needs more is refused beforehand, with what would "
-        "fit. 0: what the device has")
+    add_number(command, "--memory-budget", option.memory_budget, {0, 1e9},
+               "Limit of device memory, MiB. A picture that needs more is refused before it is rendered; the message "
+               "lists changes that fit. 0: all memory of the device")
         ->group(kGroup);
 }
 
@@ -58,7 +57,7 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
     }
     for (const auto& field : d.record)
         record.push_back({{"name", field.name}, {"bytes", field.bytes}, {"reason", field.reason}});
-    for (const auto& [effect, reason] : d.called_for)
+    for (const auto& [effect, reason] : d.active_effects)
         effects[effect] = reason;
     for (const auto& row : d.left_out) {
         left_out.push_back({{"effect", row.effect},

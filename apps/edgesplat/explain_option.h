@@ -1,4 +1,4 @@
-// --explain and --memory-budget: what a picture will run and hold, and how much it may hold.
+// Options --explain and --memory-budget: the plan of a picture, and the limit of its device memory.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -9,11 +9,11 @@
 
 struct ExplainOption {
     bool explain = false;
-    double memory_budget = 0;  ///< MiB; 0: what the device has
+    double memory_budget = 0;  ///< MiB; 0: all memory of the device
     std::uint64_t budget_bytes() const { return static_cast<std::uint64_t>(memory_budget * 1024 * 1024); }
 };
 
-/// Adds both, in a group of their own.
+/// Adds both options in their own group.
 void add_explain_options(CLI::App& command, ExplainOption& option);
 
 /// The description's tables as JSON.

@@ -15,14 +15,14 @@ using edgesplat::SceneDocument;
 
 namespace {
 
-constexpr int kMostFrames = 1'000'000;
+constexpr int kMaxFrames = 1'000'000;
 
 }  // namespace
 
 void check_film(const SceneDocument& document) {
     if (!document.output.aovs.empty() || document.output.compare_plain || document.output.compare_raycast ||
         on_processor(document.output.renderer))
-        fail("a movie has neither extra outputs nor comparisons, and is made by --renderer splat or a ray caster");
+        fail("a movie has no extra outputs and no comparisons; it needs --renderer splat or raycast");
 }
 
 Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> volume, std::optional<double> seconds) {
@@ -31,8 +31,8 @@ Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> vo
     film.volume = std::move(volume);
     const edgesplat::RendererKind renderer = film.document.output.renderer;
     if (renderer != edgesplat::RendererKind::Splat)
-        need_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));
-    if (film.document.quality.max_error) need_samples(*film.volume, "--max-error");
+        require_samples(*film.volume, fmt::format("--renderer {}", name_of(renderer)));
+    if (film.document.quality.max_error) require_samples(*film.volume, "--max-error");
     const edgesplat::Scene scene = resolve_scene(film.document, *film.volume);
     const edgesplat::Camera start = resolve_camera(film.document, *film.volume, scene);
     film.path = resolve_camera_path(film.document, *film.volume, start);
@@ -43,10 +43,9 @@ Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> vo
     for (const edgesplat::AnimatedParameter& parameter : film.animation)
         until = std::max(until, parameter.values.back().time - film.path.keys.front().time);
     until = seconds.value_or(until);
-    if (!(until > 0))
-        fail("nothing says how long the movie is: give --orbit DEGREES, --seconds, or a scene file with [movie]");
+    if (!(until > 0)) fail("the movie has no duration: give --orbit DEGREES, --seconds, or a scene file with [movie]");
     const double count = std::max(1.0, std::round(until * film.fps));
-    if (!(count <= kMostFrames)) fail("the movie has {} frames; {} are possible", count, kMostFrames);
+    if (!(count <= kMaxFrames)) fail("the movie has {} frames; at most {} are possible", count, kMaxFrames);
     film.count = static_cast<int>(count);
     return film;
 }

@@ -1,4 +1,4 @@
-// A movie as what each of its frames is made from: the scene and its camera at a time.
+// A movie: the scene and the camera at each time, from which the frames are drawn.
 #pragma once
 
 #include <memory>
@@ -18,19 +18,20 @@ struct Film {
     double fps = 25;
     int count = 0;  ///< frames
 
-    /// Seconds, as the path's keys have them.
+    /// Time of a frame on the time axis of the path's keys, s.
     double time_of(int frame) const { return path.keys.front().time + frame / fps; }
 };
 
-/// Refuses, before the volume is read, outputs and renderers that no movie has. Throws edgesplat::Error.
+/// Checks, before the volume is read, that outputs and renderer suit a movie. Throws edgesplat::Error.
 void check_film(const edgesplat::SceneDocument& document);
 
-/// `seconds`: how long; not given: until the camera's way and all animated numbers end. Throws edgesplat::Error.
+/// Resolves a document to a movie. `seconds`: its duration; nullopt: until the camera path and all animations end.
+/// Throws edgesplat::Error.
 Film film_of(edgesplat::SceneDocument document, std::shared_ptr<const edgesplat::Volume> volume,
              std::optional<double> seconds);
 
-/// The scene at a time: the document with its animated numbers set.
+/// The scene at `time` (s): the document with the animated values of that time.
 edgesplat::Scene scene_at(const Film& film, double time);
 
-/// One frame by the film's renderer; its volume must be set. Throws edgesplat::Error.
+/// Draws one frame. The renderer must hold the film's volume. Throws edgesplat::Error.
 edgesplat::RenderResult draw_frame(const Film& film, edgesplat::Renderer& renderer, int frame);

@@ -33,15 +33,15 @@ struct Mode {
     Footprint value;
 };
 
-/// Largest and 99th percentile error of each mode, percent of the plain footprint's peak, over random rays and
-/// distances up to `reach`.
+/// Prints the largest and the 99th-percentile error of each mode, percent of the plain footprint's peak, over random
+/// rays and edge distances up to `reach`.
 void print_accuracy(const char* kernels, double reach, int samples, const Footprint& exact,
                     const std::vector<Mode>& modes) {
     std::mt19937 random(1);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
     std::vector<std::vector<double>> errors(modes.size());
     for (int i = 0; i < samples; ++i) {
-        const double c = i % 4 == 0 ? uniform(0, 0.15) : uniform(0, 1);  // edge-on is where footprints are sharpest
+        const double c = i % 4 == 0 ? uniform(0, 0.15) : uniform(0, 1);  // footprints are sharpest edge-on
         const double distance = uniform(0, reach);
         const Ray ray = ray_through(uniform(-2.2, 2.2), uniform(0, kKernelRadius), c);
         const double truth = exact(ray, distance);
@@ -90,14 +90,14 @@ void report(const Options& options) {
 void add_footprints_command(CLI::App& app) {
     auto options = std::make_shared<Options>();
     CLI::App* command =
-        app.add_subcommand("footprints", "Report how accurate the footprint modes are, or plot the paper's curves");
+        app.add_subcommand("footprints", "Report the accuracy of the footprint modes, or plot the paper's curves");
     command
         ->add_option("--plot", options->plot_folder,
                      "Write the paper's figures 4, 6, 7 and 8 into a folder (needs gnuplot)")
         ->type_name("FOLDER");
     command->add_flag("--report", options->report,
-                      "Print the accuracy of the footprint modes; the default without --plot");
-    command->add_option("--samples", options->samples, "Random rays the report is measured on")
+                      "Print the accuracy of the footprint modes; this is the default without --plot");
+    command->add_option("--samples", options->samples, "Number of random rays for the report")
         ->check(CLI::Range(100, 10000000))
         ->type_name("N")
         ->capture_default_str();

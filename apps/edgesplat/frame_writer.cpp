@@ -7,7 +7,7 @@ FrameWriter::~FrameWriter() {
         try {
             write_first();
         } catch (...) {
-            // The failure that ends the movie is told already.
+            // The error that ended the movie has been reported.
             continue;
         }
 }

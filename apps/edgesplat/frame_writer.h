@@ -1,4 +1,4 @@
-// Frames that become files while the next ones are drawn.
+// Encodes and writes frames while the next ones are drawn.
 #pragma once
 
 #include <deque>
@@ -8,19 +8,20 @@
 
 #include "engine/image/image_file.h"
 
-/// Encodes frames on threads of their own and writes them on the caller's.
+/// Encodes frames on worker threads and writes them on the caller's thread.
 class FrameWriter {
   public:
-    /// At most `in_flight` >= 1 frames are held at a time.
+    /// Holds at most `in_flight` frames at a time, >= 1.
     explicit FrameWriter(std::size_t in_flight) : in_flight_(in_flight) {}
-    /// Writes what is left, as far as it can: frames that are drawn are kept where another one fails.
+    /// Writes the remaining frames as far as possible; an error of one frame does not lose the others.
     ~FrameWriter();
     FrameWriter(const FrameWriter&) = delete;
     FrameWriter& operator=(const FrameWriter&) = delete;
 
-    /// Begins with a frame as soon as there is room, for which the first one is written. Throws what that one threw.
+    /// Starts to encode a frame. If `in_flight` frames are held, it first writes the oldest one and throws that frame's
+    /// error.
     void add(std::function<std::vector<edgesplat::FileContent>()> encode);
-    /// Writes all frames, in their order; throws what the first of them threw that did.
+    /// Writes all frames in order; throws the first error.
     void finish();
 
   private:

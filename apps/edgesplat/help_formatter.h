@@ -1,11 +1,11 @@
-// How --help looks: option and type on the left, wrapped text with the default on the right.
+// Layout of --help: option and type on the left, wrapped text with the default on the right.
 #pragma once
 
 #include <CLI/CLI.hpp>
 #include <sstream>
 #include <string>
 
-/// Like CLI11's own, but wraps long texts and puts defaults behind the description.
+/// Like CLI11's formatter, but wraps long texts and puts defaults after the description.
 class HelpFormatter : public CLI::Formatter {
   public:
     HelpFormatter() { column_width(kLeft); }

@@ -35,13 +35,13 @@ double mean_of(const Volume& volume) {
     return sum / static_cast<double>(volume.values.size());
 }
 
-/// What is only true of packed volumes, and where figures come from that need samples.
+/// Properties of a packed volume, and the level from which iso-values are suggested.
 nlohmann::json packed_description(const edgesplat::PackedVolume& packed) {
-    const int looked_at = finest_level_within(packed, edgesplat::kMaxVoxelsLookedAt);
+    const int suggestion_level = finest_level_within(packed, edgesplat::kMaxVoxelsAnalysed);
     nlohmann::json json{{"stored_as", packed.sample_type()},
                         {"source", packed.source()},
                         {"quantisation_error", packed.quantisation_error()},
-                        {"suggestions_from_level", looked_at}};
+                        {"suggestions_from_level", suggestion_level}};
     for (int level = 0; level < packed.levels(); ++level) {
         const glm::ivec3& dims = packed.geometry(level).dims;
         json["levels"].push_back({dims.x, dims.y, dims.z});
@@ -97,8 +97,9 @@ void print_histogram(const nlohmann::json& histogram) {
 }
 
 void print_packed(const nlohmann::json& json) {
-    std::cout << fmt::format("packed      from {}, as {}, off by at most {:.3g}\n", json["source"].get<std::string>(),
-                             json["stored_as"].get<std::string>(), json["quantisation_error"].get<double>());
+    std::cout << fmt::format("packed      from {}, stored as {}, error at most {:.3g}\n",
+                             json["source"].get<std::string>(), json["stored_as"].get<std::string>(),
+                             json["quantisation_error"].get<double>());
     for (std::size_t level = 0; level < json["levels"].size(); ++level) {
         const auto& dims = json["levels"][level];
         std::cout << fmt::format("level {:<5} {} x {} x {}\n", level, dims[0].get<int>(), dims[1].get<int>(),
@@ -127,7 +128,8 @@ void print(const nlohmann::json& json) {
         std::cout << "note        " << note.get<std::string>() << '\n';
     const bool packed = json.contains("packed");
     if (packed) print_packed(json["packed"]);
-    std::cout << "histogram   (from, voxels, logarithmic bar" << (packed ? "; added up from the file's)\n" : ")\n");
+    std::cout << "histogram   (lower bound, voxels, logarithmic bar"
+              << (packed ? "; merged from the file's histogram)\n" : ")\n");
     print_histogram(json["histogram"]);
     std::cout << "suggested iso-values"
               << (packed ? fmt::format(" (from level {})", json["packed"]["suggestions_from_level"].get<int>()) : "")
@@ -153,10 +155,11 @@ void run(const InfoOptions& options) {
 
 void add_info_command(CLI::App& app) {
     const auto options = std::make_shared<InfoOptions>();
-    auto* command = app.add_subcommand("info", "what a volume is: size, place, values, likely iso-values");
-    command->add_option("volume", options->path, "file, folder, slice pattern or builtin:NAME")->required();
+    auto* command = app.add_subcommand("info", "Print a volume's size, position, values and likely iso-values");
+    command->add_option("volume", options->path, "A volume file, a folder or pattern of slices, or builtin:NAME")
+        ->required();
     add_volume_options(*command, options->volume);
-    command->add_option("--json", options->json, "write JSON to a file, or to stdout with -");
-    command->add_option("--bins", options->bins, "bars of the histogram")->check(CLI::Range(1, 1024));
+    command->add_option("--json", options->json, "Write JSON to a file, or to stdout with -");
+    command->add_option("--bins", options->bins, "Number of bins of the histogram")->check(CLI::Range(1, 1024));
     command->callback([options] { run(*options); });
 }

@@ -1,4 +1,4 @@
-// Where `--json` of commands that print goes.
+// Writes the output of option --json.
 #pragma once
 
 #include <iostream>
@@ -8,7 +8,7 @@
 #include "engine/accuracy/json_text.h"
 #include "engine/image/image_file.h"
 
-/// To stdout where `path` is "-", else into that file, whole or not at all. Throws edgesplat::Error.
+/// Writes to stdout if `path` is "-", otherwise to that file, completely or not at all. Throws edgesplat::Error.
 template <typename Json>
 void write_json(const std::string& path, const Json& json) {
     const std::string text = edgesplat::json_text(json, 2) + "\n";

@@ -1,6 +1,6 @@
-// The command line program: reads the arguments, runs one command, and turns every error into one line and an exit
-// status: 0 done, 1 it could not be done (compare: the pictures differ), 2 the command line is wrong (compare: or the
-// pictures cannot be compared).
+// The command-line program: reads the arguments, runs one command and reports errors in one line each. Exit status: 0
+// success, 1 failure (compare: the pictures differ), 2 wrong command line (compare: also if the comparison fails), 130
+// stopped by Ctrl-C.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -21,7 +21,7 @@
 
 namespace {
 
-/// The arguments as one line that a shell would read back to the same.
+/// The arguments as one line, quoted for a shell.
 std::string shell_line(int argc, char** argv) {
     constexpr std::string_view kPlain = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789-_=+,./:@%";
     std::string line = "edgesplat";
@@ -40,7 +40,7 @@ std::string shell_line(int argc, char** argv) {
     return line;
 }
 
-/// The option or command of `app` that is spelled most like an unexpected argument; empty if none is near.
+/// The option or command of `app` most similar to an unknown argument; empty if none is similar.
 std::string nearest_name(const CLI::App& app, std::string argument) {
     argument.resize(std::min(argument.find('='), argument.size()));
     std::vector<std::string> names;
@@ -52,14 +52,13 @@ std::string nearest_name(const CLI::App& app, std::string argument) {
     return edgesplat::nearest_name(argument, names);
 }
 
-/// Reports what is wrong with the command line.
+/// Reports an error of the command line and returns the exit status.
 int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     const std::vector<CLI::App*> parsed = app.get_subcommands();
     const CLI::App& command = parsed.empty() ? app : *parsed.front();
     const std::vector<std::string> unexpected = app.remaining(true);
     if (parsed.empty() && !unexpected.empty())
-        fmt::print(stderr, "edgesplat: {}error: no command or option is called '{}'\n", ranks::label(),
-                   unexpected.front());
+        fmt::print(stderr, "edgesplat: {}error: unknown command or option '{}'\n", ranks::label(), unexpected.front());
     else
         fmt::print(stderr, "edgesplat: {}error: {}\n", ranks::label(), error.what());
     for (const std::string& argument : unexpected) {
@@ -76,23 +75,23 @@ int report_usage(const CLI::App& app, const CLI::ParseError& error) {
     return 2;
 }
 
-/// One line for each thing that is wrong.
+/// Prints one line per problem.
 void print_error(const std::string& text) {
     std::istringstream lines(text);
     for (std::string line; std::getline(lines, line);)
         fmt::print(stderr, "edgesplat: {}error: {}\n", ranks::label(), line);
 }
 
-/// A failure that all ranks share is told by the first, which then ends the others.
-void let_first_rank_speak() {
+/// Delays all ranks except the first: it reports an error that all ranks share, and then ends the others.
+void delay_other_ranks() {
     if (!ranks::first()) std::this_thread::sleep_for(std::chrono::milliseconds(300));
 }
 
-/// Only what divides its work may be run by several ranks.
+/// Refuses several ranks for a command that does not divide its work.
 void refuse_ranks(const CLI::App& command) {
     const std::string& name = command.get_name();
     if (ranks::count() > 1 && name != "render" && name != "movie")
-        edgesplat::fail("{} is not divided among ranks, each would do the same; run it without mpirun", name);
+        edgesplat::fail("{} does not divide its work among ranks; run it without mpirun", name);
 }
 
 int run(int argc, char** argv) {
@@ -106,12 +105,12 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);
-        let_first_rank_speak();
+        delay_other_ranks();
         ranks::end_all(report_usage(app, error));
         return 2;
     } catch (const std::exception& error) {
         const int status = app.got_subcommand("compare") ? 2 : 1;
-        let_first_rank_speak();
+        delay_other_ranks();
         print_error(error.what());
         ranks::end_all(status);
         return status;

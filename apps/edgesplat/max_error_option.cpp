@@ -30,9 +30,9 @@ void add_max_error_option(CLI::App& command, DocumentEdits& edits) {
                     throw CLI::ValidationError("--max-error", error.what());
                 }
             },
-            "Choose the cheapest method whose RMS error against the converged picture of its model stays below this "
-            "share of full scale (0.005 or 0.5%), measured on a small picture of the view; the options below say the "
-            "model")
+            "Choose the fastest method whose RMS error stays below this share of full scale (0.005 or 0.5%). The error "
+            "is measured on a small picture of the view, against the converged picture of the model that the options "
+            "below select")
         ->type_name("SHARE")
         ->group("Accuracy and cost (steps from cheap to accurate)");
 }
@@ -47,8 +47,8 @@ std::optional<ChosenSettings> apply_max_error(std::optional<double> max_error, e
     settings = choice.chosen.settings;
     if (!quiet)
         fmt::print(
-            "--max-error {:.3g} %: {}; expected {:.3g} % RMS; {:.1f} ms against {:.1f} ms at {}x{} pixels (x "
-            "{:.2f})\n",
+            "--max-error {:.3g} %: {}; expected error {:.3g} % RMS; {:.1f} ms, default settings {:.1f} ms, at {}x{} "
+            "pixels (ratio {:.2f})\n",
             100 * *max_error, difference_text(choice), 100 * choice.expected_error, choice.chosen.milliseconds,
             choice.default_milliseconds, choice.size.x, choice.size.y,
             choice.chosen.milliseconds / choice.default_milliseconds);

@@ -1,4 +1,4 @@
-// --max-error of `edgesplat render`: the cheapest method that keeps the error of the picture below a limit.
+// Option --max-error: chooses the fastest method whose error stays below a limit.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,8 +12,8 @@
 /// Adds --max-error.
 void add_max_error_option(CLI::App& command, DocumentEdits& edits);
 
-/// Changes the method knobs of `settings` to what keeps the error, and says so unless `quiet`. Nothing happens where
-/// the scene names no limit (`max_error`). Throws edgesplat::Error where no method is good enough.
+/// Sets the method in `settings` to the fastest one within the limit `max_error`, and prints the choice unless `quiet`.
+/// Does nothing without a limit. Throws edgesplat::Error if no method is accurate enough.
 std::optional<edgesplat::accuracy::ChosenSettings> apply_max_error(std::optional<double> max_error,
                                                                    edgesplat::Renderer& renderer,
                                                                    const edgesplat::Volume& volume,
@@ -21,7 +21,7 @@ std::optional<edgesplat::accuracy::ChosenSettings> apply_max_error(std::optional
                                                                    const edgesplat::Camera& camera, glm::ivec2 size,
                                                                    edgesplat::Settings& settings, bool quiet);
 
-/// What the picture's metadata ("edgesplat:error") and the statistics ("error") say of it.
+/// Adds the choice to the picture's metadata ("edgesplat:error") and to the statistics ("error").
 void add_error_estimate(const std::optional<edgesplat::accuracy::ChosenSettings>& choice,
                         std::optional<double> max_error, edgesplat::ImageMetadata& metadata,
                         nlohmann::ordered_json& json);

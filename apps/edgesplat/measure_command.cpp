@@ -37,10 +37,10 @@ using edgesplat::measure::Place;
 using edgesplat::measure::Quantity;
 using Json = nlohmann::ordered_json;
 
-/// What --at was given.
+/// A value of --at.
 struct Spot {
     std::string text;
-    std::vector<double> numbers;  ///< two: a pixel; three: a place
+    std::vector<double> numbers;  ///< two: a pixel; three: a position
 };
 
 struct MeasureCommand {
@@ -62,30 +62,31 @@ Spot read_spot(const std::string& text) {
         if (comma == text.size() && (spot.numbers.size() == 2 || spot.numbers.size() == 3)) return spot;
     }
     throw CLI::ValidationError(
-        "--at", fmt::format("'{}' is neither a place X,Y,Z nor a pixel X,Y, such as 12.5,-3,40 or 256,200", text));
+        "--at", fmt::format("'{}' is neither a position X,Y,Z nor a pixel X,Y, such as 12.5,-3,40 or 256,200", text));
 }
 
-/// The surface that is seen at a pixel.
-Place seen_at(const Spot& spot, const SceneDocument& document, const Volume& volume, const Scene& scene) {
+/// The visible surface at a pixel.
+Place visible_surface(const Spot& spot, const SceneDocument& document, const Volume& volume, const Scene& scene) {
     const auto camera = resolve_camera(document, volume, scene);
     const glm::dvec2 pixel(spot.numbers[0], spot.numbers[1]);
     const auto hit = edgesplat::viewer::pick(volume, scene, camera, document.output.size, pixel);
     if (!hit)
-        edgesplat::fail("--at {}: no surface is seen at this pixel of {}x{}", spot.text, document.output.size.x,
+        edgesplat::fail("--at {}: no surface is visible at this pixel of {}x{}", spot.text, document.output.size.x,
                         document.output.size.y);
     return edgesplat::measure::place_of(*hit);
 }
 
 Place place_at(const Spot& spot, const MeasureCommand& command, const SceneDocument& document, const Volume& volume,
                const Scene& scene) {
-    if (spot.numbers.size() == 2) return seen_at(spot, document, volume, scene);
+    if (spot.numbers.size() == 2) return visible_surface(spot, document, volume, scene);
     const glm::dvec3 given(spot.numbers[0], spot.numbers[1], spot.numbers[2]);
     const glm::dvec3 world = document.camera.voxel ? volume.geometry.to_world(given) : given;
     if (command.exact) return {world};
     const auto surface = edgesplat::measure::nearest_surface(volume, scene.iso_values, world);
     if (!surface)
-        edgesplat::fail("--at {}: no surface is within {} voxels of this place; --exact takes the place itself",
-                        spot.text, edgesplat::viewer::kCrossingReach);
+        edgesplat::fail(
+            "--at {}: no surface is within {} voxels of this position; --exact measures the position itself", spot.text,
+            edgesplat::viewer::kCrossingReach);
     return *surface;
 }
 
@@ -93,7 +94,7 @@ Json to_json(const Quantity& quantity) {
     return {{"value", quantity.value}, {"uncertainty", quantity.uncertainty}};
 }
 
-/// "12.34 ± 0.05": the uncertainty to two digits, rounded up, and as many of the value.
+/// "12.34 ± 0.05": the uncertainty rounded up to two digits, and the value to the same decimal place.
 std::string text(const Json& quantity) {
     const double value = quantity["value"].get<double>(), uncertainty = quantity["uncertainty"].get<double>();
     if (!(uncertainty > 0)) return fmt::format("{:.7g}", value);
@@ -125,7 +126,7 @@ Json places_measured(const MeasureCommand& command, const SceneDocument& documen
 
 Json extents_measured(const MeasureCommand& command, const Volume& volume, const Scene& scene) {
     if (scene.iso_values.empty())
-        edgesplat::fail("measure: a transfer function without iso-values divides nothing; give --iso");
+        edgesplat::fail("measure: a transfer function without iso-values does not separate materials; give --iso");
     ProgressBar bar(command.quiet);
     const auto start = std::chrono::steady_clock::now();
     const auto extents =
@@ -208,7 +209,7 @@ void run(const MeasureCommand& command) {
     }
     Volume volume = load_with_progress(document.volume, folders, command.quiet);
     Json json{{"volume", volume.name}};
-    // Labels are drawn as other values than they have: what is measured of them is counted before.
+    // recognise_labels() changes the values of labels, so labels are measured first.
     Json labels;
     if (command.spots.empty() && !edgesplat::labels_of(volume).empty()) labels = labels_measured(volume);
     recognise_labels(document, volume);
@@ -239,23 +240,22 @@ void add_measure_command(CLI::App& app) {
                for (const std::string& text : texts)
                    command->spots.push_back(read_spot(text));
            },
-           "A place on a surface: X,Y,Z in world mm (with --voxel: voxel indices), which is moved to the nearest "
-           "surface, or X,Y, a pixel of the picture that the same options render, at which a surface is seen; "
-           "repeated: "
-           "distances from each to the next, and angles between")
+           "Place to measure. X,Y,Z: a position in world mm (with --voxel: voxel indices), moved to the nearest "
+           "surface. X,Y: the surface at a pixel of the picture that these options render. Repeat it to measure "
+           "distances between successive places, and angles")
         ->type_name("X,Y,Z|X,Y")
         ->allow_extra_args(false);
-    sub.add_flag("--exact", command->exact, "Places X,Y,Z are meant as they are, on no surface");
+    sub.add_flag("--exact", command->exact, "Do not move positions X,Y,Z to a surface");
     sub.add_option("--json", command->json, "Write JSON to a file, or to stdout with -")->type_name("FILE");
-    sub.add_flag("-q,--quiet", command->quiet, "Say nothing of progress");
+    sub.add_flag("-q,--quiet", command->quiet, "Print no progress");
     add_camera_options(sub, command->edits);
     add_scene_options(sub, command->edits);
     add_effects_options(sub, command->edits);
     add_volume_options(sub, command->volume);
     sub.footer(
-        "Volumes and surfaces are those of the materials between iso-values, of what clip planes keep. What follows ± "
-        "is how far off a number may be: because samples are rounded, far apart, or blurred less than they show. Noise "
-        "and a wrong iso-value come on top.\n"
+        "Measures the volume of each material between iso-values and the area of each iso-surface, inside the clip\n"
+        "planes. The number after ± is the uncertainty from rounding, spacing and blur of the samples. It does not\n"
+        "include noise or a wrong iso-value.\n"
         "Examples:\n"
         "  edgesplat measure head.nrrd --iso 300\n"
         "  edgesplat measure aneurysm.nrrd --iso 180 --clip-box=-20,-5,30,0,15,50\n"

@@ -31,15 +31,15 @@ namespace fs = std::filesystem;
 using edgesplat::fail;
 using edgesplat::SceneDocument;
 
-// Drawn frames that are encoded at a time while the next is drawn, one a processor at most.
-constexpr unsigned kMostFramesInFlight = 8;
+// Most frames that are encoded while the next one is drawn; at most one per processor.
+constexpr unsigned kMaxFramesInFlight = 8;
 
 /// First and last frame, both included.
 struct FrameRange {
     int first = 0, last = 0;
 };
 
-/// Everything the command line said.
+/// Values of the command line.
 struct MovieCommand {
     std::string source, output;
     VolumeOptions volume;
@@ -50,7 +50,7 @@ struct MovieCommand {
     bool keep_frames = false, restart = false, quiet = false;
 };
 
-/// Where frames and film go.
+/// Output paths of frames and film.
 struct Places {
     fs::path folder;
     std::string pattern;
@@ -101,7 +101,7 @@ FrameRange range_of(const MovieCommand& command, const Film& film) {
     return range;
 }
 
-/// What decides the frames, for the note in their folder.
+/// The inputs that determine the frames, for the note in their folder.
 nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& device) {
     const glm::ivec2& size = film.document.output.size;
     return {{"program", "edgesplat " EDGESPLAT_VERSION},
@@ -112,7 +112,7 @@ nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& 
             {"device", fmt::format("{}, {} {}", device.name, device.driver, device.driver_version)}};
 }
 
-/// Draws a frame, and leaves the rest to the writer.
+/// Draws a frame; the writer encodes and stores it.
 void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file, FrameWriter& writer) {
     std::vector<RenderedFrame> frames(1);
     frames[0].settings = film.settings;
@@ -125,7 +125,7 @@ void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, cons
     });
 }
 
-/// Frames that are there, and those that are missing and this rank's to make: every N-th of N ranks.
+/// Number of existing frames, and the missing frames that this rank draws: of N ranks, each draws every N-th.
 struct Missing {
     std::size_t there = 0;
     std::vector<int> frames;
@@ -133,15 +133,14 @@ struct Missing {
 
 Missing missing_frames(const FrameRange& range, const fs::path& folder, const FramePattern& pattern, bool quiet) {
     const int all = range.last - range.first + 1;
-    // Whether a frame is missing is asked once: others begin to make them.
+    // Only the first rank looks for files, before any rank starts to write.
     std::vector<unsigned char> there(static_cast<std::size_t>(all));
     if (ranks::first())
         for (int i = 0; i < all; ++i)
             there[static_cast<std::size_t>(i)] = fs::exists(folder / pattern.name(range.first + i)) ? 1 : 0;
     ranks::share(std::span(there));
     Missing mine{static_cast<std::size_t>(std::count(there.begin(), there.end(), 1)), {}};
-    if (mine.there > 0 && !quiet)
-        fmt::print("{}: {} of {} frames are there already\n", folder.string(), mine.there, all);
+    if (mine.there > 0 && !quiet) fmt::print("{}: {} of {} frames exist already\n", folder.string(), mine.there, all);
     int missing = 0;
     for (int i = 0; i < all; ++i)
         if (there[static_cast<std::size_t>(i)] == 0 && missing++ % ranks::count() == ranks::index())
@@ -149,14 +148,14 @@ Missing missing_frames(const FrameRange& range, const fs::path& folder, const Fr
     return mine;
 }
 
-/// Renders frames; false where it was stopped.
+/// Renders the missing frames. Returns false if stopped.
 bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path& folder, const FramePattern& pattern,
                  const Missing& to_make, const StopRequest& stop, bool quiet) {
     const auto& [there, missing] = to_make;
     const std::size_t all = there + missing.size();
     using Clock = std::chrono::steady_clock;
     ProgressBar bar(quiet);
-    FrameWriter writer(std::clamp(std::thread::hardware_concurrency(), 1U, kMostFramesInFlight));
+    FrameWriter writer(std::clamp(std::thread::hardware_concurrency(), 1U, kMaxFramesInFlight));
     bool whole = true;
     const auto start = Clock::now();
     renderer.set_interruption([&] { return stop.asked(); });
@@ -180,13 +179,13 @@ bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path
     return whole;
 }
 
-/// Once all frames are there; false where it was stopped.
+/// Checks that all frames exist and encodes the film. Returns false if stopped.
 bool finish(const MovieCommand& command, const FrameRange& range, double fps, const Places& places, MovieFolder& folder,
             const StopRequest& stop) {
     const int count = range.last - range.first + 1;
     for (int frame = range.first; frame <= range.last; ++frame)
         if (!folder.has(frame))
-            fail("{}: is not there; all ranks must see one folder", folder.frame_path(frame).string());
+            fail("{}: this frame is missing; all ranks must use the same folder", folder.frame_path(frame).string());
     if (places.film) {
         if (!encode({places.folder, places.pattern, range.first, count, fps, command.output},
                     [&] { return stop.asked(); }))
@@ -194,14 +193,14 @@ bool finish(const MovieCommand& command, const FrameRange& range, double fps, co
         if (!command.keep_frames) folder.remove();
     }
     if (!command.quiet)
-        fmt::print("{}: {} frames, {:.4g} s at {:g} frames a second\n", command.output, count, count / fps, fps);
+        fmt::print("{}: {} frames, {:.4g} s at {:g} frames per second\n", command.output, count, count / fps, fps);
     return true;
 }
 
 void stopped(const fs::path& folder, int& exit_status) {
     exit_status = kStoppedStatus;
     if (ranks::first())
-        fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}, the same command goes on from there\n",
+        fmt::print(stderr, "edgesplat: stopped; the frames so far are in {}; run the same command again to continue\n",
                    folder.string());
 }
 
@@ -226,13 +225,13 @@ void run(const MovieCommand& command, int& exit_status) {
                         command.quiet);
     ranks::share(std::span(&film.settings, 1));
     const Missing missing = missing_frames(range, path, pattern, command.quiet);
-    const StopRequest stop("stopped; the same command goes on from the frames that are there");
+    const StopRequest stop("stopped; run the same command again to continue from the existing frames");
     if (ranks::any(!make_frames(film, renderer, path, pattern, missing, stop, command.quiet))) {
         stopped(path, exit_status);
         return;
     }
     if (renderer.validation_messages() > 0)
-        fail("the frames are written, but Vulkan validation had {} messages", renderer.validation_messages());
+        fail("the frames are written, but Vulkan validation reported {} messages", renderer.validation_messages());
     ranks::wait();
     if (!ranks::first()) return;
     if (!finish(command, range, film.fps, places, *folder, stop)) stopped(path, exit_status);
@@ -257,41 +256,40 @@ void add_movie_options(CLI::App& app, MovieCommand& command) {
         ->type_name("FILE")
         ->group(kGroup);
     add_number(app, "--orbit", command.orbit, {-36000, 36000},
-               "Go so many degrees around the volume's centre, from the scene's camera on")
+               "Orbit around the volume's centre by this angle, starting at the scene's camera")
         ->type_name("DEGREES")
         ->group(kGroup);
-    add_number(app, "--fps", command.fps, {0.01, 1000}, "Frames a second; default: the scene file's, else 25")
+    add_number(app, "--fps", command.fps, {0.01, 1000}, "Frames per second; default: the scene file's, otherwise 25")
         ->group(kGroup);
     add_number(app, "--seconds", command.seconds, {0.001, 1e6},
-               "How long; default: until the camera's way and all animated numbers end, 8 for --orbit")
+               "Duration, seconds; default: until the camera path and all animations end; 8 with --orbit")
         ->group(kGroup);
     app.add_option_function<std::string>(
            "--frames", [&command](const std::string& text) { command.range = parse_range(text); },
-           "Only these of the movie's frames, the first being 0")
+           "Render only these frames, both included; the movie's first frame is 0")
         ->type_name("FIRST:LAST")
         ->group(kGroup);
-    app.add_flag("--keep-frames", command.keep_frames, "Keep the frames that a film was made of, in FILE.frames")
-        ->group(kGroup);
-    app.add_flag("--restart", command.restart, "Remove frames that another scene left, and begin anew")->group(kGroup);
-    app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
+    app.add_flag("--keep-frames", command.keep_frames, "Keep the frames of a film, in FILE.frames")->group(kGroup);
+    app.add_flag("--restart", command.restart, "Delete the frames of an earlier run and start again")->group(kGroup);
+    app.add_flag("-q,--quiet", command.quiet, "Print only warnings and errors")->group(kGroup);
 }
 
 }  // namespace
 
 void add_movie_command(CLI::App& app, int& exit_status) {
-    CLI::App& sub = *app.add_subcommand("movie", "Render a camera's way around or through a volume");
+    CLI::App& sub = *app.add_subcommand("movie", "Render a movie: a camera path around or through a volume");
     const auto command = std::make_shared<MovieCommand>();
     sub.add_option("VOLUME", command->source,
-                   "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml), whose [movie] "
-                   "says how the camera moves and what changes")
+                   "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml) whose table "
+                   "[movie] describes the camera path and the animations")
         ->required()
         ->type_name("");
     add_movie_options(sub, *command);
     add_document_options(sub, command->edits, command->volume);
     add_device_options(sub, command->device);
     sub.footer(
-        "Frames are written one by one into FILE.frames beside the film. Stopped or killed, the same command goes on\n"
-        "where it was; a movie of another scene is not mixed in.\n\n"
+        "Each frame is written to FILE.frames beside the film. After a stop or a kill, the same command continues\n"
+        "with the missing frames. Frames of different scenes are never mixed.\n\n"
         "Examples:\n"
         "  edgesplat movie builtin:phantom --orbit 360 --seconds 6 -o phantom.mp4\n"
         "  edgesplat movie nose.toml -o nose.webm --size 640x480\n"

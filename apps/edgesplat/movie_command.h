@@ -1,7 +1,8 @@
-// `edgesplat movie VOLUME|SCENE.toml -o FILM|FRAMES`: a camera's way as a film or as numbered pictures, resumable.
+// Command `edgesplat movie VOLUME|SCENE.toml -o FILM|FRAMES`: renders a camera path to a film or to numbered pictures.
+// A stopped run can be continued.
 #pragma once
 
 #include <CLI/CLI.hpp>
 
-/// Adds the command. `exit_status` becomes 130 where Ctrl-C stopped it. Its callback throws edgesplat::Error.
+/// Adds the command. Ctrl-C sets `exit_status` to 130. The callback throws edgesplat::Error.
 void add_movie_command(CLI::App& app, int& exit_status);

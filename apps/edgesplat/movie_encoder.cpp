@@ -24,9 +24,9 @@ using edgesplat::fail;
 
 namespace {
 
-constexpr int kNotStarted = 127;  ///< what a shell says of a program that is not there
+constexpr int kNotStarted = 127;  ///< exit status that a shell reports for a missing program
 
-/// A path as ffmpeg's image patterns read it: a percent sign is written twice.
+/// Escapes a path for ffmpeg's image patterns: % becomes %%.
 std::string escaped(const std::string& path) {
     std::string text;
     for (const char c : path)
@@ -40,7 +40,7 @@ std::vector<std::string> arguments_for(const Encoding& encoding, const fs::path&
         fmt::format("{}", encoding.fps), "-start_number", fmt::format("{}", encoding.first), "-i",
         escaped(fs::absolute(encoding.folder).string()) + "/" + encoding.pattern, "-frames:v",
         fmt::format("{}", encoding.count),
-        // Even sides, and the colours of high definition television, said so.
+        // Even sides; colours of high definition television (BT.709), declared in the stream.
         "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709", "-pix_fmt", "yuv420p", "-colorspace",
         "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-map_metadata", "-1"};
     const bool webm = encoding.output.extension() == ".webm";
@@ -53,27 +53,27 @@ std::vector<std::string> arguments_for(const Encoding& encoding, const fs::path&
     return arguments;
 }
 
-std::string last_lines(const std::string& said) {
-    std::istringstream file(said);
+std::string last_lines(const std::string& messages) {
+    std::istringstream file(messages);
     std::vector<std::string> lines;
     for (std::string line; std::getline(file, line);)
         if (!line.empty()) lines.push_back(line);
     std::string text;
     for (std::size_t i = lines.size() > 4 ? lines.size() - 4 : 0; i < lines.size(); ++i)
         text += (text.empty() ? "" : "; ") + lines[i];
-    return text.empty() ? "it said nothing" : text;
+    return text.empty() ? "no output" : text;
 }
 
-/// Starts ffmpeg, which dies with this process: else a movie that was killed, and goes on, would be encoded twice.
-pid_t start(std::vector<std::string>& arguments, int said) {
+/// Starts ffmpeg, which ends with this process. Otherwise a killed and continued movie could be encoded twice at once.
+pid_t start(std::vector<std::string>& arguments, int messages) {
     std::vector<char*> pointers;
     for (std::string& argument : arguments)
         pointers.push_back(argument.data());
     pointers.push_back(nullptr);
     const pid_t parent = ::getpid(), child = ::fork();
-    if (child == 0) {  // nothing here but what a signal handler may call
+    if (child == 0) {  // only async-signal-safe calls here
         ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-        if (::getppid() == parent && ::dup2(said, STDOUT_FILENO) >= 0 && ::dup2(said, STDERR_FILENO) >= 0)
+        if (::getppid() == parent && ::dup2(messages, STDOUT_FILENO) >= 0 && ::dup2(messages, STDERR_FILENO) >= 0)
             ::execvp("ffmpeg", pointers.data());
         ::_exit(kNotStarted);
     }
@@ -81,7 +81,7 @@ pid_t start(std::vector<std::string>& arguments, int said) {
     return child;
 }
 
-/// The exit status as waitpid has it; nothing where the film is to be left off.
+/// Waits for ffmpeg. Returns the status of waitpid, or nullopt if stopped.
 std::optional<int> wait_for(pid_t child, const std::function<bool()>& stop) {
     int status = 0;
     bool stopped = false;
@@ -103,15 +103,15 @@ void check_encoder() {
     for (std::string folder; std::getline(folders, folder, ':');)
         if (::access((folder.empty() ? "ffmpeg" : folder + "/ffmpeg").c_str(), X_OK) == 0) return;
     fail(
-        "the program ffmpeg is not installed (Debian: ffmpeg); it makes films of frames. Frames alone need none: "
+        "the program ffmpeg, which encodes films, is not installed (Debian: ffmpeg); numbered frames do not need it: "
         "-o FOLDER/frame_%04d.png");
 }
 
 bool encode(const Encoding& encoding, const std::function<bool()>& stop) {
     const fs::path film = encoding.folder / ("unfinished" + encoding.output.extension().string());
     std::vector<std::string> arguments = arguments_for(encoding, film);
-    const edgesplat::MemoryFile said;
-    const std::optional<int> status = wait_for(start(arguments, said.descriptor()), stop);
+    const edgesplat::MemoryFile messages;
+    const std::optional<int> status = wait_for(start(arguments, messages.descriptor()), stop);
     std::error_code error;
     if (!status) {
         fs::remove(film, error);
@@ -120,8 +120,8 @@ bool encode(const Encoding& encoding, const std::function<bool()>& stop) {
     try {
         if (WIFEXITED(*status) && WEXITSTATUS(*status) == kNotStarted) fail("ffmpeg cannot be started");
         if (*status != 0 || !fs::exists(film, error))
-            fail("ffmpeg could not make {} (status {}): {}. The frames are in {}", encoding.output.string(),
-                 WIFEXITED(*status) ? WEXITSTATUS(*status) : *status, last_lines(said.text()),
+            fail("ffmpeg could not write {} (status {}): {}. The frames are in {}", encoding.output.string(),
+                 WIFEXITED(*status) ? WEXITSTATUS(*status) : *status, last_lines(messages.text()),
                  encoding.folder.string());
         const int written = ::open(film.c_str(), O_RDONLY | O_CLOEXEC);
         const bool synced = written >= 0 && ::fsync(written) == 0;

@@ -25,7 +25,7 @@ namespace {
 
 constexpr const char* kNote = "movie.json";
 
-/// The names under which two notes differ.
+/// Names of the entries in which two notes differ.
 std::vector<std::string> differences(const ordered_json& a, const ordered_json& b) {
     std::vector<std::string> names;
     for (const auto* one : {&a, &b})
@@ -46,7 +46,7 @@ FramePattern::FramePattern(const std::string& name) {
     const std::string digits = percent == std::string::npos ? "" : name.substr(percent + 1, end - percent - 1);
     const bool numbered = end < name.size() && name[end] == 'd' && name.find('%', end) == std::string::npos;
     if (!numbered || digits.size() > 2 || (!digits.empty() && digits[0] != '0'))
-        fail("{}: not a name for frames; expected one number in it, such as frame_%04d.png", name);
+        fail("{}: not a pattern of frame names; expected one number in it, such as frame_%04d.png", name);
     before_ = name.substr(0, percent);
     after_ = name.substr(end + 1);
     digits_ = digits.empty() ? 1 : std::stoi(digits);
@@ -69,7 +69,7 @@ MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, co
     : folder_(folder.empty() ? "." : folder), pattern_(pattern) {
     std::error_code error;
     fs::create_directories(folder_, error);
-    if (error) fail("{}: cannot be made: {}", folder_.string(), error.message());
+    if (error) fail("{}: cannot create this folder: {}", folder_.string(), error.message());
     lock();
     edgesplat::remove_stale_temporaries(folder_);
     bool frames = false;
@@ -81,12 +81,13 @@ MovieFolder::MovieFolder(const fs::path& folder, const FramePattern& pattern, co
         std::ifstream file(folder_ / kNote);
         const ordered_json note = ordered_json::parse(file, nullptr, false);
         if (note.is_discarded() || !note.contains("decided_by"))
-            fail("{}: frames lie there that nothing is known of; --restart removes them and begins anew",
-                 folder_.string());
+            fail("{}: contains frames of unknown origin; --restart deletes them and starts again", folder_.string());
         const auto changed = differences(note["decided_by"], ordered_json::parse(edgesplat::json_text(decided_by)));
         if (!changed.empty())
-            fail("{}: its frames were made with other values of: {}; give the same again, or --restart to begin anew",
-                 folder_.string(), fmt::join(changed, ", "));
+            fail(
+                "{}: its frames were made with different values of: {}; use the same values, or --restart to delete "
+                "the frames",
+                folder_.string(), fmt::join(changed, ", "));
         return;
     }
     const ordered_json note{{"hash", fmt::format("{:016x}", edgesplat::fnv1a(edgesplat::json_text(decided_by)))},
@@ -103,7 +104,7 @@ void MovieFolder::lock() {
     lock_ = ::open(folder_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0) {
         ::close(lock_);
-        fail("{}: another program is making these frames", folder_.string());
+        fail("{}: another process is writing these frames", folder_.string());
     }
 }
 
@@ -114,7 +115,7 @@ void MovieFolder::remove_frames() const {
         if (pattern_.matches(entry.path().filename().string())) files.push_back(entry.path());
     for (const fs::path& file : files)
         fs::remove(file, ignored);
-    // Last: so frames never lie there without their note.
+    // The note is removed last, so that frames never exist without it.
     fs::remove(folder_ / kNote, ignored);
 }
 

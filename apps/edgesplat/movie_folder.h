@@ -1,5 +1,5 @@
-// The numbered frames of a movie in a folder, with a note of what decided them, so that a movie that was stopped, or
-// whose program was killed, goes on where it was.
+// A folder with the numbered frames of a movie and a note of the inputs that determine them. With it a stopped or
+// killed movie can be continued.
 #pragma once
 
 #include <filesystem>
@@ -22,12 +22,12 @@ class FramePattern {
     int digits_ = 0;
 };
 
-/// The folder, its frames and its note, movie.json. One program at a time works in it.
+/// The folder, its frames and its note, movie.json. Only one process at a time uses it.
 class MovieFolder {
   public:
-    /// Makes or takes up the folder. `decided_by`: texts under the names of what decides the frames. Throws
-    /// edgesplat::Error where the note of what is there differs (naming what does), frames lie there without a note,
-    /// or another program is at work; with `restart` what is there is removed instead.
+    /// Creates or reopens the folder. `decided_by`: the inputs that determine the frames, as texts by name. Throws
+    /// edgesplat::Error if an existing note differs (naming the entries), if frames have no note, or if another process
+    /// uses the folder. With `restart`, existing frames and note are deleted first.
     MovieFolder(const std::filesystem::path& folder, const FramePattern& pattern,
                 const nlohmann::ordered_json& decided_by, bool restart);
     ~MovieFolder();
@@ -36,10 +36,10 @@ class MovieFolder {
 
     const std::filesystem::path& path() const { return folder_; }
     std::filesystem::path frame_path(int frame) const { return folder_ / pattern_.name(frame); }
-    /// Frames appear whole, so one that is there is done.
+    /// Frames are written completely or not at all, so an existing frame is finished.
     bool has(int frame) const { return std::filesystem::exists(frame_path(frame)); }
 
-    /// Removes frames, note and folder (where nothing else is in it).
+    /// Removes the frames, the note and, if empty, the folder.
     void remove();
 
   private:

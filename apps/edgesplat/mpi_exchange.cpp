@@ -8,7 +8,7 @@ namespace ranks {
 namespace {
 
 // NOLINTBEGIN(readability-non-const-parameter): the type is MPI's.
-/// MPI_User_function: `behind` becomes `front` over it. MPI passes the lower ranks' pixels first.
+/// MPI_User_function: behind = front over behind. MPI passes the pixels of the lower ranks as `front`.
 void fold_pixels(void* front, void* behind, int* count, MPI_Datatype* /*pixel*/) {
     const auto* in = static_cast<const glm::vec4*>(front);
     auto* out = static_cast<glm::vec4*>(behind);
@@ -17,7 +17,7 @@ void fold_pixels(void* front, void* behind, int* count, MPI_Datatype* /*pixel*/)
 }
 // NOLINTEND(readability-non-const-parameter)
 
-/// Leaves the reduced values with rank 0.
+/// Reduces the values of all ranks to rank 0.
 void reduce(void* values, int count, MPI_Datatype type, MPI_Op operation, int rank) {
     if (rank == 0)
         MPI_Reduce(MPI_IN_PLACE, values, count, type, operation, 0, MPI_COMM_WORLD);
@@ -29,7 +29,7 @@ void reduce(void* values, int count, MPI_Datatype type, MPI_Op operation, int ra
 
 int mpi_count(std::size_t count) {
     if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        edgesplat::fail("{} elements are more than MPI passes at once", count);
+        edgesplat::fail("{} elements: MPI transfers at most 2^31 - 1 at once", count);
     return static_cast<int>(count);
 }
 

@@ -1,4 +1,4 @@
-// Partial pictures folded by MPI: a reduction with the non-commutative operator over.
+// Composites partial pictures with MPI: a reduction with the non-commutative operator `over`.
 #pragma once
 
 #include <mpi.h>
@@ -7,10 +7,10 @@
 
 namespace ranks {
 
-/// A number of elements as MPI counts them. Throws edgesplat::Error beyond 2^31 - 1.
+/// Converts a number of elements to the type that MPI counts with. Throws edgesplat::Error beyond 2^31 - 1.
 int mpi_count(std::size_t count);
 
-/// Between all processes of MPI_COMM_WORLD, by rank. Between MPI_Init and MPI_Finalize.
+/// Exchange among all processes of MPI_COMM_WORLD, in order of rank. May exist only between MPI_Init and MPI_Finalize.
 class MpiExchange : public edgesplat::PartExchange {
   public:
     explicit MpiExchange(const edgesplat::SheetPart& part);
@@ -28,7 +28,7 @@ class MpiExchange : public edgesplat::PartExchange {
 
   private:
     edgesplat::SheetPart part_;
-    MPI_Datatype pixel_ = MPI_DATATYPE_NULL;  ///< four floats, so that no reduction divides a pixel
+    MPI_Datatype pixel_ = MPI_DATATYPE_NULL;  ///< four floats, so that a reduction never splits a pixel
     MPI_Op over_ = MPI_OP_NULL;
 };
 

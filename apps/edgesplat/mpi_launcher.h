@@ -1,4 +1,4 @@
-// Whether an MPI launcher started this process, told without MPI.
+// Detects without MPI whether an MPI launcher started this process.
 #pragma once
 
 #include <cstdlib>
@@ -6,11 +6,11 @@
 
 namespace ranks {
 
-/// How many processes mpirun, mpiexec or srun say they started together; 0: none of them started this one.
+/// Number of processes that mpirun, mpiexec or srun started together; 0: none of them started this process.
 inline int launched_ranks() {
     for (const char* name : {"OMPI_COMM_WORLD_SIZE", "PMI_SIZE"})
         if (const char* value = std::getenv(name)) return std::atoi(value);  // NOLINT(cert-err34-c): 0 is no number
-    // PMIx tells the size only to those who ask it.
+    // PMIx does not put the size into the environment; 2 means several.
     return std::getenv("PMIX_RANK") != nullptr ? 2 : 0;
 }
 

@@ -24,7 +24,7 @@ void join() {
     MPI_Comm_rank(MPI_COMM_WORLD, &own_index);
     MPI_Comm_size(MPI_COMM_WORLD, &all);
     if (own_index == 0) return;
-    // What every command says to the user, it says once.
+    // Only the first rank prints to stdout.
     std::fflush(stdout);
     if (std::freopen("/dev/null", "w", stdout) == nullptr)
         fmt::print(stderr, "edgesplat: /dev/null: cannot be opened\n");

@@ -1,5 +1,5 @@
-// The processes that mpirun started together, as far as commands are concerned: who is who, what all must know, and how
-// they end. Without mpirun there is one, and nothing of MPI is touched.
+// The processes (ranks) that mpirun started together: their numbers, exchange of values, and how they end. Without
+// mpirun there is one rank, and MPI is not used.
 #pragma once
 
 #include <algorithm>
@@ -14,27 +14,28 @@
 
 namespace ranks {
 
-/// Joins the others, if mpirun (or another MPI launcher) started this process. Throws edgesplat::Error where this
-/// program was built without MPI and others were started.
+/// Joins the other ranks if mpirun (or another MPI launcher) started this process. Throws edgesplat::Error if several
+/// processes were started but this program was built without MPI.
 void join();
-/// The last word of a rank that was not stopped; waits for the others.
+/// Must be the last call of a rank that was not stopped; waits for the others.
 void leave();
-/// Ends all ranks, this one included, unless it is alone.
+/// Aborts all ranks, including this one. Does nothing without mpirun.
 void end_all(int status);
 
 int index();
 int count();
-/// Whether this rank speaks and writes for all.
+/// Whether this is rank 0, which prints and writes for all ranks.
 inline bool first() {
     return index() == 0;
 }
 
 void wait();
-/// Whether any of the ranks says so.
+/// Whether `here` is true on any rank.
 bool any(bool here);
-/// Overwrites the bytes with those of the first rank.
+/// Overwrites the bytes with those of rank 0.
 void share_bytes(std::span<std::byte> bytes);
-/// With the first rank, the bytes of all in their order; elsewhere of no use. All have the same number.
+/// Rank 0 receives the bytes of all ranks in order; the result of other ranks is unspecified. Every rank passes the
+/// same number of bytes.
 std::vector<std::byte> gather_bytes(std::span<const std::byte> bytes);
 
 template <typename T>
@@ -52,10 +53,10 @@ std::vector<T> gather(const T& value) {
     return values;
 }
 
-/// "rank 2 of 4: " for messages; nothing where there is one.
+/// Prefix of messages, "rank 2 of 4: "; empty if there is one rank.
 std::string label();
 
-/// One picture by all ranks; null where there is one.
+/// Exchange for one picture that all ranks draw together; null if there is one rank.
 std::unique_ptr<edgesplat::PartExchange> part_exchange();
 
 }  // namespace ranks

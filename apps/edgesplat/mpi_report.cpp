@@ -8,19 +8,20 @@
 
 namespace {
 
-/// Sheets that are drawn twice or not at all are told, whatever divided them: another driver may round another way.
+/// Throws if a sheet is drawn twice or not at all: different drivers may round the division differently.
 void check(const std::vector<RankReport>& reports) {
     std::uint32_t end = 0;
     for (std::size_t i = 0; i < reports.size(); ++i) {
         const RankReport& report = reports[i];
         if (report.checksum != reports.front().checksum)
-            edgesplat::fail("rank {} has read another volume than rank 0", i);
+            edgesplat::fail("rank {} has read a different volume than rank 0", i);
         if (report.level != reports.front().level)
-            edgesplat::fail("rank {} draws level {} of the volume, rank 0 level {}: give all the same --memory-budget",
-                            i, report.level, reports.front().level);
+            edgesplat::fail(
+                "rank {} draws level {} of the volume, rank 0 level {}: give all ranks the same --memory-budget", i,
+                report.level, reports.front().level);
         if (report.sheets != reports.front().sheets || report.share.first_sheet != end)
             edgesplat::fail(
-                "rank {} divides the sheets otherwise than the ranks before it: all need the same device, "
+                "rank {} divides the sheets differently from the ranks before it: all ranks need the same device, "
                 "driver and options",
                 i);
         end = report.share.end_sheet;

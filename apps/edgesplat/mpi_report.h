@@ -1,4 +1,4 @@
-// What each rank did for a picture whose sheets were divided, brought together for who reads the statistics.
+// Reports of each rank's share of a picture with divided sheets, gathered for the statistics.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -16,13 +16,13 @@ struct RankReport {
     edgesplat::SheetShare share;
 };
 
-/// With the first rank, one of each rank in their order; elsewhere, and for pictures that were not divided, none. Every
-/// rank must call it. Throws edgesplat::Error where they did not draw one picture together: another volume, or other
-/// sheets or another level than the others.
+/// Rank 0 receives the reports of all ranks in order; other ranks, and undivided pictures, get none. Every rank must
+/// call it. Throws edgesplat::Error if the ranks did not draw one picture together: different volumes, levels or
+/// sheets.
 std::vector<RankReport> gather_reports(const edgesplat::RenderStats& stats, const edgesplat::Volume& volume);
 
-/// One object a rank: sheets, pairs, milliseconds.
+/// One object per rank: sheets, pairs, milliseconds.
 nlohmann::ordered_json to_json(const std::vector<RankReport>& reports);
 
-/// ", by 2 ranks: 20 + 25 sheets, drawn in 81.2 + 79.9 ms, composited in 3.1 ms"; nothing without reports.
+/// ", by 2 ranks: 20 + 25 sheets, drawn in 81.2 + 79.9 ms, composited in 3.1 ms"; empty without reports.
 std::string to_text(const std::vector<RankReport>& reports);

@@ -1,4 +1,4 @@
-// The ranks of a program that was built without MPI: one.
+// Rank functions of a program built without MPI: there is one rank.
 
 #include "apps/edgesplat/mpi_launcher.h"
 #include "apps/edgesplat/mpi_ranks.h"
@@ -10,8 +10,7 @@ void join() {
     if (launched_ranks() > 1)
         edgesplat::fail(
             "this program was built without MPI, so each process would draw the same; run it without mpirun, or build "
-            "it "
-            "with -D EDGESPLAT_MPI=ON (Debian: libopenmpi-dev)");
+            "it with -D EDGESPLAT_MPI=ON (Debian: libopenmpi-dev)");
 }
 
 void leave() {}

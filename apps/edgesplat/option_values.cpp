@@ -7,7 +7,7 @@
 
 namespace {
 
-/// Cuts `text` at its first separator and returns what stands before it; `text` keeps what follows.
+/// Removes the part of `text` up to its first separator and returns it without the separator; nullopt if there is none.
 std::optional<std::string_view> take_before(std::string_view& text, char separator) {
     const std::size_t end = text.find(separator);
     if (end == std::string_view::npos) return std::nullopt;
@@ -70,8 +70,8 @@ glm::dvec3 read_vector(const std::string& names, const std::string& text, const 
     const std::optional<glm::dvec3> value = parse_vector(text);
     if (!value)
         throw CLI::ValidationError(
-            names,
-            fmt::format("'{}' is not three numbers {} with commas and no spaces, such as 0,1,0.05", text, type_name));
+            names, fmt::format("'{}' is not three numbers {}, comma-separated without spaces, such as 0,1,0.05", text,
+                               type_name));
     return *value;
 }
 

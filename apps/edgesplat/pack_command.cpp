@@ -68,7 +68,7 @@ void run(const PackCommand& command) {
                dims.z, summary.sample_type, summary.levels, summary.levels == 1 ? "" : "s",
                static_cast<double>(summary.bytes) / 1e6, seconds());
     if (summary.quantisation_error > 0)
-        fmt::print("quantised: samples are off by at most {:.3g}\n", summary.quantisation_error);
+        fmt::print("quantised: the largest error of a sample is {:.3g}\n", summary.quantisation_error);
 }
 
 }  // namespace
@@ -76,23 +76,24 @@ void run(const PackCommand& command) {
 void add_pack_command(CLI::App& app, int& exit_status) {
     const auto command = std::make_shared<PackCommand>();
     CLI::App& sub = *app.add_subcommand(
-        "pack", "Pack a volume into bricks at several resolutions, to be drawn without being in memory");
+        "pack", "Pack a volume into bricks at several resolutions, for rendering without loading all of it");
     sub.add_option("VOLUME", command->path, "A volume file, a folder or pattern of slices, or builtin:NAME:SIZE")
         ->required()
         ->type_name("");
     sub.add_option("-o,--output", command->output, "The packed volume, .esv")->required()->type_name("FILE");
-    sub.add_flag("--compress", command->pack.compress, "Deflate the bricks: smaller, slower to write and to read");
+    sub.add_flag("--compress", command->pack.compress,
+                 "Compress the bricks (deflate): a smaller file, slower to write and read");
     sub.add_option("--quantise", command->pack.quantise,
-                   "Samples that are no integers of so many bits become the nearest of equally spaced values; the "
-                   "largest error is stated. Default: every sample is kept exactly, in the smallest of uint8, int16, "
-                   "uint16 and float32")
+                   "Quantise samples to equally spaced values of this many bits, unless they are integers of that "
+                   "size. The largest error is printed. Default: every sample is kept exactly, in the smallest of "
+                   "uint8, int16, uint16 and float32")
         ->check(CLI::IsMember({8, 16}))
         ->type_name("BITS");
-    sub.add_flag("-q,--quiet", command->quiet, "Say nothing unless something is wrong");
+    sub.add_flag("-q,--quiet", command->quiet, "Print only warnings and errors");
     add_volume_options(sub, command->volume);
     sub.footer(
-        "builtin:NAME, raw files and uncompressed NRRD and MetaImage files are read piece by piece, with no more than\n"
-        "about 100 MB of them in memory; all others must fit into memory.\n"
+        "builtin:NAME, raw files and uncompressed NRRD and MetaImage files are read piece by piece, with at most\n"
+        "about 100 MB in memory. All other files must fit into memory.\n"
         "Examples:\n"
         "  edgesplat pack head.nrrd -o head.esv\n"
         "  edgesplat pack scan.raw --raw 2048x2048x3000:uint16:little:0.05,0.05,0.05 -o scan.esv --compress\n"

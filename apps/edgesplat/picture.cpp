@@ -24,7 +24,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kPictureExtensions{".png", ".exr"};
 constexpr std::array<std::string_view, 1> kJsonExtensions{".json"};
 
-/// Refuses what cannot be written or drawn before anything is computed.
+/// Checks the outputs and the scene before anything is computed.
 void check(const PictureRequest& request) {
     const edgesplat::OutputChoice& output = request.document.output;
     if (!output.file.empty()) edgesplat::check_output_path(output.file, kPictureExtensions);
@@ -33,17 +33,17 @@ void check(const PictureRequest& request) {
         for (const std::string& aov : output.aovs)
             edgesplat::check_output_path(aov_path(output.file, aov));
     if (request.explain.explain && output.renderer != edgesplat::RendererKind::Splat)
-        edgesplat::fail("--explain explains splatting; it needs --renderer splat");
+        edgesplat::fail("--explain needs --renderer splat");
     if (output.renderer == edgesplat::RendererKind::Raycast && !output.aovs.empty())
         edgesplat::fail("--renderer {} has no extra outputs", name_of(output.renderer));
     if (ranks::count() > 1 && output.compare_raycast)
-        edgesplat::fail("--compare raycast draws no sheets that ranks could divide; run it without mpirun");
+        edgesplat::fail("--compare raycast does not draw sheets, which ranks divide; run it without mpirun");
     if (ranks::count() > 1 && output.renderer != edgesplat::RendererKind::Splat)
-        edgesplat::fail("--renderer {} draws no sheets that ranks could divide; run it without mpirun",
+        edgesplat::fail("--renderer {} does not draw sheets, which ranks divide; run it without mpirun",
                         name_of(output.renderer));
     check_cpu_request(request.document);
     if (request.document.quality.max_error && output.renderer != edgesplat::RendererKind::Splat)
-        edgesplat::fail("--max-error chooses how to splat; it needs --renderer splat");
+        edgesplat::fail("--max-error needs --renderer splat");
     edgesplat::validate(request.document.quality.settings);
     const auto problems = problems_of(request.document, request.folders);
     if (problems.empty()) return;
@@ -56,14 +56,14 @@ void check(const PictureRequest& request) {
 edgesplat::Volume load(PictureRequest& request) {
     edgesplat::Volume volume = load_with_progress(request.document.volume, request.folders, request.quiet);
     if (volume.non_finite_count > 0 && !request.quiet)
-        fmt::print(stderr, "edgesplat: warning: {}: {} samples are not finite and taken as {}\n", volume.name,
+        fmt::print(stderr, "edgesplat: warning: {}: {} samples are not finite; they are replaced by {}\n", volume.name,
                    volume.non_finite_count, volume.min_value);
     recognise_labels(request.document, volume);
     return volume;
 }
 
-/// The frames asked for: first, where it is compared, the plain one, then the ray caster's. Of several ranks the first
-/// has them.
+/// Renders the requested frames: for comparisons the plain one first, then the ray caster's. Of several ranks, only the
+/// first receives the pictures.
 std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
                                          edgesplat::Renderer& renderer, const edgesplat::Volume& volume,
                                          const edgesplat::Scene& scene, const edgesplat::Camera& camera) {
@@ -90,36 +90,36 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     return frames;
 }
 
-/// The volume's path as the picture remembers it: as it was written where that leads to it from the working folder or
-/// EDGESPLAT_VOLUMES, else from the picture's folder.
-std::string remembered_path(const PictureRequest& request) {
+/// The volume's path as the picture records it: as written if it leads to the volume from the working folder or
+/// EDGESPLAT_VOLUMES, otherwise relative to the picture's folder.
+std::string recorded_path(const PictureRequest& request) {
     const std::string& written = request.document.volume.path;
     if (edgesplat::is_builtin(written) || std::filesystem::path(written).is_absolute()) return written;
     const std::string found = edgesplat::find_volume(written, request.folders);
     try {
         if (edgesplat::find_volume(written, edgesplat::volume_folders({})) == found) return written;
     } catch (const edgesplat::Error&) {
-        // From the working folder it cannot be found; the picture's folder is what is left.
+        // Not found from the working folder: use the picture's folder.
     }
     const std::filesystem::path folder = std::filesystem::path(request.document.output.file).parent_path();
     return std::filesystem::proximate(found, folder.empty() ? "." : folder).string();
 }
 
-/// The document of what was drawn, for the picture's metadata.
+/// Text of the drawn scene, with nothing left open, for the picture's metadata.
 std::string scene_of_picture(const PictureRequest& request, const edgesplat::Volume& volume,
                              const edgesplat::Scene& scene, const edgesplat::Camera& camera,
                              const edgesplat::Settings& settings) {
     edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
-    document.volume.path = remembered_path(request);
+    document.volume.path = recorded_path(request);
     return scene_text(document);
 }
 
-/// Nothing but a wall is seen from inside of it.
-void warn_of_eye(const edgesplat::Volume& volume, const edgesplat::Camera& camera) {
+/// Warns about an eye inside opaque matter, which occludes everything else.
+void warn_about_eye(const edgesplat::Volume& volume, const edgesplat::Camera& camera) {
     const glm::ivec3 voxel(glm::round(volume.geometry.to_index(camera.eye)));
     fmt::print(stderr,
                "edgesplat: warning: the eye ({:.5g}, {:.5g}, {:.5g} mm) is inside opaque matter: voxel {}, {}, {} has "
-               "the value {:.6g}; move it (--eye), or show a higher surface (--iso)\n",
+               "the value {:.6g}; move the eye (--eye) or raise the iso-value (--iso)\n",
                camera.eye.x, camera.eye.y, camera.eye.z, voxel.x, voxel.y, voxel.z, value_at(volume, voxel));
 }
 
@@ -131,11 +131,11 @@ void make_picture(PictureRequest request) {
     edgesplat::Settings settings = request.document.quality.settings;
     const auto volume = std::make_shared<const edgesplat::Volume>(load(request));
     if (output.renderer != edgesplat::RendererKind::Splat)
-        need_samples(*volume, fmt::format("--renderer {}", name_of(output.renderer)));
-    if (request.document.quality.max_error) need_samples(*volume, "--max-error");
+        require_samples(*volume, fmt::format("--renderer {}", name_of(output.renderer)));
+    if (request.document.quality.max_error) require_samples(*volume, "--max-error");
     const edgesplat::Scene scene = resolve_scene(request.document, *volume);
     const edgesplat::Camera camera = resolve_camera(request.document, *volume, scene);
-    if (!request.quiet && eye_in_opaque(*volume, scene, camera)) warn_of_eye(*volume, camera);
+    if (!request.quiet && eye_in_opaque(*volume, scene, camera)) warn_about_eye(*volume, camera);
 
     const edgesplat::FrameRequest planned{volume,   scene,       camera,
                                           settings, output.size, edgesplat::aov_request(output.aovs)};
@@ -143,8 +143,7 @@ void make_picture(PictureRequest request) {
         fmt::print("{}", edgesplat::to_text(edgesplat::describe_frame(planned, request.device.profile)));
         return;
     }
-    RunDescription description{request.command_line,     volume.get(), &scene, camera,
-                               remembered_path(request), {},           {},     {}};
+    RunDescription description{request.command_line, volume.get(), &scene, camera, recorded_path(request), {}, {}, {}};
     std::vector<RenderedFrame> frames;
     std::vector<CpuMeasurements> measurements;
     std::optional<edgesplat::accuracy::ChosenSettings> choice;
@@ -204,10 +203,10 @@ void make_picture(PictureRequest request) {
                    stats.frame_milliseconds, stats.device.name, to_text(frames.back().ranks));
     if (stats.level > stats.wanted_level) {
         fmt::print(stderr,
-                   "edgesplat: warning: {}: drawn at level {}, voxels of {} along each axis: the splats of level {} do "
-                   "not fit\n",
+                   "edgesplat: warning: {}: drawn at level {}, with voxels {} times as wide: the splats of level {} do "
+                   "not fit into memory\n",
                    volume->name, stats.level, 1 << stats.level, stats.level - 1);
     }
     if (validation_messages > 0)
-        edgesplat::fail("the picture is written, but Vulkan validation had {} messages", validation_messages);
+        edgesplat::fail("the picture is written, but Vulkan validation reported {} messages", validation_messages);
 }

@@ -1,4 +1,4 @@
-// From a scene to the files of its picture: what `render`, `rerun` and others share.
+// Renders a scene to the files of its picture; used by `render`, `rerun` and others.
 #pragma once
 
 #include <filesystem>
@@ -10,17 +10,17 @@
 #include "engine/renderer.h"
 #include "engine/scene/scene_document.h"
 
-/// A picture to be made.
+/// Request for a picture.
 struct PictureRequest {
-    edgesplat::SceneDocument document;           ///< its `output.file` is where the picture goes
-    std::vector<std::filesystem::path> folders;  ///< where the volume is looked for
+    edgesplat::SceneDocument document;           ///< `output.file` is the picture's path
+    std::vector<std::filesystem::path> folders;  ///< searched for the volume
     edgesplat::DeviceChoice device;
-    ExplainOption explain;  ///< with no output file: only the plan is printed
-    std::string json;       ///< where statistics go; empty: nowhere
+    ExplainOption explain;  ///< without an output file only the plan is printed
+    std::string json;       ///< path of the statistics; empty: none
     std::string command_line;
     bool quiet = false;
 };
 
-/// Checks everything that can be checked before, reads the volume, renders, writes all files or none, and says in one
-/// line what was done. Throws edgesplat::Error.
+/// Checks the request, reads the volume, renders, writes all files or none, and prints a summary line. Throws
+/// edgesplat::Error.
 void make_picture(PictureRequest request);

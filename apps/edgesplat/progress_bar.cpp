@@ -13,15 +13,15 @@
 
 namespace {
 
-volatile std::sig_atomic_t stop_asked = 0;
+volatile std::sig_atomic_t is_stop_requested = 0;
 
-const char* words_of_the_impatient = nullptr;
+const char* exit_message = nullptr;
 
-// What may be called here is in signal-safety(7).
+// Only async-signal-safe calls, see signal-safety(7).
 void note_stop(int signal) {
-    stop_asked = 1;
+    is_stop_requested = 1;
     std::signal(signal, SIG_DFL);
-    if (words_of_the_impatient != nullptr) alarm(1);
+    if (exit_message != nullptr) alarm(1);
 }
 
 void end_now(int) {
@@ -29,7 +29,7 @@ void end_now(int) {
         alarm(1);
         return;
     }
-    for (const char* text : {"edgesplat: ", words_of_the_impatient, "\n"})
+    for (const char* text : {"edgesplat: ", exit_message, "\n"})
         if (write(STDERR_FILENO, text, std::strlen(text)) < 0) break;
     _exit(kStoppedStatus);
 }
@@ -71,8 +71,8 @@ void ProgressBar::update(double done, double seconds_left, const std::string& wh
 }
 
 StopRequest::StopRequest(const char* last_words) {
-    stop_asked = 0;
-    words_of_the_impatient = last_words;
+    is_stop_requested = 0;
+    exit_message = last_words;
     std::signal(SIGALRM, end_now);
     std::signal(SIGINT, note_stop);
     std::signal(SIGTERM, note_stop);
@@ -86,5 +86,5 @@ StopRequest::~StopRequest() {
 }
 
 bool StopRequest::asked() const {
-    return stop_asked != 0;
+    return is_stop_requested != 0;
 }

@@ -1,16 +1,16 @@
-// A bar with the time left on stderr, where that is a terminal, and Ctrl-C as a request to stop.
+// A progress bar on stderr (if it is a terminal), and Ctrl-C as a request to stop.
 #pragma once
 
 #include <chrono>
 #include <functional>
 #include <string>
 
-inline constexpr int kStoppedStatus = 130;  ///< what a shell says of a program that Ctrl-C ended
+inline constexpr int kStoppedStatus = 130;  ///< exit status that a shell reports for a program ended by Ctrl-C
 
-/// Runs `body`; where it ends by accuracy::Interrupted, says so and sets kStoppedStatus.
+/// Runs `body`. If it throws accuracy::Interrupted, prints the message and sets `exit_status` to kStoppedStatus.
 void run_until_stopped(int& exit_status, const std::function<void()>& body);
 
-/// Draws at most ten times a second; takes its line away when it goes.
+/// Redraws at most ten times a second. The destructor erases the line.
 class ProgressBar {
   public:
     explicit ProgressBar(bool quiet);
@@ -25,13 +25,13 @@ class ProgressBar {
     std::chrono::steady_clock::time_point last_;
 };
 
-/// While it lives, the first SIGINT or SIGTERM is only noted; a second one ends the program at once. With `last_words`
-/// the program ends with them and kStoppedStatus where a second has passed and this still lives: for work of which
-/// nothing is lost by that, and which may be busy for long with something that cannot be left off. A file that is being
-/// written is written first.
+/// While this object exists, the first SIGINT or SIGTERM is only recorded; a second one ends the program at once. With
+/// `last_words`, the program also ends if this object still exists one second after the first signal: it prints that
+/// text and exits with kStoppedStatus, but finishes a file that is being written. Use it for work that loses nothing if
+/// it ends at once, and that cannot always poll asked().
 class StopRequest {
   public:
-    /// `last_words`: outlive this; no end of line.
+    /// `last_words`: must outlive this object; no line end.
     explicit StopRequest(const char* last_words = nullptr);
     ~StopRequest();
     StopRequest(const StopRequest&) = delete;

@@ -23,7 +23,7 @@ namespace {
 
 using edgesplat::SceneDocument;
 
-/// Everything the command line said.
+/// Values of the command line.
 struct RenderCommand {
     std::string source;  ///< a volume or a scene file
     VolumeOptions volume;
@@ -53,26 +53,25 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
     app.add_option_function<std::string>(
            "-o,--output",
            [&edits](const std::string& file) { edits.add([file](SceneDocument& d) { d.output.file = file; }); },
-           "The picture: .png (8 bit sRGB) or .exr (float32 linear, with alpha); required unless a scene file says it, "
-           "or "
-           "with --explain")
+           "Output picture: .png (8-bit sRGB) or .exr (float32 linear, with alpha). Required unless the scene file "
+           "names it or --explain is given")
         ->type_name("FILE")
         ->group(kGroup);
-    CLI::Option* aov =
-        app.add_option_function<std::vector<std::string>>(
-               "--aov",
-               [&edits](const std::vector<std::string>& aovs) {
-                   edits.add([aovs](SceneDocument& d) {
-                       d.output.aovs = aovs;
-                       d.output.compare_plain = d.output.compare_raycast = false;
-                   });
-               },
-               "Extra outputs, with commas between: channels of an .exr picture, or FILE.tau.exr, ... beside a .png")
-            ->type_name(fmt::format("{}", fmt::join(edgesplat::aov_names(), ",")))
-            ->delimiter(',')
-            ->allow_extra_args(false)
-            ->check(CLI::IsMember(edgesplat::aov_names()).description(""))
-            ->group(kGroup);
+    CLI::Option* aov = app.add_option_function<std::vector<std::string>>(
+                              "--aov",
+                              [&edits](const std::vector<std::string>& aovs) {
+                                  edits.add([aovs](SceneDocument& d) {
+                                      d.output.aovs = aovs;
+                                      d.output.compare_plain = d.output.compare_raycast = false;
+                                  });
+                              },
+                              "Extra outputs, comma-separated: channels of an .exr picture, or separate files "
+                              "(FILE.tau.exr, ...) beside a .png")
+                           ->type_name(fmt::format("{}", fmt::join(edgesplat::aov_names(), ",")))
+                           ->delimiter(',')
+                           ->allow_extra_args(false)
+                           ->check(CLI::IsMember(edgesplat::aov_names()).description(""))
+                           ->group(kGroup);
     app.add_option_function<std::vector<std::string>>(
            "--compare",
            [&edits](const std::vector<std::string>& beside) {
@@ -82,18 +81,19 @@ void add_output_options(CLI::App& app, RenderCommand& command) {
                    d.output.aovs.clear();
                });
            },
-           "Side by side, with commas between: conventional splatting, the ray caster (--raycast-filter), and on the "
-           "right this command's picture")
+           "Pictures to the left of this command's picture, comma-separated. plain: conventional splatting; raycast: "
+           "the ray caster (--raycast-filter)")
         ->type_name("plain,raycast")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->check(CLI::IsMember(std::vector<std::string>{"plain", "raycast"}).description(""))
         ->excludes(aov)
         ->group(kGroup);
-    app.add_option("--json", command.json, "Statistics: milliseconds per pass, counts, memory, device, driver, version")
+    app.add_option("--json", command.json,
+                   "Write statistics: milliseconds per pass, counts, memory, device, driver, version")
         ->type_name("FILE")
         ->group(kGroup);
-    app.add_flag("-q,--quiet", command.quiet, "Say nothing unless something is wrong")->group(kGroup);
+    app.add_flag("-q,--quiet", command.quiet, "Print only warnings and errors")->group(kGroup);
 }
 
 void add_set_option(CLI::App& app, DocumentEdits& edits) {
@@ -109,9 +109,8 @@ void add_set_option(CLI::App& app, DocumentEdits& edits) {
                        }
                    });
            },
-           "Any key of a scene file (`edgesplat scene keys`), such as effects.fog.start=20; repeatable, after all "
-           "other "
-           "options")
+           "Set any key of a scene file (`edgesplat scene keys`), such as effects.fog.start=20. Repeatable; applied "
+           "after all other options")
         ->type_name("KEY=VALUE")
         ->allow_extra_args(false)
         ->group("Scene file");
@@ -141,11 +140,11 @@ void read_source(const std::string& source, SceneDocument& document, std::vector
 }
 
 void add_render_command(CLI::App& app, const std::string& command_line) {
-    CLI::App& sub = *app.add_subcommand("render", "Render a volume, or a scene file, to a picture");
+    CLI::App& sub = *app.add_subcommand("render", "Render a volume or a scene file to a picture");
     const auto command = std::make_shared<RenderCommand>();
     sub.add_option("VOLUME", command->source,
-                   "A volume file, a folder or pattern of slices, builtin:NAME (see `edgesplat info --help`), or a "
-                   "scene file (.toml), which the options below change")
+                   "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml), which the "
+                   "options below change")
         ->required()
         ->type_name("");
     add_output_options(sub, *command);

@@ -1,4 +1,5 @@
-// `edgesplat render VOLUME|SCENE.toml -o PICTURE`: one picture, with everything that can be said about it.
+// Command `edgesplat render VOLUME|SCENE.toml -o PICTURE`: renders one picture. Also the scene options of other
+// commands.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,14 +11,13 @@
 #include "apps/edgesplat/volume_options.h"
 #include "engine/renderer.h"
 
-/// Adds the command. `command_line` is recorded in what it writes. Its callback throws edgesplat::Error.
+/// Adds the command. Output files record `command_line`. The callback throws edgesplat::Error.
 void add_render_command(CLI::App& app, const std::string& command_line);
 
-/// Adds everything that a command line can say about a scene: volume, camera, matter, effects, renderer, quality, and
-/// --set, which has the last word.
+/// Adds all scene options: volume, camera, materials, effects, renderer, quality, and --set, which is applied last.
 void add_document_options(CLI::App& app, DocumentEdits& edits, VolumeOptions& volume);
 
-/// Fills `document` from a scene file, or begins one for a volume, and says where its volume is looked for. Throws
-/// edgesplat::Error.
+/// Reads a scene file into `document`, or starts a scene for a volume. `folders` receives the folders to search for the
+/// volume. Throws edgesplat::Error.
 void read_source(const std::string& source, edgesplat::SceneDocument& document,
                  std::vector<std::filesystem::path>& folders);

@@ -18,7 +18,7 @@ ordered_json to_json(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Every knob of the ladder under its name, with underscores.
+/// Every knob of the ladder by its name, with underscores.
 ordered_json to_json(const edgesplat::Settings& s) {
     ordered_json json;
     for (const edgesplat::Knob& knob : edgesplat::ladder()) {
@@ -70,7 +70,7 @@ ordered_json to_json(const RenderedFrame& frame) {
     return json;
 }
 
-/// The largest resident size this process has had, bytes.
+/// Peak resident size of this process, bytes.
 std::uint64_t peak_host_bytes() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
@@ -98,7 +98,7 @@ edgesplat::Image side_by_side(const edgesplat::Image& left, const edgesplat::Ima
     return out;
 }
 
-/// The extra outputs there are, each under its name and with its channels' names.
+/// The extra outputs in `result`, each with its name and the names of its channels.
 std::vector<std::pair<std::string, edgesplat::ImageLayer>> aov_layers(const edgesplat::RenderResult& result) {
     std::vector<std::pair<std::string, edgesplat::ImageLayer>> layers;
     for (const edgesplat::Aov& aov : edgesplat::aovs()) {

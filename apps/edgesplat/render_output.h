@@ -1,4 +1,4 @@
-// The files a render leaves: picture, extra outputs, statistics. All of them appear, or none.
+// Output files of a rendering: picture, extra outputs, statistics. All of them are written, or none.
 #pragma once
 
 #include <filesystem>
@@ -16,35 +16,35 @@ struct RenderedFrame {
     std::string name;  ///< "plain", "raycast" or "edges"
     edgesplat::Settings settings;
     edgesplat::RenderResult result;
-    std::vector<RankReport> ranks{};  ///< where its sheets were divided
-    bool rays = false;                ///< cast, not splatted
+    std::vector<RankReport> ranks{};  ///< empty unless the sheets were divided
+    bool rays = false;                ///< ray cast, not splatted
 };
 
-/// What the statistics and the metadata say about the run.
+/// Description of the run for statistics and metadata.
 struct RunDescription {
     std::string command_line;
     const edgesplat::Volume* volume = nullptr;
     const edgesplat::Scene* scene = nullptr;
     edgesplat::Camera camera;
-    std::string volume_path;      ///< from where the picture is looked at
-    std::string scene_text;       ///< TOML from which the picture can be made again
-    std::string device;           ///< what it was made on
-    nlohmann::ordered_json plan;  ///< of the last frame, where it was asked for
+    std::string volume_path;      ///< as the picture records it
+    std::string scene_text;       ///< TOML that reproduces the picture
+    std::string device;           ///< name and driver
+    nlohmann::ordered_json plan;  ///< of the last frame; null unless requested
 };
 
-/// Command, program version, device, volume and its checksum, and the scene itself, as they go into every picture.
+/// Metadata of every picture: program version, command, volume and its checksum, device, and the scene.
 edgesplat::ImageMetadata picture_metadata(const RunDescription& run);
 
-/// Everything measured, as `--json` writes it: run, volume, scene, camera, device, and per frame the settings, counts,
-/// memory, and milliseconds per pass.
+/// The statistics that `--json` writes: run, volume, scene, camera, device, and per frame the settings, counts, memory,
+/// and milliseconds per pass.
 nlohmann::ordered_json statistics(const RunDescription& run, const std::vector<RenderedFrame>& frames);
 
-/// Where the extra output `aov` of a .png goes: "out.png" -> "out.tau.exr".
+/// Path of the extra output `aov` of a .png: "out.png" -> "out.tau.exr".
 std::filesystem::path aov_path(const std::filesystem::path& picture, const std::string& aov);
 
-/// The picture of the frames, side by side with dividers where there are several, with the extra outputs of the last
-/// one: inside an .exr (R,G,B,A, tau, depth.Z, normal.X/Y/Z, distance), in files of their own (`aov_path`) beside a
-/// .png, which holds R,G,B over the background.
+/// Encodes the frames as one picture, several side by side with dividers, and the extra outputs of the last frame. An
+/// .exr holds all of them (R,G,B,A, tau, depth.Z, normal.X/Y/Z, distance). A .png holds R,G,B over the background;
+/// extra outputs go to separate files (`aov_path`).
 std::vector<edgesplat::FileContent> picture_files(const std::filesystem::path& path,
                                                   const std::vector<RenderedFrame>& frames,
                                                   const edgesplat::ImageMetadata& metadata);

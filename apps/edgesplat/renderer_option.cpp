@@ -11,14 +11,14 @@ using edgesplat::SceneDocument;
 
 namespace {
 
-/// The kind of which `text` is the name; `what` says what it is.
+/// Converts the name `text` to its value. The error calls the value `what`.
 template <typename Kind, std::size_t count>
 Kind named(const std::array<std::string_view, count>& names, const std::string& option, std::string_view what,
            const std::string& text) {
     const auto found = std::ranges::find(names, text);
     if (found == names.end())
         throw CLI::ValidationError(
-            option, fmt::format("no {} is called '{}'; there are {}", what, text, fmt::join(names, ", ")));
+            option, fmt::format("unknown {} '{}'; expected one of {}", what, text, fmt::join(names, ", ")));
     return static_cast<Kind>(found - names.begin());
 }
 
@@ -41,13 +41,14 @@ void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
                     named<edgesplat::RendererKind>(edgesplat::kRendererNames, "--renderer", "renderer", text);
                 edits.add([kind](SceneDocument& d) { d.output.renderer = kind; });
             },
-            "raycast: rays through the field between the samples (--raycast-filter). reference: the sum of all kernels "
-            "itself, to --tolerance; truth: a builtin volume's exact surfaces. These two take the processor and "
-            "seconds to minutes")
+            "raycast: ray casting of the interpolated samples (--raycast-filter). reference: the exact sum of all "
+            "kernels, to --tolerance. truth: the exact surfaces of a builtin volume. reference and truth run on the "
+            "processor and take seconds to minutes")
         ->type_name(fmt::format("{}", fmt::join(edgesplat::kRendererNames, "|")))
         ->default_str(std::string(name_of(usual.renderer)))
         ->group(kGroup);
-    add_number_edit(command, edits, "--raycast-step", {0.01, 4, true}, "Between samples, in voxels (raycast)",
+    add_number_edit(command, edits, "--raycast-step", {0.01, 4, true},
+                    "Distance between samples along a ray, voxels (raycast)",
                     [](SceneDocument& d, double value) { d.output.raycast_step = value; })
         ->default_str(fmt::format("{}", usual.raycast_step))
         ->group(kGroup);
@@ -59,13 +60,13 @@ void add_renderer_options(CLI::App& command, DocumentEdits& edits) {
                     named<edgesplat::RaycastFilter>(edgesplat::kRaycastFilterNames, "--raycast-filter", "filter", text);
                 edits.add([filter](SceneDocument& d) { d.output.raycast_filter = filter; });
             },
-            "The field between the samples (raycast): interpolated, or the cubic B-spline through them, whose surfaces "
-            "are nearer to the truth and take several times as long")
+            "Interpolation of the samples (raycast): trilinear, or the cubic B-spline through them. Cubic surfaces are "
+            "more accurate and take several times as long")
         ->type_name(fmt::format("{}", fmt::join(edgesplat::kRaycastFilterNames, "|")))
         ->default_str(std::string(edgesplat::kRaycastFilterNames.at(static_cast<std::size_t>(usual.raycast_filter))))
         ->group(kGroup);
     add_number_edit(command, edits, "--tolerance", {0, 0.1, true},
-                    "Largest error of a pixel, of full scale 1 (reference, truth)",
+                    "Largest error of a pixel; full scale is 1 (reference, truth)",
                     [](SceneDocument& d, double value) { d.output.tolerance = value; })
         ->default_str(fmt::format("{}", usual.tolerance))
         ->group(kGroup);

@@ -1,4 +1,4 @@
-// --renderer, --raycast-step, --raycast-filter and --tolerance of `edgesplat render`: which way to the picture.
+// Options --renderer, --raycast-step, --raycast-filter and --tolerance: how a picture is computed.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -6,7 +6,7 @@
 #include "apps/edgesplat/document_edits.h"
 #include "engine/renderer.h"
 
-/// How the ray caster is to sample.
+/// Sampling settings of the ray caster.
 edgesplat::RaycastSettings raycast_settings(const edgesplat::OutputChoice& output);
 
 /// Adds --renderer, --raycast-step, --raycast-filter and --tolerance.

@@ -28,12 +28,13 @@ std::string text_of(const edgesplat::ImageMetadata& metadata, std::string_view n
     return found == metadata.end() ? "" : found->second;
 }
 
-/// A folder that is gone when this is.
+/// A temporary folder; the destructor deletes it.
 class TemporaryFolder {
   public:
     TemporaryFolder() {
         std::string name = (fs::temp_directory_path() / "edgesplat-rerun-XXXXXX").string();
-        if (!mkdtemp(name.data())) edgesplat::fail("cannot make a folder in {}", fs::temp_directory_path().string());
+        if (!mkdtemp(name.data()))
+            edgesplat::fail("{}: cannot create a folder here", fs::temp_directory_path().string());
         path = name;
     }
     ~TemporaryFolder() {
@@ -46,27 +47,27 @@ class TemporaryFolder {
     fs::path path;
 };
 
-/// The pictures' pixels as bits, so that NaN equals itself.
+/// Compares the pixels bit by bit, so that NaN equals itself.
 bool same_pixels(const edgesplat::Image& a, const edgesplat::Image& b) {
     return std::equal(a.pixels.begin(), a.pixels.end(), b.pixels.begin(), b.pixels.end(), [](float x, float y) {
         return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y);
     });
 }
 
-/// Fails where the new picture is another, saying how far they are apart and what else is different.
+/// Fails if the new picture differs. The message states the difference, and changes of program or device.
 void compare(const RerunOptions& options, const edgesplat::LoadedImage& old, const fs::path& again) {
     const edgesplat::LoadedImage fresh = edgesplat::read_image(again);
     if (same_pixels(old.image, fresh.image)) {
-        if (!options.quiet) fmt::print("{}: made again, every pixel the same\n", options.picture);
+        if (!options.quiet) fmt::print("{}: rendered again, all pixels are identical\n", options.picture);
         return;
     }
     std::string others;
     for (const char* name : {"Software", "edgesplat:device"}) {
         const std::string before = text_of(old.metadata, name), now = text_of(fresh.metadata, name);
-        if (before != now) others += fmt::format("; it was made by \"{}\", now \"{}\"", before, now);
+        if (before != now) others += fmt::format("; before: \"{}\", now: \"{}\"", before, now);
     }
     const edgesplat::ImageDifference d = edgesplat::compare_images(old.image, fresh.image, 0);
-    edgesplat::fail("{}: made again, {:.4g} % of the pixels differ, by at most {:.3g} at pixel {},{}{}",
+    edgesplat::fail("{}: rendered again, {:.4g} % of the pixels differ, by at most {:.3g} at pixel {},{}{}",
                     options.picture, 100 * d.share, d.max, d.x, d.y, others);
 }
 
@@ -76,7 +77,7 @@ void run(const RerunOptions& options, const std::string& command_line) {
     const edgesplat::LoadedImage old = edgesplat::read_image(options.picture);
     const std::string scene = text_of(old.metadata, "edgesplat:scene");
     if (scene.empty())
-        edgesplat::fail("{}: does not say how it was made; expected a picture of `edgesplat render`", options.picture);
+        edgesplat::fail("{}: contains no scene; expected a picture written by `edgesplat render`", options.picture);
 
     PictureRequest request{.device = options.device, .command_line = command_line, .quiet = true};
     const fs::path folder = fs::path(options.picture).parent_path();
@@ -94,7 +95,7 @@ void run(const RerunOptions& options, const std::string& command_line) {
         if (!options.quiet) fmt::print("{}\n", options.output);
     }
     if (!options.check) return;
-    // An output of the same kind is compared as it is; else another is made for the comparison.
+    // An output of the same format is compared directly; otherwise another one is rendered for the comparison.
     const std::string extension = edgesplat::is_png_path(options.picture) ? ".png" : ".exr";
     if (fs::path(options.output).extension() == extension) return compare(options, old, options.output);
     const TemporaryFolder temporary;
@@ -106,19 +107,20 @@ void run(const RerunOptions& options, const std::string& command_line) {
 }  // namespace
 
 void add_rerun_command(CLI::App& app, const std::string& command_line) {
-    CLI::App& sub = *app.add_subcommand("rerun", "Make a picture again from what it says about itself");
+    CLI::App& sub = *app.add_subcommand("rerun", "Render a picture again from the scene that it contains");
     const auto options = std::make_shared<RerunOptions>();
     sub.add_option("PICTURE", options->picture, "A .png or .exr that `edgesplat render` wrote")
         ->required()
         ->type_name("");
     sub.add_option("-o,--output", options->output, "The new picture: .png or .exr")->type_name("FILE");
-    sub.add_flag("--check", options->check, "Compare with the picture: any pixel that differs is an error");
+    sub.add_flag("--check", options->check, "Compare with the picture; any pixel that differs is an error");
     sub.add_option("--device", options->device.device,
-                   "A Vulkan device: its number in --list-devices, or a part of its name")
+                   "Vulkan device: its number in --list-devices or a part of its name")
         ->type_name("DEVICE");
-    sub.add_flag("-q,--quiet", options->quiet, "Say nothing unless something is wrong");
+    sub.add_flag("-q,--quiet", options->quiet, "Print only warnings and errors");
     sub.footer(
-        "The volume is looked for where it was, beside the picture, and in the folders in EDGESPLAT_VOLUMES; other "
-        "samples are refused.\nOn the same device, with the same version, the new picture is the same bit for bit.");
+        "The volume is searched at its old path, beside the picture, and in the folders of EDGESPLAT_VOLUMES.\n"
+        "A volume with different samples is refused. On the same device, with the same version, the new picture is\n"
+        "identical bit for bit.");
     sub.callback([options, command_line] { run(*options, command_line); });
 }

@@ -26,7 +26,7 @@ struct NewOptions {
     VolumeOptions volume;
 };
 
-/// The path as a scene in `folder` writes it.
+/// The path relative to a scene file in `folder`; builtin, absolute and missing paths stay as they are.
 std::string path_in_scene(const std::string& path, const fs::path& folder) {
     std::error_code ignored;
     if (edgesplat::is_builtin(path) || fs::path(path).is_absolute() || !fs::exists(path, ignored)) return path;
@@ -38,7 +38,7 @@ void run_new(const NewOptions& options) {
     edgesplat::SceneDocument document;
     document.volume.path = options.volume_path;
     apply(options.volume, document.volume);
-    if (!options.look.empty()) use_look(document, options.look);
+    if (!options.look.empty()) apply_look(document, options.look);
     edgesplat::Volume volume = load_with_progress(document.volume, edgesplat::volume_folders({}), false);
     recognise_labels(document, volume);
     document.camera.view = "oblique";
@@ -46,13 +46,13 @@ void run_new(const NewOptions& options) {
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
     write_out_materials(document, scene);
     document.iso_sigmas.clear();
-    // What is not the scene's own to say stays open: materials below all surfaces, and colours of labels.
+    // Leave open what the user did not choose: the material below all surfaces, and the colours of labels.
     if (document.below == choice_of(edgesplat::Material{.color = glm::dvec3(0)})) document.below = {};
     if (!scene.transfer.empty()) {
         document.transfer = scene.transfer;
         document.materials.clear();
     }
-    // The eye as numbers, which can be changed, and what it looks at: as far away as the volume's centre.
+    // Write the camera as numbers that can be edited. The target is as far away as the volume's centre.
     const glm::dvec3 forward = glm::normalize(camera.direction);
     const double distance = glm::dot(volume.geometry.center() - camera.eye, forward);
     document.camera = {
@@ -72,7 +72,7 @@ void run_check(const std::vector<std::string>& paths, int& exit_status) {
     for (const std::string& path : paths) {
         try {
             edgesplat::read_scene_file(path);
-            fmt::print("{}: good\n", path);
+            fmt::print("{}: valid\n", path);
         } catch (const edgesplat::SceneFileError& error) {
             for (const std::string& problem : error.problems())
                 fmt::print(stderr, "{}\n", problem);
@@ -98,32 +98,31 @@ void add_scene_command(CLI::App& app, int& exit_status) {
     CLI::App& scene = *app.add_subcommand("scene", "Write, check and explain scene files (docs/scene_files.md)");
     scene.require_subcommand(1);
 
-    CLI::App& make = *scene.add_subcommand("new", "Write a scene to begin with: every key, explained");
+    CLI::App& make = *scene.add_subcommand("new", "Write a new scene file with every key explained");
     const auto options = std::make_shared<NewOptions>();
     make.add_option("VOLUME", options->volume_path, "A volume file, a folder or pattern of slices, or builtin:NAME")
         ->required()
         ->type_name("");
-    make.add_option("-o,--output", options->output, "The scene file, .toml; default: it is printed")->type_name("FILE");
-    make.add_option("--look", options->look, "How it looks, by name (`edgesplat scene presets`)")->type_name("NAME");
+    make.add_option("-o,--output", options->output, "The scene file, .toml; default: stdout")->type_name("FILE");
+    make.add_option("--look", options->look, "Look by name (`edgesplat scene presets`)")->type_name("NAME");
     add_volume_options(make, options->volume);
     make.callback([options] { run_new(*options); });
 
-    CLI::App& check = *scene.add_subcommand("check", "Say everything that is wrong with scene files");
+    CLI::App& check = *scene.add_subcommand("check", "Report every error in scene files");
     const auto paths = std::make_shared<std::vector<std::string>>();
     check.add_option("SCENE", *paths, "Scene files (.toml)")->required()->type_name("");
-    check.footer("Exit status: 0 all are good, 1 something is wrong.");
+    check.footer("Exit status: 0 all files are valid, 1 there are errors.");
     check.callback([paths, &exit_status] { run_check(*paths, exit_status); });
 
-    CLI::App& keys = *scene.add_subcommand("keys", "List everything a scene file can say");
+    CLI::App& keys = *scene.add_subcommand("keys", "List all keys of scene files");
     const auto markdown = std::make_shared<bool>(false);
-    keys.add_flag("--markdown", *markdown, "As the table in docs/scene_files.md");
+    keys.add_flag("--markdown", *markdown, "Print the table of docs/scene_files.md");
     keys.callback(
         [markdown] { fmt::print("{}", *markdown ? edgesplat::scene_keys_markdown() : edgesplat::scene_keys_text()); });
 
-    CLI::App& presets =
-        *scene.add_subcommand("presets", "List looks, materials and transfer functions that have a name");
+    CLI::App& presets = *scene.add_subcommand("presets", "List the named looks, materials and transfer functions");
     presets.footer(
-        "--look takes any of them, --material materials, --transfer transfer functions. Looked for in the folders in "
-        "EDGESPLAT_PRESETS, in $XDG_CONFIG_HOME/edgesplat/presets, and in the program.");
+        "--look accepts any of them, --material only materials, --transfer only transfer functions. Presets are\n"
+        "searched in the folders of EDGESPLAT_PRESETS, in $XDG_CONFIG_HOME/edgesplat/presets, and in the program.");
     presets.callback(print_presets);
 }

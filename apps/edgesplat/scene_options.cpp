@@ -21,7 +21,8 @@ std::vector<edgesplat::Light> parse_light(const std::string& text) {
     return {edgesplat::directional_light(*direction)};
 }
 
-/// One entry per iso-value; how many there are is checked when the volume is known.
+/// Resizes the materials to `given` entries, one per iso-value. Throws edgesplat::Error if the document has another
+/// number of iso-values or materials; if it has none, the number is checked once the volume is known.
 std::vector<edgesplat::MaterialChoice>& materials_for(SceneDocument& document, const char* option, std::size_t given) {
     const std::size_t expected = document.iso_values.empty() ? document.materials.size() : document.iso_values.size();
     if (expected > 0 && given != expected)
@@ -72,13 +73,15 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
             ->type_name("NAME")
             ->group(kGroup);
     };
-    // The first of them, so that whatever the order on the command line the others change it.
-    add_named("--look", "Surfaces, colours and light by name (`edgesplat scene presets`); the options below change it",
-              [](SceneDocument& document, const std::string& name) { edgesplat::use_look(document, name); });
-    add_named("--transfer", "A transfer function by name (`edgesplat scene presets`), in place of materials",
+    // Added first, so that the other options override it in any order of the command line.
+    add_named(
+        "--look",
+        "Preset of surfaces, colours and light, by name (`edgesplat scene presets`); the options below override it",
+        [](SceneDocument& document, const std::string& name) { edgesplat::apply_look(document, name); });
+    add_named("--transfer", "Transfer function by name (`edgesplat scene presets`), instead of materials",
               [](SceneDocument& document, const std::string& name) {
                   const edgesplat::ScenePreset preset = edgesplat::scene_preset(name);
-                  if (!preset.is_transfer()) edgesplat::fail("\"{}\" is no transfer function; --look takes it", name);
+                  if (!preset.is_transfer()) edgesplat::fail("\"{}\" is not a transfer function; use --look", name);
                   document.transfer_preset = name;
                   document.transfer.clear();
                   document.iso_values.clear();
@@ -93,20 +96,20 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
                 for (const std::string& text : texts)
                     values.push_back(read_number("--iso", text, {}));
                 edits.add([values](SceneDocument& document) {
-                    // Other surfaces than the scene's have none of its materials.
+                    // The scene's materials do not fit another number of surfaces.
                     if (values.size() != document.materials.size()) document.materials.clear();
                     document.iso_values = values;
                     document.iso_sigmas.clear();
                 });
             },
-            "A surface's value, in the volume's unit; repeatable. Default: a builtin's own, else the first "
-            "suggestion of `info`")
+            "Iso-value of a surface, in the volume's unit; repeatable. Default: a builtin volume's own, otherwise the "
+            "first suggestion of `edgesplat info`")
         ->type_name("NUMBER")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->group(kGroup);
     add_each(
-        "--material", "PRESET", "Material from that value up by name (`edgesplat scene presets`); once per --iso",
+        "--material", "PRESET", "Material above an iso-value, by name (`edgesplat scene presets`); once per --iso",
         [](const std::string& option, const std::string& name) {
             try {
                 return edgesplat::scene_preset(name).name;
@@ -116,17 +119,17 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
         },
         [](edgesplat::MaterialChoice& material, const std::string& name) { material = {.preset = name}; });
     add_each(
-        "--color", "R,G,B", "Colour from that value up, linear 0..1; once per --iso",
+        "--color", "R,G,B", "Colour above an iso-value, linear 0..1; once per --iso",
         [](const std::string& option, const std::string& text) { return read_vector(option, text, "R,G,B"); },
         [](edgesplat::MaterialChoice& material, const glm::dvec3& color) { material.color = color; });
     add_each(
         "--extinction", "NUMBER",
-        "Extinction from that value up, per mm; once per --iso. Default: 8 per voxel for the highest, 0.15 for those "
-        "below",
+        "Extinction above an iso-value, per mm; once per --iso. Default: 8 per voxel for the highest, 0.15 per voxel "
+        "for the others",
         [](const std::string& option, const std::string& text) { return read_number(option, text, {0}); },
         [](edgesplat::MaterialChoice& material, double extinction) { material.extinction = extinction; })
         ->delimiter(',');
-    add_vector_edit(command, edits, "--background", "R,G,B", "Linear 0..1; default 0,0,0",
+    add_vector_edit(command, edits, "--background", "R,G,B", "Background colour, linear 0..1; default 0,0,0",
                     [](SceneDocument& d, const glm::dvec3& color) { d.background = color; })
         ->group(kGroup);
     command
@@ -135,18 +138,19 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
             [&edits](const std::string& text) {
                 edits.add([lights = parse_light(text)](SceneDocument& d) { d.lights = lights; });
             },
-            "X,Y,Z points towards the light, world axes")
+            "Light at the eye, no light, or a distant light in the direction X,Y,Z (towards the light, world axes)")
         ->type_name("headlight|none|X,Y,Z")
         ->default_str("headlight")
         ->group(kGroup);
-    add_number_edit(command, edits, "--ambient", {0}, "Light from everywhere",
+    add_number_edit(command, edits, "--ambient", {0}, "Ambient light",
                     [](SceneDocument& d, double value) { d.ambient = value; })
         ->default_str(fmt::format("{}", SceneDocument{}.ambient))
         ->group(kGroup);
-    add_number_edit(command, edits, "--threshold", {}, "First make the volume binary: 1 from this value up, else 0",
+    add_number_edit(command, edits, "--threshold", {},
+                    "Make the volume binary first: 1 from this value up, otherwise 0",
                     [](SceneDocument& d, double value) { d.volume.threshold = value; })
         ->group(kGroup);
-    add_flag_edit(command, edits, "--box-filter", "First take the mean over 3x3x3 voxels (after --threshold)",
+    add_flag_edit(command, edits, "--box-filter", "Smooth the volume first: mean of 3x3x3 voxels (after --threshold)",
                   [](SceneDocument& d) { d.volume.box_filter = true; })
         ->group(kGroup);
     command
@@ -157,8 +161,7 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
                     throw CLI::ValidationError("--labels", fmt::format("'{}' is neither on nor off", text));
                 edits.add([on = text == "on"](SceneDocument& d) { d.volume.labels = on; });
             },
-            "Whether samples are numbers of things, each drawn in a colour of its own. Default: recognised, unless "
-            "surfaces are given")
+            "Whether samples are labels, each drawn in its own colour. Default: detected, unless surfaces are given")
         ->type_name("on|off")
         ->group(kGroup);
 }
@@ -175,7 +178,7 @@ void add_settings_options(CLI::App& command, DocumentEdits& edits) {
     std::string rows;
     for (const edgesplat::Preset& preset : edgesplat::presets())
         rows += (rows.empty() ? "" : "|") + std::string(preset.name);
-    // The first of them, so that whatever the order on the command line a knob has the last word.
+    // Added first, so that single settings override it in any order of the command line.
     command
         .add_option_function<std::string>(
             "--preset",
@@ -187,7 +190,7 @@ void add_settings_options(CLI::App& command, DocumentEdits& edits) {
                     });
                 });
             },
-            "A row of the ladder; the options below change single steps of it")
+            "Preset of the settings below; the options below override single settings")
         ->type_name(rows)
         ->group(kGroup);
     for (const edgesplat::Knob& knob : edgesplat::ladder()) {
@@ -209,7 +212,7 @@ void add_settings_options(CLI::App& command, DocumentEdits& edits) {
             ->default_str(knob.get(edgesplat::Settings{}))
             ->group(kGroup);
     }
-    add_flag_edit(command, edits, "--keep-buried", "Draw also voxels that opaque ones hide from every side",
+    add_flag_edit(command, edits, "--keep-buried", "Also draw voxels that opaque voxels enclose on every side",
                   [](SceneDocument& d) { d.quality.settings.cull_buried = false; })
         ->group(kGroup);
 }

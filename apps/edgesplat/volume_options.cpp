@@ -8,7 +8,8 @@
 
 namespace {
 
-// One line on stderr, begun only when the load turns out to be long: a bar on a terminal, else a few plain lines.
+// Load progress on stderr, shown only if loading takes longer than a second: a bar on a terminal, otherwise a few
+// lines.
 class ProgressLine {
   public:
     ~ProgressLine() {
@@ -39,13 +40,14 @@ class ProgressLine {
 }  // namespace
 
 void add_volume_options(CLI::App& command, VolumeOptions& options) {
-    command.add_option("--raw", options.raw, "header-less file: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]");
-    command.add_option("--component", options.component, "component of vector or colour data, from 0")
+    command.add_option("--raw", options.raw,
+                       "Layout of a file without header: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]");
+    command.add_option("--component", options.component, "Component of vector or colour data, from 0")
         ->check(CLI::NonNegativeNumber);
-    command.add_option("--frame", options.frame, "frame of 4-D data, from 0")->check(CLI::NonNegativeNumber);
-    command.add_option("--series", options.series, "DICOM series of a folder with several: number or UID");
-    command.add_flag("--resample", options.resample, "interpolate unevenly spaced DICOM slices at even places");
-    command.add_option("--spacing", options.spacing, "voxel spacing in mm, instead of the file's")->expected(3);
+    command.add_option("--frame", options.frame, "Frame of 4-D data, from 0")->check(CLI::NonNegativeNumber);
+    command.add_option("--series", options.series, "DICOM series to read from a folder with several: number or UID");
+    command.add_flag("--resample", options.resample, "Resample unevenly spaced DICOM slices to even spacing");
+    command.add_option("--spacing", options.spacing, "Voxel spacing in mm, instead of the file's")->expected(3);
 }
 
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {

@@ -1,4 +1,4 @@
-// The options every command that reads a volume shares, and the reading itself with progress on stderr.
+// Volume options, shared by all commands that read a volume, and loading with progress on stderr.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -8,7 +8,7 @@
 
 #include "engine/scene/scene_document.h"
 
-/// What the command line said about the volume; see `LoadOptions` for the meaning of each.
+/// Volume options of the command line; `LoadOptions` explains each.
 struct VolumeOptions {
     int component = -1;           ///< --component; -1: not given
     int frame = -1;               ///< --frame; -1: not given
@@ -21,11 +21,11 @@ struct VolumeOptions {
 /// Adds --raw, --component, --frame, --series, --resample and --spacing to a command. `options` must outlive the parse.
 void add_volume_options(CLI::App& command, VolumeOptions& options);
 
-/// Puts what the command line said into a scene's volume.
+/// Copies the given options into a scene's volume.
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source);
 
-/// Finds, reads and preprocesses a scene's volume (engine/scene/scene_document.h). Unless `quiet`, a load that takes
-/// longer than a second shows its progress on stderr; warnings are shown in any case. Throws edgesplat::Error naming
-/// the file and the reason.
+/// Finds, reads and preprocesses a scene's volume (engine/scene/scene_document.h). Unless `quiet`, loading shows its
+/// progress on stderr after a second. Warnings are always printed. Throws edgesplat::Error naming the file and the
+/// reason.
 edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
                                      const std::vector<std::filesystem::path>& folders, bool quiet);

@@ -10,7 +10,7 @@ constexpr double kSide = 12;   // of builtin:cube-hole, voxels
 constexpr int kPixels = 640;   // 16 voxels
 constexpr double kEye = 4000;  // voxels: the cube's far face is 0.3 % smaller than its near one
 
-/// A picture straight on, in voxels from the cube's middle.
+/// A frontal picture of optical depth, addressed in voxels from the cube's middle.
 class Plan {
   public:
     explicit Plan(Image tau) : tau_(std::move(tau)) {}
@@ -29,7 +29,7 @@ class Plan {
     Image tau_;
 };
 
-/// The slices away from the cube's ends: the filter bevels the edges there, and that is no blur of the method.
+/// The middle slices. At the cube's ends the filter bevels the edges, which is no blur of the method.
 std::shared_ptr<const Volume> middle_slices(const Volume& volume) {
     constexpr int kSlices = 8;
     const glm::ivec3 dims = volume.geometry.dims;
@@ -43,7 +43,7 @@ std::shared_ptr<const Volume> middle_slices(const Volume& volume) {
     return middle;
 }
 
-/// Of the circle whose area is that of the values below one half around the middle of a slice.
+/// Radius of the circle with the same area as the values below one half around the middle of a slice, voxels.
 double hole_radius(const Volume& volume) {
     const glm::ivec3 dims = volume.geometry.dims;
     constexpr double kStep = 0.02, kWithin = 5;
@@ -76,7 +76,7 @@ CubeQuality cube_quality(Renderer& renderer, const Volume& volume, const Setting
     camera.fov_y = glm::degrees(2 * std::atan(kPixels / test::kPixelsPerVoxel / 2 / kEye));
     const Plan plan(*renderer.render(scene, camera, settings, kPixels, kPixels, {.tau = true}).tau);
 
-    double solid = 0;  // the full depth: towards the corners, away from both the hole and the sides
+    double solid = 0;  // optical depth of the solid: mean of four points near the corners, away from hole and sides
     for (int i = 0; i < 4; ++i)
         solid += plan.at(i % 2 == 0 ? 4 : -4, i < 2 ? 4 : -4) / 4;
 

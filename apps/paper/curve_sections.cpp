@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kLow = -1.5, kHigh = 2.5;
 
-/// Where a falling function first goes below a level.
+/// The place where a falling function first goes below a level; NaN if nowhere.
 double crossing(const std::function<double(double)>& value, double level) {
     constexpr int kSteps = 40000;
     double before = value(kLow);
@@ -33,11 +33,12 @@ std::string picture(const std::string& text, const std::filesystem::path& file) 
 std::string profile_text(const CurveExample& e, const std::filesystem::path& file) {
     const PaperProfile& q = e.profile;
     return fmt::format(
-        "## Figure 4: the profile p\n\n{}\nHow far a point of the unit interval between two voxels is moved is written "
-        "down as its inverse: p takes the\nsampled position to the place where it is seen. t1 = {}, t2 = {}, m1 = {}, "
-        "m2 = {}.\n\nMeasured: p(t1) = {:.6f}, p(t2) = {:.6f}, p(1/2) = {:.6f}, the edge. The middle interval is "
-        "{:.2f} voxel wide and is\nsqueezed into {:.2f}; its slope is {:.4f} in the middle and 0 at both ends, "
-        "where `paper-smooth` has {:.4f}.\n",
+        "## Figure 4: the profile p\n\n{}\nThe paper moves each point of the unit interval between two voxels. It "
+        "writes the inverse of this "
+        "movement: p maps the\nsampled position to the visible one. t1 = {}, t2 = {}, m1 = {}, m2 = {}.\n\n"
+        "Measured: p(t1) = {:.6f}, p(t2) = {:.6f}, and the edge p(1/2) = {:.6f}. The middle interval is {:.2f} voxel "
+        "wide and is\nsqueezed into {:.2f}. Its slope is {:.4f} in the middle and 0 at both ends; `paper-smooth` has "
+        "{:.4f} there.\n",
         picture("The profile p between its knots, the paper's and a smooth variant", file), q.t1, q.t2, q.m1, q.m2,
         paper_profile(q.t1, q), paper_profile(q.t2, q), paper_profile(0.5, q), q.t2 - q.t1, q.m2 - q.m1,
         paper_profile_slope(0.5, q), paper_profile_slope(q.t1 + 1e-9, e.smooth()));
@@ -49,23 +50,22 @@ std::string map_text(const CurveExample& e, const std::filesystem::path& file) {
     const double at = e.edge(), h = 1e-6;
     const auto width = [](const auto& inverse) { return inverse(0.8) - inverse(0.2); };
     return fmt::format(
-        "## Figure 6: map, the inverse of p\n\n{}\nWhere a kernel is sampled instead of at x. Measured:\n\n"
-        "| map | slope at the edge | voxels in which the sampled place goes from 0.2 to 0.8 | reaches |\n"
+        "## Figure 6: map, the inverse of p\n\n{}\nA kernel is sampled at map(x) instead of x. Measured:\n\n"
+        "| map | slope at the edge | voxels over which map goes from 0.2 to 0.8 | range |\n"
         "|---|--:|--:|---|\n"
         "| none | 1 | {:.4f} | |\n"
         "| paper (corrected) | {:.3f}, infinite at m1 and m2 | {:.4f} | [0, 1] |\n"
         "| paper-smooth | {:.3f} | {:.4f} | [0, 1] |\n"
-        "| face | a step: nothing of the voxel beyond it | {} voxel from the face and less, all at that depth | its "
-        "own "
-        "side |\n\n"
-        "The two infinite slopes make a double step out of one edge: see \"Not a misprint\" below.\n",
+        "| face | a step: the kernel ends there | nearer than {} voxel to the face all samples are at that depth | its "
+        "own side |\n\n"
+        "The two infinite slopes turn one edge into a double step: see \"Not a misprint\" below.\n",
         picture("map(x) of the paper, of its smooth variant and of a face", file), 0.6, 1 / paper_profile_slope(0.5, q),
         width([&](double w) { return paper_profile(w, q); }),
         (paper_map(at + h, smooth) - paper_map(at - h, smooth)) / (2 * h),
         width([&](double w) { return paper_profile(w, smooth); }), kFaceDepth);
 }
 
-/// Largest |sum of the kernels - 1| over the line; `sum` of uniform data at x.
+/// Largest |sum of the kernels - 1| on the line; `sum` gives it for uniform data at x.
 template <typename Sum>
 double ripple(const Sum& sum) {
     const CurveExample uniform{.left = 1, .right = 1};
@@ -79,16 +79,16 @@ std::string splat_text(const CurveExample& e, const std::filesystem::path& file,
     const FootprintTiles t = draw_footprint_tiles(tiles);
     return fmt::format(
         "## Figure 7: splats 0 to 3\n\n{}\nThe voxels at -1, 0, 1, 2, weighted with their values ({} up to voxel 0, {} "
-        "from voxel 1 on): secondary and primary on\nthe larger-value side, primary and secondary on the lower-value "
-        "side.\n\nMeasured: in one dimension all four share one map, so in uniform data their sum stays as even as "
-        "without any warp\n(largest deviation from 1: not warped {:.1e}, paper {:.1e}); cut at a face, either side "
-        "loses what the other had there\n({:.1e} at most).\n\n{}\n"
-        "The same four as footprints. Top: the kernel as it is. Seen edge-on (the edge's normal across the ray) the "
-        "short cut,\nwarping the two-dimensional footprint, is exact (largest difference {:.1e} of the plain peak). At "
-        "{:.0f} degrees between\nnormal and ray it is off by up to {:.0f} % of the peak where no warp at all is off "
-        "by {:.0f} %: a tilted edge blurs in\nprojection. Ours integrates the cut kernel along the ray at every "
-        "angle. (Curve parameters here: those the renderer\ngives an edge at {}: t1, t2 = 0.2, 0.8; m1, m2 = {:.2f}, "
-        "{:.2f}.)\n",
+        "from voxel 1 on): secondary and primary on\nthe side of the larger value, primary and secondary on the other "
+        "side.\n\nMeasured, largest deviation of the sum in uniform data from 1:\n\n"
+        "| not warped | paper: all four share one map | cut at a face: each side ends where the other begins |\n"
+        "|--:|--:|--:|\n| {:.1e} | {:.1e} | {:.1e} |\n\n{}\n"
+        "The same four as footprints; top: the plain kernel. The paper's short cut warps the two-dimensional "
+        "footprint. Edge-on (the edge's\nnormal perpendicular to the ray) it is exact: the largest difference is "
+        "{:.1e} of the plain peak. At {:.0f} degrees between normal and ray\nits largest error is {:.0f} % of the "
+        "peak; without any warp it is {:.0f} %. A tilted edge blurs in projection. Ours integrates the cut kernel\n"
+        "along the ray at every angle. (Curve parameters here are the renderer's for an edge at {}: t1, t2 = 0.2, 0.8; "
+        "m1, m2 = {:.2f}, {:.2f}.)\n",
         picture("Four weighted kernels, warped and not", file), e.left, e.right, ripple(reconstruction),
         ripple([&](const CurveExample& u, double x) { return reconstruction(u, paper_map(x, e.profile)); }),
         ripple(cut_reconstruction), picture("Table of footprints of the four splats", tiles), t.edge_on_difference,

@@ -1,4 +1,4 @@
-// Figures 4, 6, 7, 8 and the misprints: what needs no device.
+// Figures 4, 6, 7, 8 and the misprints: the sections that need no device.
 #pragma once
 
 #include <filesystem>
@@ -8,10 +8,10 @@
 
 namespace edgesplat {
 
-/// How sharp and how well placed one reconstruction of the two-tone data is; lengths in voxels.
+/// Sharpness and place of the edge in a reconstruction of the two-tone data; lengths in voxels.
 struct StepQuality {
     double rise = 0;      ///< from 10 to 90 % of the step
-    double location = 0;  ///< where it crosses one half, minus where the edge is
+    double location = 0;  ///< place where it crosses one half, minus the edge's place
     double rms = 0;       ///< against the ideal step, x in [-1.5, 2.5]
 };
 /// `value` falls from `example.left` to `example.right`.

@@ -1,4 +1,4 @@
-// docs/paper.md: a text of sections, some of which can stay as they are.
+// Joins and splits docs/paper.md, a page of sections; a run can keep sections of an earlier page.
 #pragma once
 
 #include <string>
@@ -7,22 +7,22 @@
 
 namespace edgesplat {
 
-/// A part of the page. In the file it stands between comments with its key, so that a later run finds it again.
+/// A part of the page. The file has comments with its key around it, so that a later run finds it.
 struct Section {
     std::string key;
     std::string text;
 };
 
-/// The text of a section in an earlier page; empty where there is none.
+/// The text of a section in an earlier page; empty if the page lacks it.
 std::string kept_section(std::string_view page, std::string_view key);
 
-/// Paragraphs filled up to 120 columns; headings, tables, pictures and code stay as they are.
+/// Fills paragraphs up to 120 columns; headings, tables, pictures and code are unchanged.
 std::string filled(std::string_view text);
 
-/// The page: all sections in order, one empty line between them.
+/// The page: all sections in order, separated by one empty line.
 std::string page_of(const std::vector<Section>& sections);
 
-/// Targets of all pictures in the page.
+/// File names of all pictures in the page, as its links spell them.
 std::vector<std::string> pictures_in(std::string_view page);
 
 }  // namespace edgesplat

@@ -29,7 +29,7 @@ struct Row {
     Footprint value;
 };
 
-// The voxel of column 0 to 3 is -1 to 2; its normal points across the edge, so to the left for those on the right.
+// Columns 0 to 3 are voxels -1 to 2. A voxel's normal points across the edge: to the left for the voxels on the right.
 Ray ray_of(int column, double x, double y, double cosine) {
     return ray_through(column < 2 ? x : -x, y, cosine);
 }
@@ -71,7 +71,7 @@ FootprintTiles draw_footprint_tiles(const std::filesystem::path& target) {
                                    {"paper's curve,\\nexact,\\n45 deg", tilted, paper},
                                    {"ours,\\n45 deg", tilted, ours}};
 
-    // One grid of texels over all tiles, rows from the bottom; what lies between tiles is not a number.
+    // One grid of texels over all tiles, rows from the bottom; NaN between tiles.
     const auto last = static_cast<int>(rows.size()) - 1;
     const auto cell = [&](int column, int down, double x, double y) {
         if (std::abs(x) > kHalf || std::abs(y) > kHalf) return std::string("NaN");

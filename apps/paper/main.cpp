@@ -1,4 +1,4 @@
-// Writes docs/paper.md and its pictures: the figures of the paper, and its misprints with their proofs.
+// Writes docs/paper.md and its pictures: the paper's figures, and its misprints with proofs.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -22,27 +22,36 @@ constexpr const char* kIntroduction =
     R"(# The paper's figures
 
 J. Huang, R. Crawfis, D. Stredney, *Edge Preservation in Volume Rendering Using Splatting*, IEEE/ACM Symposium on Volume
-Visualization 1998: its Figures 4, 6, 7, 8, 9, 10, 11 and 12 made anew, and its misprints proved. This page and its pictures
+Visualization 1998. This page repeats its Figures 4, 6, 7, 8, 9, 10, 11 and 12 and proves its misprints. The page and its pictures
 are written by
 
 ```sh
 ./dev paper
 ```
 
-*Plain* is conventional splatting with our kernel. *The paper's own* is the paper's method: distance to the edge from value
-and gradient (`--edges taylor`), its curve, corrected (`--warp paper`), as a warp of the two-dimensional footprint
-(`--footprints warp2d`). *Ours* is what `edgesplat render` does by default.
+| name | method |
+|---|---|
+| *plain* | conventional splatting with our kernel |
+| *the paper's own* | the paper's method: distance to the edge from value and gradient (`--edges taylor`), its curve, corrected (`--warp paper`), as a warp of the two-dimensional footprint (`--footprints warp2d`) |
+| *ours* | the default of `edgesplat render` |
 
-The pictures' *width* is from 10 to 90 % across an edge, median over the steepest places: of luminance inside the nose,
-elsewhere of the opacity of the opaque surface alone, that is its outline. *Gradient energy* of luminance counts all that is
-steep, so also the staircase that plain splatting makes of a smooth surface: less of it need not be blur. Times are to be
-compared between columns: the machine had other work.
+| quantity | definition |
+|---|---|
+| *width* | from 10 to 90 % across an edge, median over the steepest places: of luminance inside the nose, elsewhere of the opacity of the opaque surface alone, which is its outline |
+| *gradient energy* | sum of squared differences of luminance. It counts everything steep, also the staircase that plain splatting makes of a smooth surface: a smaller value need not mean blur |
+| times | only comparable between columns: the machine had other work |
 
-What is certain and what is not: the print was not at hand, nor is it among the public texts that could be searched. That
-Figures 4, 6, 7 and 8 show the profile, its inverse, the warped splats and the two-tone reconstruction, and Figures 9 to 12
-the cube, the nasal passages and the iron protein, is taken from notes on it. Of the curve's parameters only t2 = 0.8 and
-m2 = 0.4 are on record; t1 = 0.2 and m1 = 0.3 are chosen to go with them (an edge at 0.35). The kernel is ours (K7), not
-the paper's. So the figures are of the same things, not copies.
+The print was not at hand, and the public texts that could be searched do not contain it. Sources of the statements about it:
+
+| statement | source |
+|---|---|
+| Figures 4, 6, 7 and 8 show the profile, its inverse, the warped splats and the two-tone reconstruction | notes on the paper |
+| Figures 9 to 12 show the cube, the nasal passages and the iron protein | notes on the paper |
+| t2 = 0.8 and m2 = 0.4 | on record |
+| t1 = 0.2 and m1 = 0.3 | chosen to match (an edge at 0.35) |
+| the kernel | ours (K7), not the paper's |
+
+The figures therefore show the same objects and methods; they are not copies.
 )";
 
 std::string text_of(const fs::path& path) {
@@ -52,7 +61,7 @@ std::string text_of(const fs::path& path) {
     return text.str();
 }
 
-/// The figure anew, or as the page has it where the volume is not here.
+/// Renders the figure; if its volume is missing, keeps the section of the earlier page.
 Section figure_section(const PictureFigure& figure, Renderer& renderer, const std::string& before,
                        const fs::path& images) {
     const char* folder = std::getenv("EDGESPLAT_DATA");
@@ -64,9 +73,9 @@ Section figure_section(const PictureFigure& figure, Renderer& renderer, const st
     }
     Section kept{"figure " + figure.number, kept_section(before, "figure " + figure.number)};
     if (kept.text.empty())
-        fail("figure {} needs {} in the folder EDGESPLAT_DATA names, and there is no earlier page to keep it from",
+        fail("figure {} needs {} in the folder that EDGESPLAT_DATA names; no earlier page contains the figure",
              figure.number, figure.volume_path);
-    fmt::print("figure {}: kept as it is, pictures and text; {} is not in the folder EDGESPLAT_DATA names ({})\n",
+    fmt::print("figure {}: pictures and text of the earlier page kept; the folder EDGESPLAT_DATA lacks {} ({})\n",
                figure.number, figure.volume_path, folder == nullptr ? "not set" : folder);
     return kept;
 }

@@ -16,7 +16,7 @@ double slope_at(const Cubic& c, double x) {
     return (3 * c[0] * x + 2 * c[1]) * x + c[2];
 }
 
-// Samples crowd towards t1 and t2, where p turns first when it is not monotone.
+// Samples are denser near t1 and t2, where a p that is not monotone turns first.
 bool rises_everywhere(const PaperProfile& q) {
     constexpr int kSamples = 400;
     const auto crowded = [](double u) { return u * u * (2 - u); };
@@ -94,7 +94,7 @@ Boundary required(const PaperProfile& q, int interval) {
 Boundary corrected(const PaperProfile& q, int interval) {
     const double ends[] = {0, q.t1, q.t2, 1};
     const double start = ends[interval - 1], end = ends[interval];
-    // A hair inside, so that each interval answers for itself and not its neighbour.
+    // Slightly inside, so that each interval is evaluated by its own formula.
     const double in = 1e-13;
     return {paper_profile(start + in, q), paper_profile_slope(start + in, q), paper_profile(end - in, q),
             paper_profile_slope(end - in, q)};
@@ -107,7 +107,7 @@ MonotoneScan scan_monotone(int steps) {
             for (int c = 1; c < steps; ++c) {
                 for (int d = 1; d < steps; ++d) {
                     const PaperProfile q{1.0 * a / steps, 1.0 * b / steps, 1.0 * c / steps, 1.0 * d / steps};
-                    // In whole numbers: rounding must not decide what lies on the border.
+                    // In integers: rounding must not decide at the border.
                     const bool rule = 3 * c >= a && c < d && 3 * d <= 2 * steps + b;
                     const bool rises = c != d && rises_everywhere(q);
                     ++scan.profiles;

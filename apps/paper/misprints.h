@@ -1,6 +1,6 @@
-// What is wrong in the printed formulas of Huang, Crawfis, Stredney 1998, shown by numbers.
+// Computes the misprints in the formulas of Huang, Crawfis, Stredney 1998.
 //
-// What the print says is known only as far as docs/paper.md tells; nothing else is assumed.
+// docs/paper.md states which parts of the print are known; nothing else is assumed.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace edgesplat {
 
-/// Value and slope where two conditions each are asked for: at the start and at the end of an interval.
+/// Value and slope at the start and at the end of an interval.
 struct Boundary {
     double start = 0, start_slope = 0, end = 0, end_slope = 0;
 };
@@ -23,7 +23,7 @@ Boundary boundary_of(const Cubic& cubic, double start, double end);
 Cubic interval1(const PaperProfile& profile);
 Cubic interval1_printed(const PaperProfile& profile);
 
-/// Interval 2 as printed, cos(-pi ...) + 1 in place of 1 - cos(pi ...).
+/// Interval 2 as printed, cos(-pi ...) + 1 instead of 1 - cos(pi ...).
 Boundary interval2_printed(const PaperProfile& profile);
 
 /// The cubic that meets p(t2) = m2, p'(t2) = 0, p(1) = 1, p'(1) = 1, from the four linear equations by elimination,
@@ -34,22 +34,22 @@ struct SolvedCubic {
 };
 SolvedCubic interval3_solved(const PaperProfile& profile);
 
-/// What the conditions ask of an interval (1, 2 or 3; interval 2: slope 0 at both ends), and what p of footprints/
-/// gives there: values to rounding, slopes from the derivative's own formula.
+/// required: the conditions of an interval (1, 2 or 3; interval 2: slope 0 at both ends). corrected: the values and
+/// slopes of p of footprints/ there; values to rounding, slopes by the derivative's own formula.
 Boundary required(const PaperProfile& profile, int interval);
 Boundary corrected(const PaperProfile& profile, int interval);
 
-/// p is monotone iff t1/3 <= m1 < m2 <= (2 + t2)/3: parameters on a grid, p sampled densely.
+/// Tests the rule `p is monotone iff t1/3 <= m1 < m2 <= (2 + t2)/3`: parameters on a grid, p sampled densely.
 struct MonotoneScan {
     int profiles = 0, monotone = 0;
-    int disagreements = 0;  ///< where samples and rule say different things
+    int disagreements = 0;  ///< profiles for which samples and rule disagree
 };
 MonotoneScan scan_monotone(int steps);
 
 /// Difference quotients of map from m1 downwards and from m2 upwards, over 10^-2, 10^-4, ... 10^-10.
 struct SlopeRow {
     double step = 0, below_m1 = 0, above_m2 = 0;
-    double smooth = 0;  ///< of the smooth variant, at m1
+    double smooth = 0;  ///< of the smooth variant, below m1
 };
 std::vector<SlopeRow> map_slopes(const PaperProfile& profile);
 

@@ -30,8 +30,8 @@ std::vector<PictureFigure> picture_figures() {
                        .volume_name = "builtin:cube-hole, 3x3x3 box filter",
                        .text =
                            "A binary cube of 12^3 voxels with a cylindrical hole, filtered with a 3x3x3 box, surface "
-                           "at one half. The data are made as\nthe notes describe the paper's; that it is the "
-                           "subject of Figure 9, the hole's radius (3.5 voxels) and the view are our\nassumptions.",
+                           "at one half. The data follow the\nnotes on the paper. Our assumptions: that Figure 9 "
+                           "shows this cube, the hole's radius (3.5 voxels), and the view.",
                        .scene = surface(0.5, kOpaque)};
     cube.direction = {0.12, 0.18, -1};
     cube.eye = glm::dvec3(9.5, 9.5, 9.5) - 24.0 * glm::normalize(cube.direction);
@@ -46,9 +46,9 @@ std::vector<PictureFigure> picture_figures() {
                        .volume_name = "cranium_ct",
                        .text =
                            "The paper shows the nasal passages of a head CT of its authors, which are not public. "
-                           "This is another head, seen alike: the eye\nin the nasopharynx at voxel (128, 148, 14), "
-                           "looking forward along (0, 1, 0.05) at the septum and the turbinates, surface at\n-400 "
-                           "HU, 256 x 256 x 108 voxels of 0.96 x 0.96 x 1.5 mm.",
+                           "This is another head in a similar view.\nThe eye is in the nasopharynx at voxel (128, "
+                           "148, 14) and looks forward along (0, 1, 0.05) at the septum and the turbinates.\n"
+                           "Surface at -400 HU, 256 x 256 x 108 voxels of 0.96 x 0.96 x 1.5 mm.",
                        .scene = surface(-400, kOpaque / 1.138)};
     nose.eye = {128, 148, 14};
     nose.direction = {0, 1, 0.05};
@@ -62,9 +62,9 @@ std::vector<PictureFigure> picture_figures() {
                         .volume_name = "hipip",
                         .text =
                             "High-potential iron protein, 68^3 voxels of 8 bits, a translucent surface at 20 around "
-                            "an opaque one at 128, close to a lobe.\nThe data set is the paper's, as VTK ships it; "
-                            "the camera, the colours and which of Figures 11 and 12 is the close-up are\nour "
-                            "assumptions.",
+                            "an opaque one at 128, close to a lobe.\nThe data set is the paper's, as VTK ships it. "
+                            "Our assumptions: the camera, the colours, and which of Figures 11 and 12 is\nthe "
+                            "close-up.",
                         .scene = protein()};
     close.eye = {44, 2, 60};
     close.direction = glm::dvec3(33.5, 33.5, 48) - close.eye;
@@ -74,7 +74,7 @@ std::vector<PictureFigure> picture_figures() {
     PictureFigure whole = close;
     whole.number = "12";
     whole.title = "iron protein, whole";
-    whole.text = "The same two surfaces, the whole molecule from -y. The assumptions are those of Figure 11.";
+    whole.text = "The same two surfaces: the whole molecule seen from -y. The assumptions are those of Figure 11.";
     whole.eye = {33.5, -58, 33.5};
     whole.direction = {0, 1, 0};
     whole.fov_y = 60;

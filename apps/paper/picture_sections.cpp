@@ -17,7 +17,7 @@ namespace edgesplat {
 namespace {
 
 constexpr int kFigurePixels = 320;
-constexpr int kRounds = 6;  // the first is dropped
+constexpr int kRounds = 6;  // the first is not timed
 
 struct Variant {
     std::string name, stem;
@@ -28,7 +28,7 @@ std::vector<Variant> variants() {
     Settings plain;
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
-    return {{"plain splatting", "plain", plain}, {"the paper's own", "paper", papers_own()}, {"ours", "ours", {}}};
+    return {{"plain splatting", "plain", plain}, {"the paper's own", "paper", paper_settings()}, {"ours", "ours", {}}};
 }
 
 struct Shot {
@@ -51,7 +51,7 @@ void write_picture(const std::filesystem::path& path, const Image& color, const 
     write_image(path, opaque, {{"Software", "edgesplat " EDGESPLAT_VERSION}, {"edgesplat:volume", volume}});
 }
 
-/// Opacity of the scene's highest material alone, as a grey picture: its edges are its outline, whatever the shading.
+/// Opacity of the scene's highest material alone, as a grey picture: its edges are the outline, independent of shading.
 Image outline_of(Renderer& renderer, Scene scene, const Camera& camera, const Settings& settings) {
     for (std::size_t m = 0; m + 1 < scene.materials.size(); ++m)
         scene.materials[m].extinction = 0;
@@ -83,12 +83,13 @@ CubeText cube_text(Renderer& renderer, const Volume& volume) {
         hole += cell(quality.hole);
         radius = quality.hole_radius;
     }
-    return {faces + "\n" + hole + "\n",
-            fmt::format("\nRise (10 to 90 %) and location error in voxels, of optical depth seen along the hole at 40 "
-                        "pixels per voxel (the middle slices); positive bias: the solid reaches too far. The hole is "
-                        "measured against a circle of radius {:.2f}: as large as the hole that binary voxels and the "
-                        "filter leave of one of 3.5.\n",
-                        radius)};
+    return {
+        faces + "\n" + hole + "\n",
+        fmt::format("\nRise (10 to 90 %) and location error in voxels, measured in optical depth along the hole at 40 "
+                    "pixels per voxel (the middle slices). Positive bias: the solid is too large. The hole is "
+                    "compared with a circle of radius {:.2f}; binary voxels and the filter turn a hole of radius "
+                    "3.5 into one of that size.\n",
+                    radius)};
 }
 
 }  // namespace
@@ -142,7 +143,7 @@ Section picture_section(const PictureFigure& figure, Renderer& renderer, const s
     table += cube.rows + width + "\n" + energy + "\n" + frame + "\n" + setup + "\n" + splats + "\n" + cube.note;
     return {"figure " + figure.number,
             fmt::format("## Figure {}: {}\n\n{}\n\n{}\nDevice: {}, {} x {} pixels, median of {} frames, the "
-                        "variants by turns.\n",
+                        "variants in turns.\n",
                         figure.number, figure.title, figure.text, table, shots[0].stats.device.name, kFigurePixels,
                         kFigurePixels, kRounds - 1)};
 }
@@ -157,11 +158,10 @@ Section seam_section() {
                             percent(exact.rms), percent(picture.mean_of_max), percent(picture.rms));
     }
     return {"seams",
-            "## Seams: what the figures do not show\n\nWhere both sides of an edge have the same extinction, nothing "
-            "should be seen. In three dimensions the paper's warp of the\ninterval between two voxels is shared by all "
-            "neighbours only where the edge lies along the grid; what a face cuts\nof one material's kernels, at any "
-            "orientation, the other's have. Deviation of the sum of weights from 1 in percent, planes at 24 random "
-            "orientations: at\n"
+            "## Seams: what the figures do not show\n\nIf both sides of an edge have the same extinction, nothing "
+            "should be visible. In three dimensions all neighbours share\nthe paper's warp of an interval only if the "
+            "edge lies along the grid. A face cuts the kernels of both materials at\nthe same plane, at any "
+            "orientation. Deviation of the sum of weights from 1 in percent, planes at 24 random orientations: at\n"
             "points, with the edge known exactly; and in pictures seen edge-on, with the edge estimated from data.\n\n"
             "| | points, mean of largest | rms | pictures, mean of largest | rms |\n|---|--:|--:|--:|--:|\n" +
                 rows};

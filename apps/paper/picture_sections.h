@@ -1,4 +1,4 @@
-// Figures 9 to 12: plain splatting, the paper's own method and ours, rendered, timed and measured.
+// Renders, times and measures Figures 9 to 12: plain splatting, the paper's own method and ours.
 #pragma once
 
 #include <filesystem>
@@ -10,18 +10,18 @@
 
 namespace edgesplat {
 
-/// A picture figure as it is to be made.
+/// The recipe of a figure that is rendered.
 struct PictureFigure {
     std::string number;       ///< "9"
-    std::string title;        ///< of its section
-    std::string volume_path;  ///< "builtin:...", or below the folder of real volumes
-    std::string volume_name;  ///< as the page and the pictures' metadata call it
-    std::string text;         ///< what it shows and how sure that is
+    std::string title;        ///< title of its section
+    std::string volume_path;  ///< "builtin:...", or relative to the folder of real volumes
+    std::string volume_name;  ///< name in the page and in the pictures' metadata
+    std::string text;         ///< content and assumptions
     Scene scene;
     glm::dvec3 eye{0}, direction{0}, up{0, 0, 1};  ///< voxels
     double fov_y = 45;
     bool box_filter = false;
-    bool outline = true;  ///< the background is seen: edges are measured on the opaque surface's outline
+    bool outline = true;  ///< the background is visible: edges are measured at the opaque surface's outline
     bool is_builtin() const { return volume_path.starts_with("builtin:"); }
 };
 
@@ -32,7 +32,7 @@ std::vector<PictureFigure> picture_figures();
 Section picture_section(const PictureFigure& figure, Renderer& renderer, const std::filesystem::path& data,
                         const std::filesystem::path& images);
 
-/// The seams at planes, from the measuring code of the tests.
+/// The seams at planes, by the measuring code of the tests.
 Section seam_section();
 
 }  // namespace edgesplat

@@ -8,7 +8,7 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kReach = 24;      // pixels an edge is followed to either side
+constexpr int kReach = 24;      // pixels to either side of an edge
 constexpr double kStep = 0.25;  // pixels
 
 class Luminance {
@@ -42,7 +42,7 @@ class Luminance {
     std::vector<double> values_;
 };
 
-/// Luminance along n (unit, uphill) from p to where the edge ends there; one value a step, p's first.
+/// Luminance along n (unit, uphill) from p to the end of the edge: one value a step, p's first.
 std::vector<double> followed(const Luminance& picture, const glm::dvec2& p, const glm::dvec2& n, double slope) {
     std::vector<double> values{picture.between(p)};
     const double sign = slope > 0 ? 1 : -1;

@@ -1,4 +1,4 @@
-// How sharp a picture is, measured without knowing what it should show.
+// Measures the sharpness of a picture without a reference picture.
 #pragma once
 
 #include "engine/image/image.h"
@@ -8,11 +8,11 @@ namespace edgesplat {
 struct Sharpness {
     double gradient_energy = 0;  ///< sum of squared differences of neighbouring pixels' luminance
     double edge_width = 0;       ///< pixels from 10 to 90 % across an edge, median of the picture's steepest
-    int edges = 0;               ///< how many that is the median of
+    int edges = 0;               ///< number of edges in that median
 };
 
-/// Edges: where luminance is steeper than in 95 % of the picture and than to either side. An edge ends where luminance
-/// turns or hardly changes any more.
+/// Edges: pixels where luminance is steeper than in 95 % of the picture and steeper than on either side. An edge ends
+/// where luminance turns, or where its slope is below 5 % of the pixel's.
 Sharpness sharpness(const Image& color);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// The curves of Figures 4, 6, 7 and 8 of Huang, Crawfis, Stredney 1998, from the functions the renderer uses.
+// Curves of Figures 4, 6, 7 and 8 of Huang, Crawfis, Stredney 1998, computed with the renderer's functions.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,7 @@
 
 namespace edgesplat {
 
-/// Two-tone data in one dimension: `left` up to voxel 0, `right` from voxel 1 on, the edge between them where
-/// p(1/2) = (m1 + m2)/2 puts it.
+/// Two-tone data in one dimension: `left` up to voxel 0, `right` from voxel 1. The edge is at p(1/2) = (m1 + m2)/2.
 struct CurveExample {
     PaperProfile profile{0.2, 0.8, 0.3, 0.4};
     double left = 1, right = 0.25;
@@ -18,14 +17,14 @@ struct CurveExample {
     PaperProfile smooth() const;  ///< the profile's smooth variant
 };
 
-/// The weighted kernel of voxel i (-1, 0, 1, 2: the paper's splats 0 to 3) at x, which a warp has moved from elsewhere.
+/// The weighted kernel of voxel i (-1, 0, 1, 2: the paper's splats 0 to 3) at x; pass the warped x for a warped kernel.
 double weighted_kernel(const CurveExample& example, int i, double x);
 
-/// Their sum over all voxels: the reconstruction at x.
+/// The reconstruction at x: the sum of the weighted kernels of all voxels.
 double reconstruction(const CurveExample& example, double x);
 
-/// The same at x of kernels that a face at the edge cuts: only those of x's own side, sampled no nearer to it than a
-/// face's depth.
+/// The reconstruction at x with kernels cut by a face at the edge. Only kernels on x's side contribute; they are
+/// sampled at least kFaceDepth away from the edge.
 double cut_reconstruction(const CurveExample& example, double x);
 
 /// Figures 4, 6, 7 and 8, in that order.

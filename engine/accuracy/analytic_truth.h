@@ -1,4 +1,4 @@
-// The exact scene behind a builtin volume.
+// Finds the exact scene of a builtin volume.
 #pragma once
 
 #include <optional>
@@ -9,10 +9,11 @@
 
 namespace edgesplat::accuracy {
 
-/// Of "builtin:NAME" with its grid and noise, on the grid that `builtin_volume` samples; nothing for other paths.
+/// The scene of "builtin:NAME" with its grid and noise, on the grid that `builtin_volume` samples; nullopt for other
+/// paths.
 std::optional<AnalyticScene> analytic_scene_of(std::string_view path);
 
-/// Of a volume read like that; nothing where it is filtered or cropped.
+/// The scene of such a volume; nullopt if the volume is filtered or cropped.
 std::optional<AnalyticScene> analytic_scene_of(const VolumeSource& source);
 
 }  // namespace edgesplat::accuracy

@@ -19,7 +19,7 @@ constexpr int kRounds = 3;
 
 enum class Tier { Cheap, Dear };
 
-/// Methods that were on or near the front of measured volumes; the base's own is always the first of the cheap ones.
+/// Methods that were on or near the front of measured volumes. The base's own is always the first cheap one.
 std::vector<Settings> candidates(const Settings& base, Tier tier) {
     struct Row {
         SheetCut sheets;
@@ -65,13 +65,13 @@ double error_share(std::string_view text) {
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (in_percent) value /= 100;
     if (error != std::errc() || end != digits.data() + digits.size() || !(value > 0) || !(value < 1))
-        fail("'{}' is not an error above 0 and below 1, such as 0.005 or 0.5%", text);
+        fail("'{}': expected an error above 0 and below 1, such as 0.005 or 0.5%", text);
     return value;
 }
 
 ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const Scene& scene, const Camera& camera,
                                int width, int height, const ErrorLimit& limit) {
-    if (!(limit.rms > 0 && limit.rms < 1)) fail("an error of {} is not above 0 and below 1", limit.rms);
+    if (!(limit.rms > 0 && limit.rms < 1)) fail("error limit {}: expected a number above 0 and below 1", limit.rms);
     const double scale = std::min(1.0, kProxyPixels / std::max(width, height));
     ChosenSettings result;
     result.size = glm::max(glm::ivec2(1), glm::ivec2(std::lround(width * scale), std::lround(height * scale)));
@@ -82,20 +82,20 @@ ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const S
         reference::direct_evaluation(model, camera, result.size.x, result.size.y, reference::Output::Color, options);
     result.reference_error = expected.error_estimate;
 
-    const auto good_enough = [&](const TriedSettings& t) { return kErrorMargin * t.error <= limit.rms; };
+    const auto is_good_enough = [&](const TriedSettings& t) { return kErrorMargin * t.error <= limit.rms; };
     for (const Tier tier : {Tier::Cheap, Tier::Dear}) {
-        if (std::any_of(result.tried.begin(), result.tried.end(), good_enough)) break;
+        if (std::any_of(result.tried.begin(), result.tried.end(), is_good_enough)) break;
         for (const Settings& settings : candidates(limit.base, tier)) {
             const RenderResult picture = renderer.render(scene, camera, settings, result.size.x, result.size.y);
             result.tried.push_back(
                 {settings, image_error(picture.color, expected.image).rms, std::numeric_limits<double>::infinity()});
         }
     }
-    // Only those that are good enough are timed, in turns, so that what else the machine does disturbs all alike.
+    // Only methods that are good enough are timed, in turns, so that other load on the machine affects all alike.
     for (int round = 0; round < kRounds; ++round)
         for (TriedSettings& tried : result.tried) {
-            if (!good_enough(tried) && tried.settings != limit.base) continue;
-            renderer.render(scene, camera, tried.settings, result.size.x, result.size.y);  // tables, formats
+            if (!is_good_enough(tried) && tried.settings != limit.base) continue;
+            renderer.render(scene, camera, tried.settings, result.size.x, result.size.y);  // warm-up: tables, formats
             for (int frame = 0; frame < 2; ++frame)
                 tried.milliseconds = std::min(
                     tried.milliseconds, renderer.render(scene, camera, tried.settings, result.size.x, result.size.y)
@@ -104,13 +104,13 @@ ChosenSettings choose_settings(Renderer& renderer, const Volume& volume, const S
     result.default_milliseconds = result.tried.front().milliseconds;
     std::stable_sort(result.tried.begin(), result.tried.end(),
                      [](const TriedSettings& a, const TriedSettings& b) { return a.milliseconds < b.milliseconds; });
-    const auto good = std::find_if(result.tried.begin(), result.tried.end(), good_enough);
+    const auto good = std::find_if(result.tried.begin(), result.tried.end(), is_good_enough);
     if (good == result.tried.end()) {
         const auto best = std::min_element(result.tried.begin(), result.tried.end(),
                                            [](const auto& a, const auto& b) { return a.error < b.error; });
         const std::string how = difference(best->settings, limit.base);
-        fail("no method keeps the error of this view below {}; the best is {} with {}", percent(limit.rms),
-             percent(kErrorMargin * best->error), how.empty() ? "the settings as they are" : how);
+        fail("no method has an error below {} in this view; the lowest is {} with {}", percent(limit.rms),
+             percent(kErrorMargin * best->error), how.empty() ? "the given settings" : how);
     }
     result.chosen = *good;
     result.expected_error = kErrorMargin * good->error;

@@ -14,7 +14,7 @@ using Names = std::initializer_list<std::string_view>;
 
 constexpr std::array<std::string_view, 6> kKindNames{"base", "plain", "rays", "step", "combination", "preset"};
 
-/// Collects combinations, each once; those that are the base itself are left out.
+/// Collects combinations, each once, without the base itself.
 class Combinations {
   public:
     Combinations(const Settings& base, std::vector<Configuration>& rows)
@@ -90,7 +90,7 @@ std::vector<Configuration> configurations(const Settings& base, std::span<const 
     if (knobs.empty()) add_combinations(base, rows);
     for (const Preset& preset : presets())
         rows.push_back({ConfigurationKind::Preset, std::string(preset.name), "", "", preset.settings, {}});
-    rows.push_back({ConfigurationKind::Preset, "paper", "", "", papers_own(base), {}});
+    rows.push_back({ConfigurationKind::Preset, "paper", "", "", paper_settings(base), {}});
     return rows;
 }
 
@@ -117,7 +117,7 @@ std::string picture_key(const Configuration& row) {
 }
 
 Settings model_of(const Settings& settings) {
-    Settings model;  // the method knobs at their defaults, which the reference does not read
+    Settings model;  // method knobs are at their defaults; the reference does not read them
     for (const Knob& knob : ladder())
         if (knob.kind == KnobKind::Model) knob.set(model, knob.get(settings));
     model.footprints = FootprintMode::Procedural;

@@ -1,5 +1,5 @@
-// What the report measures: each step of each knob on its own, combinations of method knobs, the presets, and what they
-// are held against: plain splatting and both ray casters.
+// The rows of the report: each step of each knob alone, combinations of method knobs, the presets, and for comparison
+// plain splatting and both ray casters.
 #pragma once
 
 #include <optional>
@@ -15,30 +15,30 @@ namespace edgesplat::accuracy {
 enum class ConfigurationKind { Base, Plain, Rays, Step, Combination, Preset };
 std::string_view name_of(ConfigurationKind kind);  ///< base, plain, rays, step, combination, preset
 
-/// One row of the report. Several rows may show the same pictures; those are measured once.
+/// One row of the report. Rows that show the same pictures are measured once.
 struct Configuration {
     ConfigurationKind kind = ConfigurationKind::Base;
     std::string name;        ///< "base", "footprints=table", "sheets=sliced sheet-spacing=1", "draft"
-    std::string knob, step;  ///< of a Step
+    std::string knob, step;  ///< only of a Step
     Settings settings;
-    std::optional<RaycastFilter> rays;  ///< the ray caster in place of splats; `settings` are the base's
+    std::optional<RaycastFilter> rays;  ///< set: ray caster instead of splats; `settings` are the base's
 };
 
-/// The base, plain splatting and the ray casters; steps of every knob that is used in `base`, in the ladder's order;
-/// then combinations (at most 40) and presets. With `knobs` only the steps of those, and no combinations. Throws Error
-/// for a name that is no knob's.
+/// The base, plain splatting and the ray casters; steps of every knob that `base` uses, in the ladder's order; then
+/// combinations (at most 40) and presets. With `knobs` only the steps of those, and no combinations. Throws Error for
+/// the name of no knob.
 std::vector<Configuration> configurations(const Settings& base, std::span<const std::string> knobs = {});
 
-/// The same pictures are made: knobs that are of no use there are at their defaults.
+/// The same settings with all unused knobs at their defaults. The pictures are the same.
 Settings canonical(const Settings& settings);
 
-/// What is to be drawn, canonical: equal for rows that show the same pictures.
+/// The pictures of a row, canonical: equal for rows that show the same pictures.
 std::string picture_key(const Configuration& row);
 
-/// "edges=march footprints=..." of every knob, canonical: equal for settings that make the same pictures.
+/// "edges=march footprints=..." for every knob, canonical: equal for settings with the same pictures.
 std::string settings_key(const Settings& settings);
 
-/// The model that a method stands for: method knobs are at what the reference evaluates, whatever they were.
+/// The model that a method approximates: its method knobs have the values that the reference evaluates.
 Settings model_of(const Settings& settings);
 
 /// settings_key of the model.

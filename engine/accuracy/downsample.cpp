@@ -17,10 +17,10 @@ namespace {
 std::vector<std::pair<std::string, Settings>> variants_of(const Settings& edge) {
     Settings plain = edge;
     plain.edges = EdgeEstimator::Off;
-    return {{"plain", plain}, {"paper", papers_own(edge)}, {"edge", edge}};
+    return {{"plain", plain}, {"paper", paper_settings(edge)}, {"edge", edge}};
 }
 
-/// The points as a volume coarser by that factor has them; a unit of the profile stays a fine voxel.
+/// The points in index space of a volume coarser by `factor`; the profile's unit stays a fine voxel.
 std::vector<SurfacePoint> coarser(std::vector<SurfacePoint> points, int factor) {
     for (SurfacePoint& p : points) {
         p.position = (p.position - (factor - 1) / 2.0) / static_cast<double>(factor);
@@ -37,10 +37,10 @@ double smallest_spacing(const VolumeGeometry& geometry) {
 }  // namespace
 
 Volume box_downsampled(const Volume& volume, int factor) {
-    need_samples(volume, "down-sampling");
+    require_samples(volume, "down-sampling");
     const glm::ivec3 dims = volume.geometry.dims / std::max(factor, 1);
     if (factor < 2 || glm::any(glm::lessThan(dims, glm::ivec3(2))))
-        fail("down-sampling by {}: expected 2 or more, and 2 voxels left along each axis", factor);
+        fail("down-sampling by {}: expected a factor of at least 2 that leaves 2 voxels along each axis", factor);
     Volume result = volume;
     result.geometry.dims = dims;
     result.geometry.index_to_world_axes = volume.geometry.index_to_world_axes * static_cast<double>(factor);
@@ -84,7 +84,7 @@ SurfacePoints surface_points(const Volume& volume, double iso, int count, double
         const glm::dvec3 g = reference::point_gradient(field, point.position);
         if (!(glm::length(g) > 0)) continue;
         point.axis = -g / glm::length(g);
-        // Oblique pieces cross more edges of cells per area: evened out.
+        // Oblique surfaces cross more edges of cells per area; this evens it out.
         if (uniform() * (std::abs(point.axis.x) + std::abs(point.axis.y) + std::abs(point.axis.z)) > 1) continue;
         const glm::dvec3 margin(room + 2);
         if (glm::any(glm::lessThan(point.position, margin)) ||
@@ -179,7 +179,7 @@ class Experiment {
         });
     }
 
-    /// What pictures of a copy show beside those of the full volume, into `variant`.
+    /// Compares pictures of a copy with those of the full volume; the result goes into `variant`.
     static void compare(const std::vector<RenderResult>& pictures, const std::vector<RenderResult>& full,
                         double voxel_mm, VariantResult& variant) {
         std::vector<ImageError> errors;

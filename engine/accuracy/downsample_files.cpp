@@ -17,11 +17,10 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kWording =
-    "A sharp picture of coarse data is not a picture of what the coarse data lost. Invented: pixels that show a "
-    "surface "
-    "where the full volume shows none; lost: the other way round; displaced: both show one, more than one coarse voxel "
-    "apart in depth. What is below a coarse voxel in size can be missing or merged in every variant, however sharp its "
-    "edges are.";
+    "A sharp picture of coarse data does not show what the coarse data lost. Invented: pixels that show a surface "
+    "where the full volume shows none; lost: the opposite; displaced: both show one, but more than one coarse voxel "
+    "apart in depth. Details smaller than a coarse voxel can be missing or merged in every variant, however sharp "
+    "its edges are.";
 
 ordered_json json_of(const ResolutionReport& report) {
     const Volume& volume = *report.request.volume;
@@ -98,7 +97,7 @@ const std::array<const char*, 11> kColumns{
 std::string page_of(const ResolutionReport& report) {
     const Volume& volume = *report.request.volume;
     const glm::ivec3 d = volume.geometry.dims;
-    std::string html = page_begin("What down-sampling loses: " + volume.name) +
+    std::string html = page_begin("Loss by down-sampling: " + volume.name) +
                        fmt::format(
                            "<p class=\"facts\">{}\u00d7{}\u00d7{} voxels, checksum {:016x} \u00b7 {} \u00b7 {}"
                            "</p>\n<p class=\"lead\">{}</p>\n",
@@ -110,12 +109,13 @@ std::string page_of(const ResolutionReport& report) {
         table.row(cells_of("full volume", f.full, nullptr), "");
         for (const VariantResult& v : f.variants)
             table.row(cells_of(v.name, v.edges, &v), "");
-        html += table.html() +
-                fmt::format(
-                    "<p class=\"note\">Lengths in voxels of the full volume, along normals at {} points of its "
-                    "surface ({} left out near its border, {} because another surface is too near). "
-                    "Recovered: of what plain splatting of the coarse volume loses.</p>\n",
-                    f.points, f.near_border, f.disturbed);
+        html +=
+            table.html() +
+            fmt::format(
+                "<p class=\"note\">Rise, place and bias: voxels of the full volume, along normals at {} points of its "
+                "surface ({} points left out near its border, {} near another surface). "
+                "Recovered: share of what plain splatting of the coarse volume loses.</p>\n",
+                f.points, f.near_border, f.disturbed);
         for (std::size_t c = 0; c < report.cameras.size(); ++c) {
             html += "<h3>" + escaped(report.cameras[c].name) + "</h3>\n<div class=\"pictures\">\n" +
                     figure(report.full[c], "full volume");
@@ -127,8 +127,8 @@ std::string page_of(const ResolutionReport& report) {
         }
     }
     return html +
-           "<p class=\"note\">Differences: dark 0.0001, yellow 1 of full scale, logarithmic.</p>\n<p class=\"facts\">"
-           "Made by: <code>" +
+           "<p class=\"note\">Differences, logarithmic: dark 0.0001, yellow 1 of full scale.</p>\n<p class=\"facts\">"
+           "Command: <code>" +
            escaped(report.request.command) + "</code></p>\n" + page_end();
 }
 
@@ -137,7 +137,7 @@ std::string page_of(const ResolutionReport& report) {
 void write_resolution(const ResolutionReport& report, const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::create_directories(folder, error);
-    if (error) fail("cannot make the folder {}: {}", folder.string(), error.message());
+    if (error) fail("cannot create the folder {}: {}", folder.string(), error.message());
     const std::array<FileContent, 3> files{{{folder / "resolution.json", json_text(json_of(report), 2) + "\n"},
                                             {folder / "resolution.csv", csv_of(report)},
                                             {folder / "resolution.html", page_of(report)}}};

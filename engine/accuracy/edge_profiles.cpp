@@ -13,10 +13,10 @@
 namespace edgesplat::accuracy {
 namespace {
 
-constexpr double kRooms[] = {3, 2, 1.5};  ///< voxels, what is asked for first to last
+constexpr double kRooms[] = {3, 2, 1.5};  ///< voxels, in the order in which they are tried
 constexpr double kBorderDistance = 3;     ///< voxels
 
-/// The gradient of the signed distance, numerically; 0 where it has none.
+/// The numerical gradient of the signed distance; 0 where it has none.
 glm::dvec3 outwards(const AnalyticScene& scene, const glm::dvec3& x) {
     constexpr double kDelta = 1e-4;
     glm::dvec3 g(0);
@@ -29,14 +29,14 @@ glm::dvec3 outwards(const AnalyticScene& scene, const glm::dvec3& x) {
     return length > 0 ? g / length : glm::dvec3(0);
 }
 
-/// Whether the distance along the normal is the distance to this surface and no other, as far as it matters.
+/// Whether the distance along the normal is the distance to this surface, up to `room` voxels to both sides.
 bool undisturbed(const AnalyticScene& scene, const SurfacePoint& point, double room) {
     for (double s = -room; s <= room; s += 0.25)
         if (std::abs(scene.signed_distance(point.position + s * point.axis) - s) > 0.02) return false;
     return true;
 }
 
-/// What the kernels of all voxels inside sum up to, at places on the profile of a point.
+/// A function of a position near the profile of a point: the sum of the kernels of all voxels inside.
 std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolume& prepared,
                                                   const reference::Footprints& footprints, const SurfacePoint& point,
                                                   const ProfileRange& range) {
@@ -47,7 +47,7 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
     };
     const reference::Field field = prepared.field();
     const double reach = footprints.farthest_reach() + range.reach * glm::length(point.axis);
-    // Faces that rays find are as the profile's own ray, from outside, finds them.
+    // Traced faces are those that the profile's own ray finds from outside.
     const glm::dvec3 u = -glm::normalize(point.axis), eye = point.position - reach * u;
     std::vector<Splat> splats;
     const auto add = [&](const reference::VoxelEdge& edge, const glm::dvec3& center) {
@@ -85,9 +85,9 @@ SurfacePoints points_with_room(const AnalyticScene& scene, int count, double roo
     const auto uniform = [&] { return random() / 4294967296.0; };
     const glm::dvec3 top(scene.dims - 1);
     for (int trial = 0; trial < 400 * count && static_cast<int>(result.points.size()) < count; ++trial) {
-        const double a = uniform(), b = uniform(), c = uniform();  // in an order that the language fixes
+        const double a = uniform(), b = uniform(), c = uniform();  // sets the order of the calls
         SurfacePoint point{glm::dvec3(a, b, c) * top, {}};
-        // Only from nearby, so that the points are spread evenly.
+        // Only starts near the surface count, so that the points are spread evenly.
         if (std::abs(scene.signed_distance(point.position)) > 1) continue;
         for (int i = 0; i < 8; ++i)
             point.position -= scene.signed_distance(point.position) * outwards(scene, point.position);
@@ -117,7 +117,7 @@ SurfacePoints surface_points(const AnalyticScene& scene, int count) {
 
 namespace {
 
-/// `values_at(point)`: what the profile of that point has at a place.
+/// `values_at(point)` returns the profile of that point as a function of the position.
 template <typename ValuesAt>
 EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange& range, const ValuesAt& values_at) {
     std::vector<std::optional<ProfileEdge>> edges(points.size());
@@ -155,7 +155,7 @@ EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange&
 EdgeFigures edge_figures(const reference::PreparedVolume& prepared, std::span<const SurfacePoint> points,
                          const ProfileRange& range) {
     Settings settings = prepared.settings();
-    settings.footprints = FootprintMode::Procedural;  // points need no table
+    settings.footprints = FootprintMode::Procedural;  // the table has no values at points
     const reference::Footprints footprints(settings, table_depth(prepared.scene(), prepared.volume().geometry));
     return figures_of(points, range,
                       [&](const SurfacePoint& point) { return two_tone(prepared, footprints, point, range); });

@@ -20,7 +20,7 @@ double processor_milliseconds() {
     return 1e3 * static_cast<double>(now.tv_sec) + 1e-6 * static_cast<double>(now.tv_nsec);
 }
 
-/// What a frame costs; `stats` gets what it says of itself.
+/// Cost of a frame; `stats` receives its statistics.
 template <typename Render>
 Cost cost_of(const Render& render, RenderStats& stats) {
     const double begin = processor_milliseconds();
@@ -28,7 +28,7 @@ Cost cost_of(const Render& render, RenderStats& stats) {
     return {stats.frame_milliseconds, processor_milliseconds() - begin};
 }
 
-/// Of passes that every frame has; the setup's are left out.
+/// Keeps the times of the passes of every frame, without the setup's.
 void keep_passes(const RenderStats& stats, TimedVisit& visit) {
     auto& passes = visit.passes;
     visit.frames.push_back(stats.passes);
@@ -68,7 +68,7 @@ TimedVisit time_visit(const std::function<RenderStats()>& frame, const std::func
         visit.processor_triples.push_back({before.processor, between.processor, after.processor});
         once = before.wall + between.wall + after.wall;
     }
-    // What the first frame alone did.
+    // Passes that only the first frame executed.
     for (const PassTime& pass : first.passes) {
         const bool every =
             std::any_of(visit.passes.begin(), visit.passes.end(), [&](const auto& p) { return p.first == pass.name; });

@@ -12,7 +12,7 @@
 namespace edgesplat::accuracy {
 namespace {
 
-/// Viridis (van der Walt and Smith, CC0), every eighth of it.
+/// Every eighth of Viridis (van der Walt and Smith, CC0).
 constexpr std::array<glm::dvec3, 9> kColors{{{0.267, 0.005, 0.329},
                                              {0.279, 0.175, 0.483},
                                              {0.230, 0.322, 0.546},
@@ -33,7 +33,8 @@ glm::dvec3 heat_color(double share) {
 
 Image heat_map(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.channels != b.channels)
-        fail("heat map of pictures of {}x{} and {}x{} pixels", a.width, a.height, b.width, b.height);
+        fail("heat map: pictures of {}x{} and {}x{} pixels, expected the same size", a.width, a.height, b.width,
+             b.height);
     Image out(a.width, a.height, 3);
     for (int y = 0; y < a.height; ++y) {
         for (int x = 0; x < a.width; ++x) {

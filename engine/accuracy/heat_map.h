@@ -1,4 +1,4 @@
-// Where two pictures differ, as colours on a logarithmic scale that is the same for all of a report.
+// The difference of two pictures as colours, on a logarithmic scale that is the same throughout a report.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,7 +13,8 @@ inline constexpr double kHeatLow = 1e-4, kHeatHigh = 1;  ///< difference at the 
 /// Colour of a share 0..1 of the scale: dark blue, through green, to yellow; sRGB 0..1. Lightness rises throughout.
 glm::dvec3 heat_color(double share);
 
-/// Largest difference of a pixel's colour channels. Three channels, linear light. Throws Error when sizes differ.
+/// Largest difference of each pixel's colour channels as a colour. Three channels, linear light. Throws Error if sizes
+/// differ.
 Image heat_map(const Image& a, const Image& b);
 
 /// The scale as CSS: "linear-gradient(90deg, ...)".

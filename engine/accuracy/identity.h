@@ -1,4 +1,4 @@
-// What tells one measurement from another.
+// The identity of a measurement.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -7,7 +7,7 @@
 
 namespace edgesplat::accuracy {
 
-/// What must be the same for the journal of an earlier run to be of use.
+/// All inputs that must be equal for the journal of an earlier run to be usable.
 nlohmann::ordered_json identity_of(const ReportInput& input, const ReportOptions& options, const DeviceInfo& device);
 
 }  // namespace edgesplat::accuracy

@@ -41,7 +41,7 @@ std::string line_of(const std::string& key, const ordered_json& value) {
     return json_text(ordered_json{{"key", key}, {"value", value}, {"check", check_of(key, value)}}) + "\n";
 }
 
-/// "size: 192x192 there, 96x96 asked for; ..." of the keys in which two identities differ.
+/// Text of the keys in which two identities differ: "size: 192x192 there, 96x96 asked for; ...".
 std::string differences(const ordered_json& there, const ordered_json& wanted) {
     std::string text;
     for (const auto& [key, value] : wanted.items()) {
@@ -64,7 +64,7 @@ Journal::Journal(std::filesystem::path path, const ordered_json& identity, bool 
     file_ = open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (file_ < 0) fail("cannot open {}: {}", path_.string(), std::strerror(errno));
     try {
-        if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail("{}: another process is writing this report", path_.string());
+        if (flock(file_, LOCK_EX | LOCK_NB) != 0) fail("{}: another process writes this report", path_.string());
         read(identity, restart);
     } catch (...) {
         close(file_);
@@ -101,15 +101,15 @@ void Journal::read(const ordered_json& identity, bool restart) {
         }
         known = true;
         if (entry["value"] != identity)
-            fail("{} belongs to another measurement ({}); choose another folder, or --restart to throw it away",
+            fail("{} belongs to another measurement ({}); use another folder, or delete it with --restart",
                  path_.string(), differences(entry["value"], identity));
     }
-    if (!known) {  // without its first line nobody knows what the rest was measured on
+    if (!known) {  // without the identity the other lines are unusable
         values_.clear();
         good = line_of(kIdentityKey, identity);
     }
-    // In place, since the lock belongs to this file; and no good line is ever written again, which a full disk or a
-    // kill would lose: what is cut off at the end goes, damaged lines before it stay and are passed over.
+    // The file is changed in place, since the lock belongs to it. No good line is ever rewritten, since a full disk or
+    // a kill would lose it. A line that is cut off at the end is removed; damaged lines before it stay and are skipped.
     const bool prefix = known && text.starts_with(good);
     if (!known || prefix)
         if (ftruncate(file_, known ? static_cast<off_t>(good.size()) : 0) != 0)
@@ -129,7 +129,7 @@ const ordered_json* Journal::find(const std::string& key) const {
 void Journal::add(const std::string& key, const ordered_json& value) {
     const std::string line = line_of(key, value);
     write_synced(file_, line, path_);
-    // As it will be read again: what a second run computes from the journal is the same to the last digit.
+    // The value as it will be read from the file, so that a second run computes the same to the last digit.
     values_[key] = ordered_json::parse(json_text(value));
 }
 

@@ -1,4 +1,4 @@
-// What a long measurement has finished, on disk, so that it can be stopped at any time and go on later.
+// Keeps the finished parts of a long measurement on disk, so that it can be stopped and continued at any time.
 #pragma once
 
 #include <filesystem>
@@ -9,25 +9,25 @@
 
 namespace edgesplat::accuracy {
 
-/// A file of lines {"key", "value", "check"}, one per finished piece of work, synced to disk line by line. A line that
-/// is cut off or does not fit its check is dropped, and its work is done again.
+/// A file of lines {"key", "value", "check"}, one per finished piece of work, each synced to disk. A line that is cut
+/// off or does not match its check is discarded, and its work is done again.
 class Journal {
   public:
-    /// Opens or begins it. `identity` says what is measured: a journal that was begun with another one is refused,
-    /// unless `restart` throws it away. Throws Error, also where another process writes the same journal.
+    /// Opens or creates the journal. `identity` describes what is measured; a journal with another identity is refused,
+    /// or deleted with `restart`. Throws Error, also if another process writes the same journal.
     Journal(std::filesystem::path path, const nlohmann::ordered_json& identity, bool restart = false);
     ~Journal();
     Journal(const Journal&) = delete;
     Journal& operator=(const Journal&) = delete;
 
-    /// The value of a key; null where that is still to be done.
+    /// The value of a key; nullptr if that work is not done yet.
     const nlohmann::ordered_json* find(const std::string& key) const;
 
-    /// Appends a finished piece of work; on disk when this returns. Throws Error.
+    /// Appends a finished piece of work; it is on disk when this returns. Throws Error.
     void add(const std::string& key, const nlohmann::ordered_json& value);
 
     std::size_t size() const { return values_.size(); }  ///< finished pieces
-    int dropped() const { return dropped_; }             ///< damaged lines that were found when it was opened
+    int dropped() const { return dropped_; }             ///< damaged lines found when the journal was opened
 
   private:
     void read(const nlohmann::ordered_json& identity, bool restart);

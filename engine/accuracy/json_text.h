@@ -1,4 +1,4 @@
-// JSON as text.
+// Converts JSON to text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -6,8 +6,8 @@
 
 namespace edgesplat {
 
-/// The value as text, indented where `indent` >= 0. Names of files need not be UTF-8, but JSON has to be: bytes that
-/// are not become U+FFFD instead of an exception.
+/// The value as text, indented if `indent` >= 0. Names of files need not be UTF-8, but JSON must be: invalid bytes
+/// become U+FFFD instead of an exception.
 template <typename Json>
 std::string json_text(const Json& value, int indent = -1) {
     return value.dump(indent, ' ', false, Json::error_handler_t::replace);

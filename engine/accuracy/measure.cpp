@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// The camera turned around the volume's middle by so many degrees about its own up.
+/// The camera, turned around the volume's middle by an angle about its own up.
 Camera orbited(const Camera& camera, const VolumeGeometry& geometry, double degrees) {
     const glm::dvec3 center = geometry.center();
     const glm::dvec3 axis = camera_frame(camera).up;
@@ -37,7 +37,7 @@ class Measurement {
           journal_(journal),
           work_(journal, progress),
           references_(input, options.tolerance, options.folder / "cache", journal,
-                      [this](double share) { return work_.go_on(share); }),
+                      [this](double share) { return work_.should_continue(share); }),
           trilinear_{.settings = options.base, .rays = RaycastFilter::Trilinear} {
         report_.input = input;
         report_.options = options;
@@ -110,7 +110,7 @@ class Measurement {
     std::string time_key(std::size_t i, int round) const { return fmt::format("time|{}|{}", round, keys_[i]); }
     std::string orbit_key(std::size_t i) const { return "orbit|" + keys_[i]; }
 
-    /// Model by model, so that each is prepared once.
+    /// Grouped by model, so that each model is prepared once.
     void add_errors() {
         const double pixels = static_cast<double>(options_.size.x) * options_.size.y;
         for (const ReportCamera& camera : report_.cameras)
@@ -152,7 +152,7 @@ class Measurement {
                 {"sheets", result.stats.sheets}};
     }
 
-    /// On a renderer of its own: one that has rendered other things keeps what it needed for them.
+    /// Each on a new renderer, since a renderer keeps what earlier pictures needed.
     void add_memory() {
         for (std::size_t i = 0; i < keys_.size(); ++i)
             work_.add({"memory", memory_key(i), "memory", [this, i] {
@@ -165,7 +165,7 @@ class Measurement {
                        }});
     }
 
-    /// Rows whose popping is measured: sheets whole and sliced, and presets of the same model.
+    /// Results whose popping is measured: whole and sliced sheets, and presets of the same model.
     std::vector<std::size_t> orbit_results() const {
         std::vector<std::size_t> list;
         for (std::size_t row = 0; row < report_.rows.size(); ++row) {
@@ -210,7 +210,7 @@ class Measurement {
                 2);
     }
 
-    /// Rounds over everything, in blocks of one model, since each change of it is estimated anew.
+    /// Rounds over all configurations, grouped by model, since each change of the model repeats the estimation.
     void add_times() {
         for (int round = 0; round < options_.repeats; ++round) {
             for (const std::size_t m : order_of_round(models_.size(), round)) {
@@ -236,7 +236,7 @@ class Measurement {
     }
 
     void assemble() {
-        // What is set up is that of a model, and of a ray caster its own.
+        // The setup belongs to a model; a ray caster has its own.
         std::map<std::string, std::vector<double>> setups;
         const auto set_up = [&](std::size_t i) {
             return report_.results[i].rays ? keys_[i] : model_key(report_.results[i].settings);
@@ -269,7 +269,7 @@ class Measurement {
             if (const ordered_json* edges = journal_.find(edges_key(model)); edges && !result.rays)
                 result.edges = edge_figures_from(*edges);
             if (const ordered_json* orbit = journal_.find(orbit_key(i))) result.popping = popping_from(*orbit);
-            take_together(result);
+            combine_cameras(result);
         }
         for (std::size_t i = 0; i < keys_.size(); ++i)
             report_.results[i].setup_ms = quantile(setups[set_up(i)], 0.5);
@@ -279,7 +279,7 @@ class Measurement {
         add_notes();
     }
 
-    static void take_together(SettingsResult& result) {
+    static void combine_cameras(SettingsResult& result) {
         std::vector<ImageError> truth, method;
         const double n = static_cast<double>(result.cameras.size());
         glm::dvec3 logs(0);
@@ -303,7 +303,7 @@ class Measurement {
         for (const SettingsResult& result : report_.results)
             points.push_back({result.frame_ms, result.truth.rms});
         const auto& rows = report_.result_of_row;
-        for (const std::size_t i : pareto_front(points))  // each by the first row that shows it
+        for (const std::size_t i : pareto_front(points))  // the first row of each result
             report_.front.push_back(static_cast<std::size_t>(std::find(rows.begin(), rows.end(), i) - rows.begin()));
     }
 
@@ -313,28 +313,27 @@ class Measurement {
             for (const CameraResult& c : r.cameras)
                 smallest = std::min({smallest, c.method.rms, c.truth.rms});
         report_.notes.push_back(fmt::format(
-            "References are exact to {:.1e} of full scale at their worst pixel; the smallest error (RMS of a "
-            "camera) is {:.1e}, {:.0f} times that.",
+            "The references' own error is at most {:.1e} of full scale at any pixel. The smallest measured error "
+            "(RMS of a camera) is {:.1e}, {:.0f} times as large.",
             report_.largest_reference_error, smallest, smallest / std::max(report_.largest_reference_error, 1e-300)));
         if (smallest < 10 * report_.largest_reference_error)
-            report_.notes.push_back("That is less than 10 times: a smaller --tolerance would tell more of it.");
+            report_.notes.push_back("That is less than 10 times as large: use a smaller --tolerance to measure it.");
         if (!input_.analytic)
             report_.notes.emplace_back(
-                "The truth is not known: what stands in for it are the exact surfaces of the cubic B-spline through "
-                "the "
-                "samples, which cubic rays show but for their steps.");
+                "The truth is not known. Instead pictures are compared with the exact surfaces of the cubic B-spline "
+                "through the samples. Cubic rays show the same surfaces, with steps.");
         for (const std::string_view name : {"near", "grazing", "inside"})
             if (options_.cameras.empty() && std::none_of(report_.cameras.begin(), report_.cameras.end(),
                                                          [&](const ReportCamera& c) { return c.name == name; }))
-                report_.notes.push_back(fmt::format("No camera `{}`: no such place was found in this volume.", name));
+                report_.notes.push_back(fmt::format("There is no camera `{}`: this volume has no place for it.", name));
         if (report_.surface)
             report_.notes.push_back(fmt::format(
-                "Edges are measured at {} points of the surface; {} more were left out near the grid's border, {} "
+                "Edges are measured at {} points of the surface. {} more were left out near the grid's border, {} "
                 "because of a corner or another surface within {} voxels.",
                 report_.surface->points.size(), report_.surface->near_border, report_.surface->disturbed,
                 report_.surface->room));
         else
-            report_.notes.push_back("Rise and location of edges are not given: the true surface is not known.");
+            report_.notes.push_back("Rise and location of edges are not measured: the true surface is not known.");
     }
 
     std::vector<ReportPictures> pictures() {
@@ -362,7 +361,7 @@ class Measurement {
     WorkList work_;
     ModelReferences references_;
     Report report_;
-    SettingsResult trilinear_;  ///< the ray caster that times are ratios to
+    SettingsResult trilinear_;  ///< the ray caster that times are divided by
     Camera far_;
     std::vector<std::string> keys_;    ///< picture_key of each result
     std::vector<std::string> models_;  ///< model_key of each model, in order of appearance
@@ -374,7 +373,7 @@ Measured measure_accuracy(Renderer& renderer, const ReportInput& input, const Re
                           const ProgressFunction& progress) {
     std::error_code error;
     std::filesystem::create_directories(options.folder / "cache", error);
-    if (error) fail("cannot make the folder {}: {}", options.folder.string(), error.message());
+    if (error) fail("cannot create the folder {}: {}", options.folder.string(), error.message());
     Journal journal(options.folder / "journal.jsonl", identity_of(input, options, renderer.device()), options.restart);
     return Measurement(renderer, input, options, journal, progress).run();
 }

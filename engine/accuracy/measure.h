@@ -1,4 +1,4 @@
-// Runs an accuracy report: errors against references, edges, times, memory and popping of every configuration.
+// Measures an accuracy report: errors against references, edges, times, memory and popping of every configuration.
 #pragma once
 
 #include "engine/accuracy/report.h"
@@ -12,8 +12,8 @@ struct Measured {
     std::vector<ReportPictures> pictures;  ///< per camera
 };
 
-/// Keeps a journal and the references in `options.folder` (created if it is missing), and goes on where an earlier run
-/// with the same input, options and device stopped. Throws Interrupted when `progress` says so, Error otherwise.
+/// Keeps a journal and the references in `options.folder` (created if missing), and continues an earlier run with the
+/// same input, options and device. Throws Interrupted if `progress` returns false, Error otherwise.
 Measured measure_accuracy(Renderer& renderer, const ReportInput& input, const ReportOptions& options,
                           const ProgressFunction& progress = {});
 

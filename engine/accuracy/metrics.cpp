@@ -16,11 +16,11 @@ int color_channels(const Image& image) {
 
 void check_same_shape(const Image& a, const Image& b) {
     if (a.width != b.width || a.height != b.height || a.channels != b.channels)
-        fail("pictures of {}x{} pixels with {} channels and of {}x{} with {} cannot be compared", a.width, a.height,
+        fail("cannot compare a picture of {}x{} pixels and {} channels with one of {}x{} and {}", a.width, a.height,
              a.channels, b.width, b.height, b.channels);
 }
 
-/// Root mean square over the colour channels of what `value(x, y, c)` gives.
+/// Root mean square of `value(x, y, c)` over the colour channels of all pixels.
 template <typename Value>
 double color_rms(const Image& shape, const Value& value) {
     double sum = 0;
@@ -39,7 +39,7 @@ double difference(const Image& a, const Image& b, int x, int y, int c) {
     return static_cast<double>(a.at(x, y, c)) - static_cast<double>(b.at(x, y, c));
 }
 
-/// Where the profile falls from at least `level` to below it between samples i - 1 and i.
+/// Whether the profile falls from at least `level` to below it between samples i - 1 and i.
 bool falls(std::span<const double> profile, std::size_t i, double level) {
     return profile[i] < level && profile[i - 1] >= level;
 }
@@ -54,7 +54,7 @@ std::optional<double> first_below(std::span<const double> profile, double level)
     return {};
 }
 
-/// The last time before sample `end`: ripple of the inside is not the edge.
+/// The last crossing before sample `end`: ripple of the inside is not the edge.
 std::optional<double> last_below(std::span<const double> profile, double level, double end) {
     for (std::size_t i = std::min(profile.size(), static_cast<std::size_t>(std::ceil(end)) + 1); i-- > 1;)
         if (falls(profile, i, level)) return crossing(profile, i, level);
@@ -98,7 +98,8 @@ std::optional<ProfileEdge> profile_edge(std::span<const double> profile, double 
 
 Popping popping(std::span<const Image> method, std::span<const Image> reference) {
     if (method.size() != reference.size() || method.size() < 2)
-        fail("popping of {} frames against {}: expected as many, at least two", method.size(), reference.size());
+        fail("popping: {} frames and {} references, expected equal numbers of at least two", method.size(),
+             reference.size());
     Popping result;
     for (std::size_t i = 0; i + 1 < method.size(); ++i) {
         check_same_shape(method[i], reference[i]);

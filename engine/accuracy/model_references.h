@@ -1,5 +1,5 @@
-// What pictures are measured against: the truth, or what stands in for it, and the converged evaluation of their own
-// model.
+// Provides the pictures that errors are measured against: the truth, or its substitute, and the converged picture of
+// each model.
 #pragma once
 
 #include <functional>
@@ -12,15 +12,15 @@
 
 namespace edgesplat::accuracy {
 
-/// Computes and keeps them. Names tell cameras apart; one name must always stand for one camera and size.
+/// Computes and keeps these pictures. A name identifies a camera; one name must always mean the same camera and size.
 class ModelReferences {
   public:
-    /// `progress` is called now and then with the share done of a picture; where it returns false, reference::Cancelled
-    /// is thrown.
+    /// `progress` is called repeatedly with the share of a picture that is done; if it returns false,
+    /// reference::Cancelled is thrown.
     ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder, Journal& journal,
                     std::function<bool(double)> progress);
 
-    // What the journal calls them, what it is to hold, and the pictures themselves.
+    // Keys in the journal, entries of the journal, and the pictures themselves.
     std::string key(const Settings& model, const std::string& camera) const;
     std::string truth_key(const std::string& camera) const;
     nlohmann::ordered_json make(const Settings& model, const std::string& name, const Camera& camera, glm::ivec2 size);
@@ -28,7 +28,7 @@ class ModelReferences {
     ReferencePicture get(const Settings& model, const std::string& name, const Camera& camera, glm::ivec2 size);
     ReferencePicture truth(const std::string& name, const Camera& camera, glm::ivec2 size);
 
-    /// Edges of the model, unquantised; kept until another model is asked for.
+    /// Edges of the model, unquantised; kept until another model is requested.
     const reference::PreparedVolume& prepared(const Settings& model);
 
   private:

@@ -1,4 +1,4 @@
-// What pages of reports are made of.
+// Building blocks of report pages.
 #pragma once
 
 #include <string>
@@ -8,11 +8,11 @@
 
 namespace edgesplat::accuracy {
 
-/// Up to and with the headline; the style sheet is in it. `title` is plain text.
+/// The beginning of a page, with style sheet and headline. `title` is plain text.
 std::string page_begin(const std::string& title);
 std::string page_end();
 
-/// A table with a column of names and columns of numbers. Cells are plain text.
+/// A table with a first column of names and further columns of numbers. Cells are plain text.
 class HtmlTable {
   public:
     explicit HtmlTable(const std::vector<std::string>& head);
@@ -25,7 +25,7 @@ class HtmlTable {
     std::size_t columns_;
 };
 
-/// A picture (linear light, its alpha is ignored) as data, with a caption.
+/// A picture (linear light; alpha is ignored) as embedded data, with a caption.
 std::string figure(const Image& image, const std::string& caption);
 
 std::string base64(const std::string& bytes);

@@ -19,7 +19,7 @@ std::string bytes_of(const Image& image) {
     return bytes;
 }
 
-/// The picture that the entry describes; nothing where the file is not what it was.
+/// The picture that the entry describes; nullopt if the file has changed.
 std::optional<ReferencePicture> read(const std::filesystem::path& path, const ordered_json& entry) {
     std::ifstream file(path, std::ios::binary);
     const std::string bytes(std::istreambuf_iterator<char>(file), {});
@@ -53,7 +53,7 @@ ReferencePicture PictureStore::get(const std::string& key, const std::function<R
         if (auto picture = read(file_of(key), *entry)) return std::move(*picture);
     journal_.add(key, make(key, compute));
     auto picture = read(file_of(key), *journal_.find(key));
-    if (!picture) fail("{}: what was written could not be read again", file_of(key).string());
+    if (!picture) fail("{}: cannot read the picture that was just written", file_of(key).string());
     return std::move(*picture);
 }
 

@@ -1,4 +1,4 @@
-// Pictures that took long to compute, kept as files beside the journal.
+// Keeps pictures that take long to compute as files beside the journal.
 #pragma once
 
 #include <filesystem>
@@ -10,21 +10,21 @@
 
 namespace edgesplat::accuracy {
 
-/// A picture and how far it may be from what it stands for.
+/// A picture and its largest possible error.
 struct ReferencePicture {
     Image image;
     double error_estimate = 0;  ///< largest over the pixels, of full scale
 };
 
-/// A folder of pictures in float32, bit for bit, and what the journal says about each.
+/// A folder of float32 pictures, exact to the bit, with their entries in the journal.
 class PictureStore {
   public:
     PictureStore(std::filesystem::path folder, Journal& journal) : folder_(std::move(folder)), journal_(journal) {}
 
-    /// The picture of a key: from its file if that is whole, else computed, written and entered into the journal.
+    /// The picture of a key: read from its file if that is intact, else computed, written and entered into the journal.
     ReferencePicture get(const std::string& key, const std::function<ReferencePicture()>& compute);
 
-    /// Computes and writes it; what the journal is to hold.
+    /// Computes and writes the picture; returns its entry for the journal.
     nlohmann::ordered_json make(const std::string& key, const std::function<ReferencePicture()>& compute) const;
 
   private:

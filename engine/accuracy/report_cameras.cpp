@@ -12,11 +12,11 @@
 namespace edgesplat::accuracy {
 namespace {
 
-constexpr double kStep = 0.25;        ///< voxels, of a ray that looks for a surface
-constexpr double kClearance = 1.5;    ///< voxels around an eye without matter
-constexpr double kCavityShare = 0.6;  ///< of the directions from a place in a cavity, those that meet matter
+constexpr double kStep = 0.25;        ///< voxels: step of a ray that searches for a surface
+constexpr double kClearance = 1.5;    ///< voxels without matter around an eye
+constexpr double kCavityShare = 0.6;  ///< share of directions from a place in a cavity that meet matter
 
-/// What is matter, and where.
+/// Finds the visible matter of a volume.
 class Matter {
   public:
     Matter(const Volume& volume, const Scene& scene)
@@ -37,20 +37,20 @@ class Matter {
         const auto m = static_cast<std::size_t>(std::upper_bound(isos.begin(), isos.end(), value) - isos.begin());
         return m < scene_.materials.size() && scene_.materials[m].extinction > 0;
     }
-    /// By trilinear interpolation; nothing is matter outside the grid.
+    /// Whether p is in matter, by trilinear interpolation; outside the grid it is not.
     bool at(const glm::dvec3& p) const { return contains(p) && seen(reference::sample(samples_, p)); }
     bool voxel(const glm::ivec3& i) const {
         return glm::all(glm::greaterThanEqual(i, glm::ivec3(0))) && glm::all(glm::lessThan(i, geometry().dims)) &&
                seen(static_cast<double>(volume_.at(i.x, i.y, i.z)));
     }
-    /// Out of matter at p.
+    /// Normal at p, out of the matter.
     glm::dvec3 normal(const glm::dvec3& p) const {
         glm::dvec3 g = reference::point_gradient(samples_, p);
         if (!(glm::length(g) > 0)) return {0, 0, 1};
         g = glm::normalize(g);
         return at(p + 0.5 * g) && !at(p - 0.5 * g) ? -g : (at(p - 0.5 * g) && !at(p + 0.5 * g) ? g : -g);
     }
-    /// Whether no voxel that is matter lies within `radius` of p.
+    /// Whether no voxel of matter lies within `radius` of p.
     bool clear(const glm::dvec3& p, double radius) const {
         const glm::ivec3 low(glm::ceil(p - radius)), high(glm::floor(p + radius));
         for (int z = low.z; z <= high.z; ++z)
@@ -83,7 +83,7 @@ std::optional<SurfaceHit> first_hit(const Matter& matter, const glm::dvec3& orig
     return {};
 }
 
-/// The hit of the ray through the picture that is nearest to its middle, of a 15 x 15 raster.
+/// Of a 15 x 15 raster of rays through the picture, the hit nearest to the picture's middle.
 std::optional<SurfaceHit> central_hit(const Matter& matter, const Camera& camera, double aspect) {
     const CameraFrame frame = camera_frame(camera);
     std::vector<glm::dvec2> raster;
@@ -101,7 +101,7 @@ std::optional<SurfaceHit> central_hit(const Matter& matter, const Camera& camera
     return {};
 }
 
-/// A camera from index space; `up` there, too.
+/// A camera from eye, direction and `up` in index space.
 Camera camera_from_index(const Matter& matter, const glm::dvec3& eye, const glm::dvec3& direction, const glm::dvec3& up,
                          double fov) {
     const glm::dmat3& axes = matter.geometry().index_to_world_axes;
@@ -114,7 +114,7 @@ std::array<glm::dvec3, 2> across(const glm::dvec3& n) {
     return {a, glm::cross(n, a)};
 }
 
-/// Over the surface at the hit, from as far away along it as there is room.
+/// A camera that looks along the surface at the hit, from as far away as there is room.
 std::optional<ReportCamera> grazing_camera(const Matter& matter, const SurfaceHit& hit) {
     const auto [a, b] = across(hit.normal);
     for (const auto& [height, back] : {std::pair{3.0, 12.0}, {3.0, 8.0}, {2.5, 5.0}, {2.0, 4.0}, {1.75, 2.5}}) {
@@ -125,7 +125,7 @@ std::optional<ReportCamera> grazing_camera(const Matter& matter, const SurfaceHi
             const glm::dvec3 target = hit.position + 2.0 * along;
             if (!matter.clear(eye, kClearance)) continue;
             const auto met = first_hit(matter, eye, glm::normalize(target - eye));
-            if (met && met->distance < back - 2) continue;  // something else stands in the way
+            if (met && met->distance < back - 2) continue;  // other matter occludes the surface
             return ReportCamera{
                 "grazing",
                 fmt::format("along the surface at voxel {:.1f},{:.1f},{:.1f}, {:.0f} degrees to it", hit.position.x,
@@ -144,14 +144,14 @@ std::vector<glm::dvec3> neighbour_directions() {
     return list;
 }
 
-/// Voxels to the first voxel of matter along u; nothing where the ray leaves the grid first.
+/// Voxels to the first voxel of matter along u; nullopt if the ray leaves the grid first.
 std::optional<double> voxels_to_matter(const Matter& matter, const glm::dvec3& from, const glm::dvec3& u) {
     for (double t = 1; matter.contains(from + t * u); t += 1)
         if (matter.voxel(glm::ivec3(glm::round(from + t * u)))) return t;
     return {};
 }
 
-/// In the cavity that is the most enclosed, of a raster of at most about 20 000 places; of equals the widest.
+/// A camera in the most enclosed cavity, of a raster of at most about 20 000 places; of equals the widest.
 std::optional<ReportCamera> cavity_camera(const Matter& matter) {
     const glm::ivec3 dims = matter.geometry().dims;
     const auto stride = std::max(
@@ -192,7 +192,7 @@ std::optional<ReportCamera> cavity_camera(const Matter& matter) {
                         camera_from_index(matter, best, view, across(view)[1], 90)};
 }
 
-/// Close above the surface, within the grid where that is possible.
+/// A camera close above the surface, within the grid if possible.
 std::optional<ReportCamera> surface_camera(const Matter& matter, const SurfaceHit& hit) {
     const glm::dvec3 along = across(hit.normal)[0];
     for (const bool within : {true, false})

@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-/// JSON has no infinity.
+/// JSON has no infinity: NaN becomes null, infinity a text.
 ordered_json number(double value) {
     if (std::isnan(value)) return {};
     return std::isfinite(value) ? ordered_json(value) : ordered_json("infinite");

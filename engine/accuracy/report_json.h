@@ -1,4 +1,4 @@
-// Results of the accuracy report as JSON: of single measurements, for the journal, and of the whole, report.json
+// Converts results of the accuracy report to JSON: single measurements for the journal, and the whole for report.json
 // (docs/accuracy_report.md).
 #pragma once
 
@@ -14,13 +14,12 @@ nlohmann::ordered_json to_json(const Popping& popping);
 nlohmann::ordered_json to_json(const Spread& spread);
 nlohmann::ordered_json settings_json(const Settings& settings);  ///< every knob under its name, with underscores
 
-// Back again. They throw nlohmann's exceptions where something is missing.
+// Read these again. They throw nlohmann's exceptions if something is missing.
 ImageError image_error_from(const nlohmann::ordered_json& json);
 EdgeFigures edge_figures_from(const nlohmann::ordered_json& json);
 Popping popping_from(const nlohmann::ordered_json& json);
 
-/// The whole report. What is the same in two runs stands apart from what is not: times are only under "time" and
-/// "raycast_ms".
+/// The whole report. Values that differ between two runs, the times, are only under "time" and "raycast_ms".
 nlohmann::ordered_json report_json(const Report& report);
 
 }  // namespace edgesplat::accuracy

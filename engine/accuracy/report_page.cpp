@@ -20,30 +20,30 @@ std::string optional_cell(bool known, const std::string& text) {
     return known ? text : "\u2013";
 }
 
-/// How far it is from the truth.
+/// Error against the truth.
 std::string truth_text(const SettingsResult& r) {
     return fmt::format("{} RMS ({:.1f} dB)", rms_text(r.truth.rms), decibels(r.truth));
 }
 
-/// What the numbers say, in a few sentences.
+/// Summary of the results in a few sentences.
 std::string summary(const Report& report) {
     const SettingsResult& base = report.of_row(0);
     std::string text = fmt::format(
-        "With its base settings a picture is {} from {}, and {} RMS (at most {:.3f}) from the converged picture of its "
-        "own model, at {:.2f} times the {} of the trilinear ray caster.",
-        truth_text(base), report.truth_in_words(), rms_text(base.method.rms), base.method.max, base.ratio.median,
+        "With the base settings the error against {1} is {0}. Against the converged picture of the model it is {2} RMS "
+        "(at most {3:.3f}). A frame takes {4:.2f} times the {5} of the trilinear ray caster.",
+        truth_text(base), report.truth_description(), rms_text(base.method.rms), base.method.max, base.ratio.median,
         ratio_clock(report.device) == RatioClock::Processor ? "processor time" : "time");
     for (std::size_t row = 0; row < report.rows.size(); ++row)
         if (const ConfigurationKind kind = report.rows[row].kind;
             kind == ConfigurationKind::Plain || kind == ConfigurationKind::Rays)
-            text += fmt::format(" {}: {}, {:.1f} ms.", report.rows[row].name, truth_text(report.of_row(row)),
-                                report.of_row(row).frame_ms);
+            text += fmt::format(" The error of {} is {}, at {:.1f} ms.", report.rows[row].name,
+                                truth_text(report.of_row(row)), report.of_row(row).frame_ms);
     if (base.edges && base.edges->measured > 0)
-        text += fmt::format(" Edges rise over {:.2f} voxel and lie within {:.3f} voxel of their place on average.",
+        text += fmt::format(" On average an edge rises over {:.2f} voxel and lies {:.3f} voxel from its true place.",
                             base.edges->rise_mean, base.edges->location_mean);
     if (!report.front.empty()) {
         const std::size_t last = report.front.back();
-        text += fmt::format(" Nothing measured is nearer than {}: {}, {:.1f} ms.", report.rows[last].name,
+        text += fmt::format(" The lowest error has {}: {}, at {:.1f} ms.", report.rows[last].name,
                             truth_text(report.of_row(last)), report.of_row(last).frame_ms);
     }
     return text;
@@ -55,14 +55,14 @@ std::string cost_and_error(const Report& report, std::size_t row) {
                        r.ratio.median);
 }
 
-/// Everything that was measured, against one truth.
+/// Plot of all rows: error against time.
 std::string error_against_time(const Report& report) {
     PlotSeries steps{"one step from the base", "pt 7 ps 0.8 lc rgb '#8fb8de'", {}};
     PlotSeries combinations{"combination", "pt 7 ps 0.6 lc rgb '#c6ccd4'", {}};
     PlotSeries best{"nothing is both faster and nearer to the truth", "pt 6 ps 1.6 lw 2 lc rgb '#c8501e'", {}};
-    PlotSeries presets{"base, presets, and the paper's own way", "pt 7 ps 1.0 lc rgb '#1f6fb2'", {}};
+    PlotSeries presets{"base, presets, and the paper's method", "pt 7 ps 1.0 lc rgb '#1f6fb2'", {}};
     PlotSeries others{"plain splatting, ray casters", "pt 9 ps 1.2 lc rgb '#2b7a4b'", {}};
-    LogPlot plot{"milliseconds", "error against " + report.truth_in_words() + ", RMS of full scale", {}, {}};
+    LogPlot plot{"milliseconds", "error against " + report.truth_description() + ", RMS of full scale", {}, {}};
     const auto add = [&](PlotSeries& series, std::size_t row, const std::string& label) {
         const SettingsResult& r = report.of_row(row);
         series.points.push_back({r.frame_ms, r.truth.rms, label});
@@ -79,7 +79,7 @@ std::string error_against_time(const Report& report) {
         const SettingsResult& r = report.of_row(report.front[i]);
         plot.line.emplace_back(r.frame_ms, r.truth.rms);
     }
-    plot.series = {combinations, steps, presets, others, best};  // a ring around those of the front
+    plot.series = {combinations, steps, presets, others, best};  // rings around the front's points
     std::string html = log_plot_svg(plot) + "<ol class=\"front-list\">\n";
     for (const std::size_t row : report.front)
         html += "<li>" + escaped(cost_and_error(report, row)) + "</li>\n";
@@ -117,7 +117,7 @@ std::string steps_section(const Report& report) {
         const std::string name = c.kind == ConfigurationKind::Step   ? c.knob
                                  : c.kind == ConfigurationKind::Base ? "base settings"
                                  : c.kind == ConfigurationKind::Plain || c.kind == ConfigurationKind::Rays
-                                     ? "beside them"
+                                     ? "for comparison"
                                  : c.kind == ConfigurationKind::Combination ? "combinations"
                                                                             : "presets";
         if (name != group) table.group(group = name);
@@ -125,21 +125,16 @@ std::string steps_section(const Report& report) {
         const bool same = report.result_of_row[row] == report.result_of_row[0];
         table.row(cells_of(report, row), same && c.kind != ConfigurationKind::Base ? "base" : best ? "best" : "");
     }
-    return table.html() + "<p class=\"note\"><b>truth</b>: PSNR and RMS error against " + report.truth_in_words() +
-           ", all cameras, full scale = 1, linear light. <b>model</b>, <b>max</b>: RMS and largest difference from the "
-           "converged picture of the same model, of rays: of the base's. <b>rise</b>: 10\u201390 % width of an edge, "
-           "<b>place</b>: distance of its 50 % crossing from the true surface, both in voxels, of the model's "
-           "reconstruction. <b>popping</b>: RMS change between frames one degree apart that the model does not have; "
-           "<b>excess</b>: RMS change minus the model's own. <b>\u00d7 ray</b>: time over the trilinear ray caster's, "
-           "measured "
-           "in "
-           "turns; geometric mean over the cameras; on a device that is the processor by processor time, which does "
-           "not "
-           "depend on what else runs (<b>wall \u00d7</b>: by the clock on the wall). <b>setup</b>: finding the edges, "
-           "once per volume; a dash where "
-           "that is "
-           "the same work as another step's. Bold: nothing is both faster and nearer to the truth. Grey: the "
-           "base itself."
+    return table.html() + "<p class=\"note\"><b>truth</b>: PSNR and RMS error against " + report.truth_description() +
+           ", all cameras, full scale = 1, linear light. <b>model</b>, <b>max</b>: RMS and largest difference from "
+           "the converged picture of the same model; for rays, of the base's model. <b>rise</b>: 10\u201390 % width "
+           "of an edge, <b>place</b>: distance of its 50 % crossing from the true surface; both in voxels, in the "
+           "model's reconstruction. <b>popping</b>: RMS change between frames one degree apart that the model does "
+           "not have; <b>excess</b>: RMS change minus the model's own. <b>\u00d7 ray</b>: time over the trilinear "
+           "ray caster's, measured in turns; geometric mean over the cameras. If the device is the processor, this "
+           "is processor time, which does not depend on other programs. <b>wall \u00d7</b>: the same by wall clock. "
+           "<b>setup</b>: finding the edges, once per volume; a dash where another step shares that work. Bold: "
+           "nothing is both faster and nearer to the truth. Grey: the same as the base."
            "</p>\n";
 }
 
@@ -166,7 +161,7 @@ std::string pictures_section(const Measured& measured) {
         html += figure(p.accurate, "preset accurate");
         html += figure(p.trilinear_rays, "trilinear rays");
         html += figure(p.cubic_rays, "cubic rays");
-        html += figure(p.truth, report.truth_in_words());
+        html += figure(p.truth, report.truth_description());
         html += figure(heat_map(p.plain, p.truth), "plain \u2212 truth");
         html += figure(heat_map(p.base, p.truth), "base \u2212 truth");
         html += figure(heat_map(p.accurate, p.truth), "accurate \u2212 truth");
@@ -180,8 +175,8 @@ std::string pictures_section(const Measured& measured) {
         ticks += fmt::format("<span>{:g}</span>", v);
     return html + "<div class=\"scale\"><div class=\"bar\" style=\"background:" + heat_gradient() + "\"></div><div " +
            "class=\"ticks\">" + ticks +
-           "</div><p class=\"note\">Differences: largest of a pixel's colour channels, of full scale, linear light; "
-           "logarithmic, the same in all pictures.</p></div>\n";
+           "</div><p class=\"note\">Differences: largest of a pixel's colour channels, relative to full scale, "
+           "linear light. The scale is logarithmic and the same in all pictures.</p></div>\n";
 }
 
 std::string passes_section(const Report& report) {
@@ -229,11 +224,11 @@ std::string report_page(const Measured& measured) {
         d.x, d.y, d.z, report.input.volume->checksum, report.device.name, report.device.type, report.device.driver,
         report.device.driver_version, report.input.program, report.options.size.x, report.options.size.y,
         report.options.repeats);
-    return page_begin("What accuracy costs: " + report.input.volume->name) + "<p class=\"facts\">" + escaped(facts) +
+    return page_begin("Accuracy and time: " + report.input.volume->name) + "<p class=\"facts\">" + escaped(facts) +
            "</p>\n<p class=\"lead\">" + escaped(summary(report)) + "</p>\n<h2>Error against time</h2>\n" +
            error_against_time(report) + "<h2>Every step</h2>\n" + steps_section(report) + "<h2>Pictures</h2>\n" +
            pictures_section(measured) + "<h2>Time of each pass</h2>\n" + passes_section(report) + "<h2>Cameras</h2>\n" +
-           cameras_section(report) + "<h2>Notes</h2>\n<ul>\n" + notes + "</ul>\n<p class=\"facts\">Made by: <code>" +
+           cameras_section(report) + "<h2>Notes</h2>\n<ul>\n" + notes + "</ul>\n<p class=\"facts\">Command: <code>" +
            escaped(report.input.command) + "</code></p>\n" + page_end();
 }
 

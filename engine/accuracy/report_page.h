@@ -1,4 +1,4 @@
-// The report as one page that needs nothing else: no network, no scripts.
+// Makes the report page: one self-contained file, without network or scripts.
 #pragma once
 
 #include <string>
@@ -7,7 +7,7 @@
 
 namespace edgesplat::accuracy {
 
-/// HTML with plots as inline SVG and pictures as data.
+/// The HTML page, with plots as inline SVG and pictures as embedded data.
 std::string report_page(const Measured& measured);
 
 }  // namespace edgesplat::accuracy

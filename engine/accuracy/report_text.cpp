@@ -14,7 +14,7 @@ std::string cell(double value) {
     return fmt::format("{}", value);
 }
 
-/// A value with a comma or a quote in quotes, as RFC 4180 says.
+/// A value in quotes if it has a comma, a quote or a line break (RFC 4180).
 std::string quoted(const std::string& text) {
     if (text.find_first_of(",\"\n") == std::string::npos) return text;
     std::string out = "\"";
@@ -98,13 +98,12 @@ std::string steps_table(const Report& report) {
         }
         text += line_of(report, row, c.kind == ConfigurationKind::Step ? c.step : c.name);
     }
-    return text + "dB, truth: PSNR and RMS error against " + report.truth_in_words() +
+    return text + "dB, truth: PSNR and RMS error against " + report.truth_description() +
            ", full scale = 1, all cameras;\nmodel, max: RMS and largest difference from the converged picture of the "
-           "same model (rays: of the base's); rise, place: 10-90 % width\nand displacement of edges, voxels; popping: "
-           "RMS "
-           "change between frames one degree apart that the model has not;\nx ray: time over the trilinear ray "
-           "caster's "
-           "(processor time, where the device is the processor); *: nothing is both faster and nearer to the truth.\n";
+           "same model (for rays, of the base's model);\nrise, place: 10-90 % width and displacement of edges, "
+           "voxels; popping: RMS change between frames one degree apart that the model does not have;\nx ray: time "
+           "over the trilinear ray caster's (processor time if the device is the processor); *: nothing is both "
+           "faster and nearer to the truth.\n";
 }
 
 }  // namespace edgesplat::accuracy

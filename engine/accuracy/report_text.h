@@ -1,4 +1,4 @@
-// The report as text: steps.csv for other programs, a short table for the terminal.
+// Makes texts of the report: steps.csv for other programs, and a short table for the terminal.
 #pragma once
 
 #include <string>
@@ -7,11 +7,10 @@
 
 namespace edgesplat::accuracy {
 
-/// One line per row, the first names the columns; full precision, a point as decimal sign, empty where nothing is
-/// known.
+/// One line per row; the first line names the columns. Full precision, decimal point, empty cells for unknown values.
 std::string steps_csv(const Report& report);
 
-/// Steps by knob and the presets, in columns.
+/// A table of the steps by knob and of the presets.
 std::string steps_table(const Report& report);
 
 }  // namespace edgesplat::accuracy

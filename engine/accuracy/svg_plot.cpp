@@ -18,7 +18,7 @@ bool drawable(double x, double y) {
     return x > 0 && y > 0 && std::isfinite(x) && std::isfinite(y);
 }
 
-/// The plot command; the data stand before it as blocks. Empty where there is nothing to draw.
+/// The plot command, preceded by the data as blocks. Empty if there is nothing to draw.
 std::string script_of(const LogPlot& plot) {
     std::string blocks, commands;
     const auto add = [&](const std::string& command) { commands += (commands.empty() ? "" : ", ") + command; };
@@ -29,7 +29,7 @@ std::string script_of(const LogPlot& plot) {
         blocks += "$front << EOD\n" + steps + "EOD\n";
         add("$front using 1:2 with steps lw 1.5 lc rgb '#c8501e' notitle");
     }
-    std::string names, numbers;  // beside the point, on different sides of it
+    std::string names, numbers;  // labels on different sides of the points
     double x_low = kMost, x_high = 0, y_low = kMost, y_high = 0;
     for (std::size_t i = 0; i < plot.series.size(); ++i) {
         const PlotSeries& series = plot.series[i];
@@ -88,7 +88,7 @@ std::string escaped(const std::string& text) {
 }
 
 std::string gnuplot_text(const std::string& text) {
-    // In single quotes nothing but the quote itself has a meaning.
+    // Inside single quotes only the quote itself is special.
     std::string out = "'";
     for (const char c : text)
         out += c == '\'' ? "''" : std::string(1, c);
@@ -113,12 +113,12 @@ std::string log_plot_file(const LogPlot& plot) {
 
 std::string log_plot_svg(const LogPlot& plot) {
     const std::string text = log_plot_file(plot);
-    if (text.empty()) return "<p>Nothing to draw.</p>\n";
-    // What stands before the element is for a file of its own.
+    if (text.empty()) return "<p>There is nothing to draw.</p>\n";
+    // The text before the element belongs to a separate file only.
     const std::size_t begin = text.find("<svg");
     if (begin == std::string::npos) fail("gnuplot wrote no <svg> element");
     std::string element = "<svg class=\"plot\" role=\"img\"" + text.substr(begin + 4);
-    // Within a page namespaces are known; without their addresses it is plain that nothing is fetched.
+    // A page knows the namespaces. Without their addresses a reader sees that nothing is fetched.
     for (std::size_t at = element.find(" xmlns"); at < element.find('>'); at = element.find(" xmlns"))
         element.erase(at, element.find('"', element.find('"', at) + 1) + 1 - at);
     return element;

@@ -1,4 +1,4 @@
-// Plots with logarithmic axes, as SVG that stands in a page; drawn by the program gnuplot.
+// Draws plots with logarithmic axes as SVG, by the program gnuplot.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace edgesplat::accuracy {
 
-/// Points of one kind: one entry of the legend.
+/// Points of one kind, with one entry in the legend.
 struct PlotSeries {
     std::string title;
-    std::string style;  ///< as gnuplot writes it after `with points`
+    std::string style;  ///< gnuplot's text after `with points`
     struct Point {
-        double x = 0, y = 0;  ///< > 0; others are not drawn
+        double x = 0, y = 0;  ///< > 0; other points are not drawn
         std::string label;    ///< beside the point; empty: none
     };
     std::vector<Point> points;
@@ -20,23 +20,23 @@ struct PlotSeries {
 
 struct LogPlot {
     std::string x_title, y_title;
-    std::vector<PlotSeries> series;               ///< later ones lie on top
-    std::vector<std::pair<double, double>> line;  ///< drawn as steps: what is reached at that cost
+    std::vector<PlotSeries> series;               ///< later series lie on top
+    std::vector<std::pair<double, double>> line;  ///< drawn as steps: error reached at a cost
 };
 
-/// The <svg> element. Throws Error where gnuplot is missing or fails.
+/// The <svg> element for a page. Throws Error if gnuplot is missing or fails.
 std::string log_plot_svg(const LogPlot& plot);
 
-/// The same as a file of its own. Empty where there is nothing to draw.
+/// The same as a separate file. Empty if there is nothing to draw.
 std::string log_plot_file(const LogPlot& plot);
 
-/// What a gnuplot script draws, as the text of an SVG file. The script sets neither terminal nor output.
+/// The SVG file that a gnuplot script draws. The script sets neither terminal nor output.
 std::string svg_file(const std::string& script);
 
-/// Text in single quotes, as gnuplot reads it.
+/// The text in single quotes, escaped for gnuplot.
 std::string gnuplot_text(const std::string& text);
 
-/// Text in which &, <, > and quotes are safe.
+/// The text with &, <, > and quotes escaped for HTML.
 std::string escaped(const std::string& text);
 
 }  // namespace edgesplat::accuracy

@@ -17,7 +17,7 @@ void WorkList::add(Piece piece, double expected_seconds) {
     pieces_.push_back(std::move(piece));
 }
 
-bool WorkList::go_on(double share_of_piece) {
+bool WorkList::should_continue(double share_of_piece) {
     if (!progress_ || current_ >= pieces_.size()) return true;
     double left = 0;
     for (const auto& [name, k] : kinds_)
@@ -31,12 +31,12 @@ bool WorkList::go_on(double share_of_piece) {
 }
 
 void WorkList::check(double share_of_piece) {
-    if (!go_on(share_of_piece)) stop();
+    if (!should_continue(share_of_piece)) stop();
 }
 
 void WorkList::stop() const {
-    throw Interrupted(fmt::format("stopped after {} of {} measurements; the same command goes on from there", current_,
-                                  pieces_.size()));
+    throw Interrupted(fmt::format("stopped after {} of {} measurements; the same command continues from there",
+                                  current_, pieces_.size()));
 }
 
 void WorkList::run() {

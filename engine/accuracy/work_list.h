@@ -1,4 +1,4 @@
-// A long measurement as a list of small pieces, each in the journal when it is done; what is there is not done again.
+// Runs a long measurement as a list of small pieces. Finished pieces are in the journal and are not run again.
 #pragma once
 
 #include <functional>
@@ -10,46 +10,46 @@
 
 namespace edgesplat::accuracy {
 
-/// How far a measurement is.
+/// Progress of a measurement.
 struct Progress {
     double done = 0;          ///< share of the expected time, 0..1
-    double seconds_left = 0;  ///< by what such pieces took so far
+    double seconds_left = 0;  ///< estimate from the time of such pieces so far
     std::size_t pieces_done = 0, pieces = 0;
-    std::string what;  ///< what is being done, a few words
+    std::string what;  ///< the current work, a few words
 };
 
 /// Called between pieces and within long ones; returning false stops the measurement.
 using ProgressFunction = std::function<bool(const Progress&)>;
 
-/// Thrown where the progress function said no. What was finished is in the journal.
+/// Thrown if the progress function returns false. Finished pieces are in the journal.
 class Interrupted : public Error {
   public:
     using Error::Error;
 };
 
-/// Something to be measured.
+/// A piece of a measurement.
 struct Piece {
-    std::string kind;  ///< pieces of one kind take about as long as one another
+    std::string kind;  ///< pieces of one kind take about the same time
     std::string key;   ///< in the journal
-    std::string what;  ///< for those who wait
+    std::string what;  ///< shown as progress
     std::function<nlohmann::ordered_json()> run;
 };
 
-/// Does what the journal has not.
+/// Runs the pieces that are not in the journal.
 class WorkList {
   public:
     WorkList(Journal& journal, ProgressFunction progress) : journal_(journal), progress_(std::move(progress)) {}
 
-    /// `expected_seconds` counts until a piece of that kind has been timed.
+    /// `expected_seconds` is used until a piece of that kind has been timed.
     void add(Piece piece, double expected_seconds = 1);
 
     /// Runs all pieces in order. Throws Interrupted, or what a piece throws.
     void run();
 
-    /// From within a piece: whether to go on.
-    bool go_on(double share_of_piece = 0);
+    /// Called within a piece: whether to continue.
+    bool should_continue(double share_of_piece = 0);
 
-    /// The same, throwing Interrupted if not.
+    /// The same, but throws Interrupted instead of returning false.
     void check(double share_of_piece = 0);
 
     /// Throws Interrupted.
@@ -68,7 +68,7 @@ class WorkList {
     std::vector<Piece> pieces_;
     std::vector<std::pair<std::string, Kind>> kinds_;
     std::size_t current_ = 0;
-    double spent_ = 0;  ///< expected or true seconds of what is done
+    double spent_ = 0;  ///< seconds of the finished pieces
 };
 
 }  // namespace edgesplat::accuracy

@@ -15,8 +15,8 @@ namespace {
 using nlohmann::ordered_json;
 using Pointer = ordered_json::json_pointer;
 
-/// Of fewer the scatter is not known.
-constexpr double kFewestSamples = 3;
+/// Fewest samples from which the scatter can be judged.
+constexpr double kMinSamples = 3;
 
 enum class Kind { Sampled, Once, Count };
 
@@ -61,7 +61,7 @@ MetricChange change_of(const Metric& metric, const ordered_json& earlier, const 
     if (metric.kind == Kind::Count) change.beyond_scatter = *before != *after;
     if (metric.kind != Kind::Sampled) return change;
     const auto count = [&](const ordered_json& json) { return number_in(json, path + "/samples").value_or(0); };
-    if (std::min(count(earlier), count(later)) < kFewestSamples) return change;
+    if (std::min(count(earlier), count(later)) < kMinSamples) return change;
     const auto low = [&](const ordered_json& json) { return number_in(json, path + "/p10").value_or(-INFINITY); };
     const auto high = [&](const ordered_json& json) { return number_in(json, path + "/p90").value_or(INFINITY); };
     change.beyond_scatter = low(later) > high(earlier) || high(later) < low(earlier);
@@ -93,7 +93,7 @@ Comparison compare_runs(const ordered_json& earlier, const ordered_json& later) 
             continue;
         }
         if (before->at("checksum") != entry.at("checksum"))
-            comparison.notes.push_back(fmt::format("{}: the volume has other samples than before", name));
+            comparison.notes.push_back(fmt::format("{}: the volume's samples have changed", name));
         CaseChange change{name, {}};
         for (const Metric& metric : kMetrics)
             change.metrics.push_back(change_of(metric, *before, entry));
@@ -131,8 +131,8 @@ std::string comparison_table(const Comparison& comparison) {
         mean.push_back(counts[m] == 0 ? "- " : fmt::format("{:.2f} ", std::exp(logs[m] / counts[m])));
     std::string out = text_table(rows);
     out += fmt::format(
-        "* beyond the scatter of both runs: p10 to p90 of at least {} samples do not meet; counts: not the same\n",
-        kFewestSamples);
+        "* beyond the scatter of both runs: p10 to p90 of at least {} samples do not overlap; counts: they differ\n",
+        kMinSamples);
     for (const std::string& note : comparison.notes)
         out.append(note).append("\n");
     return out;
@@ -141,7 +141,7 @@ std::string comparison_table(const Comparison& comparison) {
 ordered_json read_run(const std::filesystem::path& path) {
     ordered_json run = ordered_json::parse(read_text_file(path, "a bench.json"), nullptr, false);
     if (run.is_discarded() || !run.is_object() || run.value("schema", "") != kSchema)
-        fail("{}: is no bench.json of this version; expected \"schema\": \"{}\"", path.string(), kSchema);
+        fail("{}: is not a bench.json of this version; expected \"schema\": \"{}\"", path.string(), kSchema);
     return run;
 }
 

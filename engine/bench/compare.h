@@ -1,4 +1,4 @@
-// Two runs of a suite, new over old.
+// Compares two runs of a suite: new / old.
 #pragma once
 
 #include <filesystem>
@@ -9,11 +9,11 @@
 
 namespace edgesplat::bench {
 
-/// One figure of one case.
+/// The change of one quantity of one case.
 struct MetricChange {
     std::string metric;
-    std::optional<double> ratio;  ///< new / old; nothing where either is not known or 0
-    bool beyond_scatter = false;  ///< p10..p90 of both runs, 3 samples at least, do not meet; of counts: they differ
+    std::optional<double> ratio;  ///< new / old; nullopt if either is unknown or 0
+    bool beyond_scatter = false;  ///< p10..p90 of both runs, of at least 3 samples, do not overlap; counts: they differ
 };
 
 struct CaseChange {
@@ -22,17 +22,17 @@ struct CaseChange {
 };
 
 struct Comparison {
-    std::vector<CaseChange> cases;   ///< those that both runs have
-    std::vector<std::string> notes;  ///< what else differs: device, volume, cases that one of them lacks
+    std::vector<CaseChange> cases;   ///< cases in both runs
+    std::vector<std::string> notes;  ///< other differences: device, volume, cases in only one run
 };
 
-/// Both as in bench.json.
+/// Both runs as in bench.json.
 Comparison compare_runs(const nlohmann::ordered_json& earlier, const nlohmann::ordered_json& later);
 
-/// A row a case, * for what is beyond the scatter, geometric means last.
+/// One row per case; * marks changes beyond the scatter; geometric means come last.
 std::string comparison_table(const Comparison& comparison);
 
-/// Reads bench.json. Throws Error where it is none.
+/// Reads bench.json. Throws Error if the file is not one.
 nlohmann::ordered_json read_run(const std::filesystem::path& path);
 
 }  // namespace edgesplat::bench

@@ -1,4 +1,4 @@
-// The suites that are part of the program: benchmarks/*.toml (cmake/EmbedToml.cmake).
+// The suites in the program: benchmarks/*.toml (cmake/EmbedToml.cmake).
 #pragma once
 
 #include <span>

@@ -15,7 +15,7 @@ std::uint64_t host_peak_bytes() {
     return 0;
 }
 
-bool forget_host_peak() {
+bool reset_host_peak() {
     std::ofstream out("/proc/self/clear_refs");
     out << "5" << std::flush;
     return out.good();

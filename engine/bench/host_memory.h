@@ -1,14 +1,15 @@
-// How much memory this process has taken.
+// Measures how much memory this process uses.
 #pragma once
 
 #include <cstdint>
 
 namespace edgesplat::bench {
 
-/// The most that was resident since the process or forget_host_peak began, bytes; 0 where the system does not say.
+/// Peak resident memory since the process began or reset_host_peak() was called, bytes; 0 if the system does not
+/// report it.
 std::uint64_t host_peak_bytes();
 
-/// Counts the peak anew. Whether the system could.
-bool forget_host_peak();
+/// Resets the peak. False: the system cannot do it.
+bool reset_host_peak();
 
 }  // namespace edgesplat::bench

@@ -21,7 +21,7 @@ double seconds_since(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// A case with nothing left open.
+/// A case with everything resolved that its pictures need.
 struct Shot {
     const SuiteCase* from = nullptr;
     VolumePointer volume;
@@ -38,8 +38,8 @@ Shot shot_of(const SuiteCase& entry, const VolumePointer& volume) {
               .size = entry.document.output.size};
     try {
         shot.scene = resolve_scene(entry.document, *volume);
-        if (const std::string beyond = beyond_ray_casting(shot.scene); !beyond.empty())
-            fail("{} cannot be cast by rays, which every case is compared with; expected a scene without", beyond);
+        if (const std::string obstacle = raycast_obstacle(shot.scene); !obstacle.empty())
+            fail("every case is compared with the ray caster, which does not support {}", obstacle);
         validate(shot.settings);
         if (entry.camera.empty()) {
             shot.camera = resolve_camera(entry.document, *volume, shot.scene);
@@ -55,7 +55,7 @@ Shot shot_of(const SuiteCase& entry, const VolumePointer& volume) {
     return shot;
 }
 
-/// Runs the suite and keeps what it has seen so far.
+/// Runs the suite and collects its results.
 class SuiteRun {
   public:
     SuiteRun(const Suite& suite, const BenchOptions& options, const accuracy::ProgressFunction& progress)
@@ -95,7 +95,7 @@ class SuiteRun {
             auto found = std::ranges::find(loaded, source, &std::pair<VolumeSource, VolumePointer>::first);
             if (found == loaded.end()) {
                 loaded.emplace_back(source, std::make_shared<const Volume>(load_source(source, folders)));
-                need_samples(*loaded.back().second, "bench");
+                require_samples(*loaded.back().second, "bench");
                 found = loaded.end() - 1;
             }
             shots_.push_back(shot_of(entry, found->second));
@@ -117,12 +117,12 @@ class SuiteRun {
         result.dims = shot.volume->geometry.dims;
         result.size = shot.size;
         peak_ = std::max(peak_, host_peak_bytes());
-        (void)forget_host_peak();
+        (void)reset_host_peak();
         const auto begin = Clock::now();
         Renderer renderer(options_.device);
         result.cold.startup_ms = 1e3 * seconds_since(begin);
         renderer.set_volume(shot.volume);
-        // Counting takes next to nothing of a first picture, and a picture more for it would take long.
+        // Counting adds almost nothing to a first picture, while another picture for it would take long.
         renderer.count_fragments(true);
         const auto first = Clock::now();
         result.stats = draw(renderer, shot);
@@ -138,7 +138,7 @@ class SuiteRun {
         double longest = 0;
         const int most = options_.rounds.value_or(1000);
         for (int round = 0; round < most; ++round) {
-            // Another round only where it will be over in time.
+            // Another round only if it will end in time.
             if (!options_.rounds && round > 0 && seconds_since(start_) + longest > budget_) break;
             const auto begin = Clock::now();
             if (round > 0) pieces_ += shots_.size();
@@ -199,7 +199,7 @@ class SuiteRun {
         result.ratio = clock == accuracy::RatioClock::Processor ? sampled(ratios) : result.wall_ratio;
         result.passes = sampled_passes(passes);
         std::vector<PassTime> cold;
-        // The case before may have left its splats: then only the cold start has a setup.
+        // The previous case may have left its splats. Then only the cold start has a setup.
         if (setups.empty()) {
             setups.push_back(result.stats.setup_milliseconds);
             for (const PassTime& pass : result.stats.passes)
@@ -211,7 +211,7 @@ class SuiteRun {
         result.setup_passes = sampled_passes(setup_passes);
     }
 
-    /// Throws Interrupted where it is to stop.
+    /// Reports progress. Throws Interrupted if the progress function returns false.
     void report(const std::string& what) const {
         const double spent = seconds_since(start_);
         const double by_pieces = pieces_ > 0 ? static_cast<double>(done_) / static_cast<double>(pieces_) : 0;

@@ -1,4 +1,4 @@
-// A suite measured on one device.
+// Measures a suite on one device.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ namespace edgesplat::bench {
 
 using NamedTimes = std::vector<std::pair<std::string, Sampled>>;
 
-/// A picture without anything warm: a new device, the volume in the host's memory.
+/// The first picture of a new device; the volume is in the host's memory.
 struct ColdStart {
-    double startup_ms = 0;        ///< instance, device and what every renderer holds
-    double first_picture_ms = 0;  ///< from there: upload, pipelines, setup and the frame
+    double startup_ms = 0;        ///< instance, device and the renderer's own resources
+    double first_picture_ms = 0;  ///< after that: upload, pipelines, setup and the frame
     std::uint64_t pipelines = 0;
-    double pipeline_ms = 0;  ///< making them; part of first_picture_ms
+    double pipeline_ms = 0;  ///< creation of the pipelines; part of first_picture_ms
 };
 
 struct CaseResult {
@@ -31,14 +31,14 @@ struct CaseResult {
     glm::ivec3 dims{0};
     glm::ivec2 size{0};
     Sampled frame, raycast;  ///< wall ms
-    Sampled processor;       ///< ms of all threads during a frame
+    Sampled processor;       ///< processor ms of all threads during a frame
     Sampled ratio;           ///< frame / ray caster, by BenchRun::clock
     Sampled wall_ratio;
     NamedTimes passes;  ///< GPU ms of a frame
-    Sampled setup;      ///< wall ms: estimation and collection
+    Sampled setup;      ///< estimation and collection, wall ms
     NamedTimes setup_passes;
     ColdStart cold;
-    RenderStats stats;  ///< of the cold start's picture, with its setup, counted
+    RenderStats stats;  ///< of the cold start's picture with its setup; fragments are counted
     std::uint64_t host_peak_bytes = 0;
 
     double voxels() const { return static_cast<double>(stats.voxels); }
@@ -70,16 +70,16 @@ struct BenchRun {
 
 struct BenchOptions {
     DeviceChoice device;
-    std::optional<int> rounds;     ///< exactly so many
+    std::optional<int> rounds;     ///< exact number of rounds
     std::optional<double> budget;  ///< seconds, instead of the suite's
     accuracy::VisitLimits visit{.milliseconds = 300, .triples = 24};
 };
 
-/// Each case from a cold start, then rounds over all cases, each in an order of its own, until the budget is spent; one
-/// at least. Throws accuracy::Interrupted where `progress` says no, and Error.
+/// Measures each case from a cold start, then rounds over all cases, each round in another order, until the budget is
+/// spent; at least one round. Throws accuracy::Interrupted if `progress` returns false, and Error.
 BenchRun run_suite(const Suite& suite, const BenchOptions& options, const accuracy::ProgressFunction& progress);
 
-/// What the cases of each series come to.
+/// Fits how the costs of each series grow.
 std::vector<Scaling> scaling_of(const std::vector<CaseResult>& cases);
 
 }  // namespace edgesplat::bench

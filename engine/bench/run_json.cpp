@@ -1,4 +1,4 @@
-// bench.json and bench.csv.
+// Writes bench.json and bench.csv.
 #include <algorithm>
 
 #include "engine/bench/run_output.h"
@@ -75,7 +75,7 @@ ordered_json case_json(const CaseResult& c) {
             {"host_peak_bytes", c.host_peak_bytes}};
 }
 
-/// What is not a text has neither comma nor quote in it.
+/// Quotes texts with a comma, a quote or a line break; other values contain none of these.
 std::string csv_cell(const ordered_json& value) {
     if (value.is_null()) return {};
     if (!value.is_string()) return value.dump();
@@ -87,7 +87,7 @@ std::string csv_cell(const ordered_json& value) {
     return out + "\"";
 }
 
-/// Every number of a case under the path of its keys; lists have a column each.
+/// Every value of a case under the path of its keys; each element of a list has its own column.
 void flatten(const ordered_json& value, const std::string& path,
              std::vector<std::pair<std::string, std::string>>& out) {
     if (!value.is_structured()) return out.emplace_back(path, csv_cell(value)), void();

@@ -1,4 +1,4 @@
-// A measured suite for people and programs: tables, bench.json, bench.csv, plots. The keys are in docs/benchmarks.md.
+// Output of a measured suite: tables, bench.json, bench.csv, plots. docs/benchmarks.md describes the keys.
 #pragma once
 
 #include <filesystem>
@@ -14,25 +14,25 @@ inline constexpr const char* kSchema = "edgesplat bench 1";
 
 nlohmann::ordered_json run_json(const BenchRun& run);
 
-/// One line a case; the first names the columns. Full precision, a point as decimal sign, empty where nothing is known.
+/// One line per case; the first line names the columns. Full precision, decimal point, empty cells for unknown values.
 std::string run_csv(const BenchRun& run);
 
-/// Times, passes, work, memory, fits and what was skipped.
+/// Tables of times, passes, work, memory and fits, and the skipped cases.
 std::string run_tables(const BenchRun& run);
 
-/// A plot as a file: its name and its text.
+/// A plot as a file: its name and its content.
 struct PlotFile {
     std::string name, text;
 };
 
-/// ratio.svg and, with scaling cases, frame_scaling.svg and setup_scaling.svg. Throws Error where gnuplot fails.
+/// ratio.svg and, with scaling cases, frame_scaling.svg and setup_scaling.svg. Throws Error if gnuplot fails.
 std::vector<PlotFile> run_plots(const BenchRun& run);
 
-/// Refuses, before anything is measured, a folder that could not be made or written. Throws Error.
+/// Checks before a measurement that the folder can be created and written. Throws Error.
 void check_run_folder(const std::filesystem::path& folder);
 
-/// Writes bench.json, bench.csv and the plots, all or none. Returns what is to be said of it: empty, or why there are
-/// no plots. Throws Error.
+/// Writes bench.json, bench.csv and the plots, all or none. Returns a message: empty, or why there are no plots. Throws
+/// Error.
 std::string write_run(const BenchRun& run, const std::filesystem::path& folder);
 
 }  // namespace edgesplat::bench

@@ -1,4 +1,4 @@
-// Plots of a measured suite, and its files.
+// Draws the plots of a measured suite, and writes its files.
 #include <algorithm>
 #include <array>
 
@@ -16,7 +16,7 @@ constexpr std::array<const char*, 6> kStyles{"pt 7 ps 0.9 lc rgb '#2060a8'",  "p
                                              "pt 9 ps 1.0 lc rgb '#3c8c3c'",  "pt 13 ps 1.0 lc rgb '#8040a0'",
                                              "pt 11 ps 1.0 lc rgb '#a08020'", "pt 6 ps 0.9 lc rgb '#505860'"};
 
-/// A row a case: the median, and a bar from p10 to p90.
+/// One row per case: the median, and a bar from p10 to p90.
 std::string ratio_plot(const BenchRun& run) {
     std::string rows;
     for (std::size_t i = 0; i < run.cases.size(); ++i) {

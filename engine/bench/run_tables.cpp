@@ -1,4 +1,4 @@
-// A measured suite on the terminal.
+// Prints a measured suite as tables.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@ namespace {
 
 using Rows = std::vector<std::vector<std::string>>;
 
-/// Three digits, more where the number has them before its point.
+/// At least three significant digits, with up to four decimals.
 std::string brief(double value) {
     if (!std::isfinite(value)) return "-";
     if (value == 0) return "0";
@@ -26,12 +26,12 @@ std::string mebibytes(std::uint64_t bytes) {
     return brief(static_cast<double>(bytes) / (1024.0 * 1024.0));
 }
 
-/// Nothing of fewer than three: they hardly scatter.
+/// p10 to p90; "-" for fewer than three samples.
 std::string scatter(const Sampled& s) {
     return s.count < 3 ? "-" : fmt::format("{}-{}", brief(s.low), brief(s.high));
 }
 
-/// All names in the order of their first appearance.
+/// All names, sorted.
 std::vector<std::string> names_in(const std::vector<CaseResult>& cases, NamedTimes CaseResult::*times) {
     std::vector<std::string> names;
     for (const CaseResult& entry : cases)
@@ -56,7 +56,7 @@ std::string time_table(const BenchRun& run) {
                         fmt::format("{}", c.frame.count), brief(c.setup.median),
                         brief(c.setup.median * 1e6 / c.voxels()), brief(c.cold.first_picture_ms),
                         brief(c.cold.startup_ms), fmt::format("{}", c.cold.pipelines), brief(c.cold.pipeline_ms)});
-    return fmt::format("Times; ratio: frame over ray caster by {} time, of the same frames in turns\n{}", run.clock,
+    return fmt::format("Times; ratio: frame over ray caster by {} time, measured in turns\n{}", run.clock,
                        text_table(rows));
 }
 
@@ -79,7 +79,7 @@ std::string pass_table(const BenchRun& run) {
             row.push_back(time == nullptr ? "-" : brief(time->median * 1e6 / c.voxels()));
         }
     }
-    return "Passes of a frame, GPU ms: median and p95; stages of the setup\n" + text_table(rows);
+    return "Passes of a frame, GPU ms: median and p95; stages of the setup, ns/voxel: median\n" + text_table(rows);
 }
 
 std::string work_table(const BenchRun& run) {

@@ -1,4 +1,4 @@
-// What repeated measurements come to.
+// Statistics of repeated measurements.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace edgesplat::bench {
 
-/// Of repeated measurements of one thing. NaN of none.
+/// Statistics of repeated measurements of one quantity. NaN without values.
 struct Sampled {
     double median = 0, p95 = 0;
     double low = 0, high = 0;  ///< p10 and p90
@@ -24,8 +24,8 @@ struct PowerFit {
     std::size_t points = 0;
 };
 
-/// Least squares in logarithms. Points with a coordinate that is not above 0 are left out; nothing where fewer than two
-/// different x are left.
+/// Least-squares fit of the logarithms. Points with a coordinate <= 0 are left out; nullopt if fewer than two different
+/// x remain.
 std::optional<PowerFit> fit_power(std::span<const std::pair<double, double>> points);
 
 }  // namespace edgesplat::bench

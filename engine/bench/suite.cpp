@@ -32,7 +32,7 @@ Suite read_suite(const std::string& name_or_path) {
         names.emplace_back(suite.name);
     }
     const std::string nearest = nearest_name(name_or_path, names);
-    fail("no suite is called '{}'; expected {} or a file (.toml){}", name_or_path, fmt::join(names, ", "),
+    fail("unknown suite '{}'; expected {} or a file (.toml){}", name_or_path, fmt::join(names, ", "),
          nearest.empty() ? "" : "; did you mean " + nearest + "?");
 }
 
@@ -49,7 +49,7 @@ void keep_cases(Suite& suite, const std::string& glob) {
     std::erase_if(suite.cases, unwanted);
     std::erase_if(suite.skipped, unwanted);
     if (suite.cases.empty() && suite.skipped.empty())
-        fail("no case is like '{}'; there are:\n{}", glob, fmt::join(names, "\n"));
+        fail("no case matches '{}'; the cases are:\n{}", glob, fmt::join(names, "\n"));
 }
 
 }  // namespace edgesplat::bench

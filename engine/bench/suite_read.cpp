@@ -1,4 +1,4 @@
-// From TOML to a Suite: a case is a scene's table, made once for each of its modes and sizes.
+// Reads a Suite from TOML: a scene's table becomes one case for each of its modes and sizes.
 #include <toml++/toml.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 4> kCameras{"far", "near", "grazing", "inside"};
-constexpr std::int64_t kMostPixels = 16384;
+constexpr std::int64_t kMaxPixels = 16384;
 
 struct Mode {
     std::string name = "default";
@@ -72,7 +72,7 @@ class SuiteReader {
         std::vector<std::string> lines;
         for (const SceneTableProblem& problem : problems_) {
             std::string line = fmt::format("{}:{}: {}", suite_.file, problem.line, problem.text);
-            // A scene is read once for each mode, and says the same each time.
+            // A scene is read once for each mode, with the same problems each time.
             if (std::find(lines.begin(), lines.end(), line) == lines.end()) lines.push_back(std::move(line));
         }
         throw SceneFileError(std::move(lines));
@@ -101,7 +101,7 @@ class SuiteReader {
         }
     }
 
-    /// Whether there is a text.
+    /// Reads a text; false if there is none.
     bool read_text(const toml::table& table, const std::string& path, std::string_view key, std::string& text) {
         const toml::node* node = table.get(key);
         if (node == nullptr) return false;
@@ -148,7 +148,7 @@ class SuiteReader {
         const bool known =
             std::any_of(modes_.begin(), modes_.end(), [&](const Mode& m) { return m.name == mode.name; });
         if (known)
-            return add(*table.get("name"), inside(path, "name"), "\"{}\": a mode before has this name", mode.name);
+            return add(*table.get("name"), inside(path, "name"), "\"{}\": an earlier mode has this name", mode.name);
         SceneDocument unused;
         if (mode.quality != nullptr) add_scene_problems(apply(mode, unused), path);
         modes_.push_back(std::move(mode));
@@ -172,14 +172,14 @@ class SuiteReader {
             for (int axis = 0; good && axis < 2; ++axis) {
                 const toml::node& item = (*pair)[static_cast<std::size_t>(axis)];
                 const auto pixels = item.is_integer() ? item.value<std::int64_t>() : std::nullopt;
-                good = pixels && *pixels >= 1 && *pixels <= kMostPixels;
+                good = pixels && *pixels >= 1 && *pixels <= kMaxPixels;
                 if (good) size[axis] = static_cast<int>(*pixels);
             }
             sizes.push_back(size);
         }
         if (good) return sizes;
         add(*node, inside(path, "sizes"), "{}: expected a list of [width, height], each 1 to {} pixels", text_of(*node),
-            kMostPixels);
+            kMaxPixels);
         return {};
     }
 
@@ -214,12 +214,13 @@ class SuiteReader {
         if (!table.contains("name")) add(table, inside(path, "name"), "is missing; expected a name");
         const bool named = read_name(table, path, "name", made.group);
         if (named && !names_.insert(made.group).second)
-            add(*table.get("name"), inside(path, "name"), "\"{}\": a case before has this name", made.group);
+            add(*table.get("name"), inside(path, "name"), "\"{}\": an earlier case has this name", made.group);
         read_name(table, path, "series", made.series);
         if (read_text(table, path, "camera", made.camera) &&
             std::find(kCameras.begin(), kCameras.end(), made.camera) == kCameras.end())
-            add(*table.get("camera"), inside(path, "camera"), "\"{}\": expected one of {}; others are in scene.camera",
-                made.camera, fmt::join(kCameras, ", "));
+            add(*table.get("camera"), inside(path, "camera"),
+                "\"{}\": expected one of {}; use scene.camera for other cameras", made.camera,
+                fmt::join(kCameras, ", "));
         const std::vector<glm::ivec2> sizes = sizes_of(table, path);
         const std::vector<Mode> modes = modes_of(table, path);
         const toml::node* scene = table.get("scene");
@@ -228,12 +229,12 @@ class SuiteReader {
                        "expected a table with the keys of a scene file: [cases.scene]");
         for (const char* key : {"output", "movie"})
             if (const toml::node* node = scene->as_table()->get(key))
-                add(*node, fmt::format("{}.scene.{}", path, key), "is not for suites; sizes are in {}.sizes", path);
+                add(*node, fmt::format("{}.scene.{}", path, key), "is not for suites; use {}.sizes for sizes", path);
         if (made.camera.empty() || !scene->as_table()->contains("camera"))
             add_case(made, *scene->as_table(), path, sizes, modes);
         else
             add(*table.get("camera"), inside(path, "camera"),
-                "\"{}\": there is a scene.camera, too; expected one of them", made.camera);
+                "\"{}\": scene.camera is given, too; expected only one of them", made.camera);
     }
 
     void add_case(const SuiteCase& like, const toml::table& scene, const std::string& path,
@@ -242,7 +243,7 @@ class SuiteReader {
         SceneDocument document;
         const auto check = [&](const SceneDocument& read) {
             std::vector<DocumentProblem> problems = problems_of(read, folders_);
-            // A file that is not here is no mistake of the suite.
+            // A missing file is not an error of the suite.
             if (read.volume.path.empty() || is_builtin(read.volume.path)) return problems;
             std::erase_if(problems, [&](const DocumentProblem& problem) {
                 if (problem.path != "volume.path") return false;

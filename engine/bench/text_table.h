@@ -1,4 +1,4 @@
-// Columns of text for a terminal.
+// Formats columns of text for a terminal.
 #pragma once
 
 #include <string>
@@ -6,7 +6,7 @@
 
 namespace edgesplat::bench {
 
-/// The first row is the head; the first column is flush left, the others flush right.
+/// The first row is the head. The first column is left-aligned, the others are right-aligned.
 std::string text_table(const std::vector<std::vector<std::string>>& rows);
 
 }  // namespace edgesplat::bench

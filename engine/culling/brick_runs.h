@@ -1,4 +1,4 @@
-// How 2_collect_splats divides voxels: into bricks, those into slices, an invocation's run each.
+// Divides voxels for 2_collect_splats: into bricks, and these into slices. A slice of a brick is one invocation's run.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace edgesplat {
 
-/// The runs of a box of voxels: those of bricks that lie side by side are numbered first x, then y, then by slice.
+/// The runs of a box of voxels, numbered by brick along x, then along y, then by slice.
 class BrickRuns {
   public:
     explicit BrickRuns(const glm::ivec3& size)
@@ -20,8 +20,8 @@ class BrickRuns {
 
     std::uint64_t count() const { return in_slice_ * static_cast<std::uint64_t>(size_.z); }
 
-    /// Calls body(low, high, runs, stride) for every brick in the order of the list: a box of voxels, the
-    /// number of its first run and how far from each other those of its slices are.
+    /// Calls body(box, first_run, stride) for every brick in the order of the splat list: its box of voxels, the number
+    /// of its first run, and the difference between the run numbers of adjacent slices.
     template <class Body>
     void each_brick(const Body& body) const {
         for (int z = 0; z < bricks_.z; ++z)

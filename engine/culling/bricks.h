@@ -1,4 +1,4 @@
-// Which parts of the list of splats a picture may show: bricks of the volume by their boxes, and boxes of such boxes.
+// Finds the parts of the splat list that a picture may show, in a hierarchy of bricks' bounding boxes.
 #pragma once
 
 #include <span>
@@ -9,9 +9,9 @@
 
 namespace edgesplat {
 
-/// Splats of a brick: they follow one another in the list.
+/// Splats of a brick, consecutive in the list.
 struct SplatBrick {
-    VoxelBox box;  ///< holds their voxels
+    VoxelBox box;  ///< bounding box of their voxels
     std::uint32_t first = 0, count = 0;
 };
 
@@ -21,30 +21,30 @@ struct ListPart {
     bool operator==(const ListPart&) const = default;
 };
 
-/// The bricks of a list, without those that hold nothing.
+/// The bricks of a list, without empty ones.
 class SplatBricks {
   public:
     void clear() { levels_.clear(); }
-    /// In the order of the list, which they fill from its beginning.
+    /// `bricks` in the order of the list, covering it from its beginning.
     void assign(std::vector<SplatBrick> bricks);
     std::size_t count() const { return levels_.empty() ? 0 : levels_.front().size(); }
     std::span<const SplatBrick> bricks() const;
 
-    /// Numbers of the bricks that show, no kernel reaching further than `reach` voxels; ascending.
+    /// Numbers of the bricks in view, ascending. `reach`: farthest reach of any kernel, voxels.
     std::vector<std::uint32_t> in_view(const ViewVolume& view, double reach) const;
 
-    /// Parts of the list that hold the splats of these bricks, which ascend. Gaps between them are at least `least_gap`
-    /// splats long.
+    /// Parts of the list with the splats of these bricks (ascending numbers). Gaps of less than `least_gap` splats are
+    /// included.
     std::vector<ListPart> parts_of(std::span<const std::uint32_t> numbers, std::uint32_t least_gap) const;
 
   private:
     void add_in_view(const ViewVolume& view, double reach, std::size_t level, std::size_t node,
                      std::vector<std::uint32_t>& numbers) const;
 
-    std::vector<std::vector<SplatBrick>> levels_;  ///< bricks, then what holds several of the level before
+    std::vector<std::vector<SplatBrick>> levels_;  ///< bricks, then nodes that each join 8 of the level before
 };
 
-/// Parts cut into batches of at most shader::SPLAT_BATCH splats: the first one's number and how many.
+/// Parts cut into batches (first splat, count) of at most shader::SPLAT_BATCH splats.
 std::vector<glm::uvec2> batches_of(std::span<const ListPart> parts);
 
 }  // namespace edgesplat

@@ -8,7 +8,7 @@
 namespace edgesplat {
 namespace {
 
-/// The values of a plane at a box's middle, and how far from it those of its corners go.
+/// A plane's value at a widened box's middle, and the largest difference to it at a corner.
 glm::dvec2 over_box(const glm::dvec4& plane, const glm::ivec3& low, const glm::ivec3& size, double reach) {
     const glm::dvec3 half = 0.5 * glm::dvec3(size - 1) + reach;
     const glm::dvec3 middle = glm::dvec3(low) + 0.5 * glm::dvec3(size - 1);
@@ -20,7 +20,7 @@ glm::dvec2 over_box(const glm::dvec4& plane, const glm::ivec3& low, const glm::i
 ViewVolume::ViewVolume(const VolumeGeometry& geometry, const Camera& camera, const glm::ivec2& size, bool antialias) {
     const CameraFrame view = camera_frame(camera);
     const double tan_half_x = view.tan_half_y * size.x / size.y;
-    // The pixel's kernel is as wide in pixels as the voxel's in voxels; the picture's sides are passed obliquely.
+    // The pixel's kernel has the radius kKernelRadius in pixels; rays cross the picture's sides obliquely.
     const double slope = std::max(tan_half_x, view.tan_half_y);
     const double pixels = 1 + (antialias ? kKernelRadius * std::sqrt(1 + slope * slope) : 0);
     const double wide = 1.001 + 2.0 * pixels / std::min(size.x, size.y);

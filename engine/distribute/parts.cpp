@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMostSheets = 2e9;
 
-/// Depths between which the voxels of a box lie, mm along the view.
+/// Smallest and largest depth of a box of voxels, mm along the view.
 glm::dvec2 depths_of(const VolumeGeometry& geometry, const CameraFrame& view, const glm::dvec3& low,
                      const glm::dvec3& high) {
     glm::dvec2 depths(std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest());
@@ -34,7 +34,7 @@ glm::ivec2 sheets_of_block(const VolumeGeometry& geometry, const Camera& camera,
                            const CollectionBlock& block) {
     const glm::dvec3 low(block.core_low), high(block.core_low + block.core_size - 1);
     const glm::dvec2 depths = depths_of(geometry, camera_frame(camera), low - reach, high + reach);
-    // One more on either side, for what the device rounds.
+    // One more on either side for the device's rounding.
     return {std::max(sheet_at(depths.x, thickness) - 1, 0), sheet_at(depths.y, thickness) + 2};
 }
 
@@ -61,7 +61,7 @@ glm::ivec2 slab_of_part(const VolumeGeometry& geometry, const Camera& camera, do
         return sum;
     };
     const double all = voxels_before(farthest);
-    // The first sheet before which the parts in front have their share.
+    // The first sheet behind the share of the parts before `index`.
     const auto begin = [&](int index) {
         int low = 0, high = sheet_at(farthest, thickness) + 1;
         while (low < high) {
@@ -87,7 +87,7 @@ glm::uvec2 Division::sheets(std::span<const std::uint32_t> pairs, int base) cons
 glm::uvec2 sheets_of_part(std::span<const std::uint32_t> pairs, const SheetPart& part) {
     const auto sheets = static_cast<std::uint32_t>(pairs.size());
     const std::uint64_t all = std::accumulate(pairs.begin(), pairs.end(), std::uint64_t{0});
-    // A part begins with the first sheet whose middle lies beyond the part's share of all pairs.
+    // A part begins with the first sheet whose middle pair lies behind the share of the parts in front.
     const auto begin = [&](int index) {
         if (index == 0) return 0U;
         std::uint64_t before = 0;

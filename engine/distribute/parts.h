@@ -1,5 +1,5 @@
-// A picture whose sheets are drawn in parts: which sheets are whose, and how a part that has something in front of it
-// closes its pixels where the whole picture would.
+// Divides a picture's sheets between parts, and corrects the pixels of a part that saturate only together with the
+// parts in front.
 #pragma once
 
 #include <cstdint>
@@ -14,46 +14,47 @@
 
 namespace edgesplat {
 
-/// The part's sheets, half open: consecutive, with about as many of all `pairs` (per sheet) as any other part's.
-/// Together the parts are all sheets; where there are fewer sheets than parts, some have none.
+/// The part's sheets, half open and consecutive. All parts have about the same number of pairs; `pairs`: per sheet.
+/// Together the parts cover all sheets. With fewer sheets than parts some parts have none.
 glm::uvec2 sheets_of_part(std::span<const std::uint32_t> pairs, const SheetPart& part);
 
-/// Sheets numbered from the eye on, half open, in which kernels of a block's voxels may lie. `thickness`: of a sheet,
-/// mm; `reach`: of the kernels, voxels.
+/// Sheets that kernels of a block's voxels may reach, numbered from the eye on, half open. `thickness`: of a sheet, mm.
+/// `reach`: of the kernels, voxels.
 glm::ivec2 sheets_of_block(const VolumeGeometry& geometry, const Camera& camera, double thickness, double reach,
                            const CollectionBlock& block);
 
-/// The part's sheets where splats are collected block by block, so that a part needs no block but those that reach into
-/// its sheets: numbered from the eye on, half open, with about as many of the blocks' voxels as any other part's.
-/// Together the parts are all sheets there can be.
+/// The part's sheets if splats are collected block by block: numbered from the eye on, half open. All parts have about
+/// the same number of the blocks' voxels, and a part needs only blocks that reach its sheets. Together the parts cover
+/// all possible sheets.
 glm::ivec2 slab_of_part(const VolumeGeometry& geometry, const Camera& camera, double thickness,
                         std::span<const CollectionBlock> blocks, const SheetPart& part);
 
 /// Which sheets of a picture a renderer draws.
 struct Division {
     SheetPart part;
-    std::optional<glm::ivec2> slab;  ///< numbered from the eye on; absent: by pairs
-    bool goes_on = false;            ///< behind what is drawn already
+    std::optional<glm::ivec2> slab;  ///< sheets numbered from the eye on; nullopt: divided by pairs
+    bool continues = false;          ///< continues behind sheets that are drawn already
 
-    /// As a picture counts its sheets: from `base` on, with `pairs` in each.
+    /// The sheets, numbered from the picture's first sheet `base` on. `pairs`: per sheet.
     glm::uvec2 sheets(std::span<const std::uint32_t> pairs, int base) const;
 };
 
-/// What is in front of a part decides over its pixels: behind closed ones nothing is added, and those that close within
-/// the part must be drawn anew, so that they take nothing after the sheet that closes them.
+/// Pixels of a part that must be drawn again because of the parts in front. Behind saturated pixels nothing is added.
+/// Pixels that saturate within the part are drawn again with the opacity in front, so that they stop at the right
+/// sheet.
 class PixelsBehind {
   public:
-    /// `in_front`: what the parts in front let through. `part`: this part as it was drawn with nothing in front; where
-    /// the parts in front are closed it becomes empty. `pixels` is what it is to be drawn over again: closed but for
-    /// those that must be.
+    /// `in_front`: transmittance of the parts in front. `part`: this part as drawn without them; pixels that they
+    /// saturate are cleared. `pixels`: gets the start of the second drawing: saturated, except for the pixels to draw
+    /// again, which get the opacity in front.
     PixelsBehind(std::span<const float> in_front, float saturation, std::span<glm::vec4> part,
                  std::span<glm::vec4> pixels);
 
     bool any() const { return !again_.empty(); }
-    /// Of each tile, how many of the pixels that are `drawn` are closed; row by row.
+    /// Number of saturated pixels of each tile, row by row, out of the `drawn` ones.
     std::vector<std::uint32_t> closed_pixels(const glm::ivec2& size, const glm::ivec2& tiles,
                                              std::span<const std::uint32_t> drawn) const;
-    /// Takes what was drawn again over into the part, as if nothing were in front.
+    /// Copies the pixels drawn again into the part, with the opacity in front removed.
     void take(std::span<const float> in_front, std::span<const glm::vec4> pixels, std::span<glm::vec4> part) const;
 
   private:

@@ -1,4 +1,4 @@
-// A file without a name: nothing of it is left, whatever becomes of this process.
+// An anonymous file in memory: nothing of it remains when the process ends.
 #pragma once
 
 #include <sys/mman.h>
@@ -11,7 +11,7 @@
 
 namespace edgesplat {
 
-/// Throws std::system_error.
+/// Every member throws std::system_error.
 class MemoryFile {
   public:
     MemoryFile() : descriptor_(::memfd_create("edgesplat", MFD_CLOEXEC)) { check(descriptor_ >= 0); }
@@ -23,7 +23,7 @@ class MemoryFile {
     void fill(const std::string& text) const {
         check(::pwrite(descriptor_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()));
     }
-    /// All that was written, by whomever.
+    /// Everything that was written, also by other processes.
     std::string text() const {
         std::string all;
         std::array<char, 65536> part{};

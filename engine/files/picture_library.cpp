@@ -9,11 +9,10 @@ namespace {
 constexpr const char* kModule = "edgesplat_pictures.so";
 
 const PictureLibrary& load() {
-    // Programs say where it lies in their run path. It is never unloaded: some of its libraries do not survive that.
+    // The path is in the programs' run path. The module is never unloaded: some of its libraries crash on unloading.
     void* module = dlopen(kModule, RTLD_LAZY | RTLD_LOCAL);
     if (module == nullptr)
-        fail("pictures: {} cannot be loaded: {}; it belongs into lib/edgesplat of the installation", kModule,
-             dlerror());
+        fail("pictures: {} cannot be loaded: {}; it belongs in lib/edgesplat of the installation", kModule, dlerror());
     using Entry = const PictureLibrary*();
     auto* entry = reinterpret_cast<Entry*>(dlsym(module, kPictureLibraryEntry));
     if (entry == nullptr) fail("pictures: {} is of another version: {}", kModule, dlerror());

@@ -1,5 +1,5 @@
-// OpenImageIO, behind a module: it brings some 250 shared libraries, a quarter of a second of every program's start, so
-// it is loaded by the first picture that needs it.
+// Interface to OpenImageIO, which is in a separate module. It depends on about 250 shared libraries, which take a
+// quarter of a second to load. The module is therefore loaded only when a picture needs it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -13,34 +13,34 @@
 
 namespace edgesplat {
 
-/// What a page of a file holds.
+/// Description of a page of an image file.
 struct PicturePage {
     int width = 0, height = 0, depth = 0, channels = 0;
     int alpha_channel = -1;                  ///< -1: none
-    std::optional<detail::SampleType> type;  ///< half floats as Float32; none: of a type that cannot be read
-    std::string type_name;                   ///< in OpenImageIO's words
-    int bits = 8;                            ///< of a sample, as stored
+    std::optional<detail::SampleType> type;  ///< half floats are Float32; none: unsupported type
+    std::string type_name;                   ///< OpenImageIO's name of the type
+    int bits = 8;                            ///< bits per stored sample
     std::vector<std::string> channel_names;
     std::vector<std::pair<std::string, std::string>> texts;
 };
 
-/// An open file; alpha as stored, colours not multiplied by it.
+/// An open file. Alpha is as stored; colours are not multiplied by it.
 class PictureReader {
   public:
     PictureReader() = default;
     PictureReader(const PictureReader&) = delete;
     PictureReader& operator=(const PictureReader&) = delete;
     virtual ~PictureReader() = default;
-    /// Makes a page the current one, from 0. Whether there is one.
+    /// Selects a page, from 0. Returns whether it exists.
     virtual bool seek(int page) = 0;
     virtual PicturePage page() const = 0;
-    /// All samples of a page, (height, width, channels). Whether they could be read.
+    /// Reads all samples of a page, (height, width, channels). Returns whether this succeeded.
     virtual bool read(int page, detail::SampleType type, void* samples) = 0;
-    /// What went wrong since the last call; empty: nothing.
+    /// Errors since the last call; empty: none.
     virtual std::string take_error() = 0;
 };
 
-/// What is to be written: float channels in linear light.
+/// Description of a picture to write: float channels in linear light.
 struct PictureSpec {
     int width = 0, height = 0;
     std::vector<std::string> channel_names;
@@ -48,7 +48,7 @@ struct PictureSpec {
     std::vector<std::pair<std::string, std::string>> texts;
 };
 
-/// A text, drawn: how much of each pixel it covers, 0..1, (height, width).
+/// A rasterised text: coverage of each pixel, 0..1, (height, width).
 struct TextMask {
     int width = 0, height = 0;
     std::vector<float> coverage;
@@ -60,17 +60,17 @@ class PictureLibrary {
     PictureLibrary(const PictureLibrary&) = delete;
     PictureLibrary& operator=(const PictureLibrary&) = delete;
     virtual ~PictureLibrary() = default;
-    /// Null: it cannot be read, and `reason` says why.
+    /// Opens a file. Null if it cannot be read; `reason` then holds the cause.
     virtual std::unique_ptr<PictureReader> open(const std::string& path, std::string& reason) const = 0;
-    /// A zip-compressed EXR file's bytes, of (height, width, channels) pixels. Throws Error.
+    /// Encodes (height, width, channels) pixels as a zip-compressed EXR file. Throws Error.
     virtual std::string encode_exr(const PictureSpec& spec, const float* pixels) const = 0;
-    /// Width and height, pixels; none where the font cannot be found.
+    /// Width and height of the text, pixels; none if the font is missing.
     virtual std::optional<glm::ivec2> text_size(const std::string& text, int height, const char* font) const = 0;
-    /// With a margin of a pixel; none where the font cannot be found. Throws Error.
+    /// Rasterises the text with a margin of one pixel; none if the font is missing. Throws Error.
     virtual std::optional<TextMask> text(const std::string& text, int height, const char* font) const = 0;
 };
 
-/// Loads the module when first called. Throws Error where it cannot be loaded.
+/// The module, loaded at the first call. Throws Error if it cannot be loaded.
 const PictureLibrary& picture_library();
 
 /// Name of the function that the module exports: `const PictureLibrary* edgesplat_picture_library()`.

@@ -1,4 +1,4 @@
-// The module that brings OpenImageIO (engine/files/picture_library_internal.h).
+// The OpenImageIO module (engine/files/picture_library_internal.h).
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
@@ -18,7 +18,7 @@ struct TypePair {
     SampleType ours;
     OIIO::TypeDesc::BASETYPE theirs;
 };
-/// The first of a kind is what is asked for.
+/// Types in order of preference: the first match of a SampleType is requested.
 constexpr TypePair kTypes[] = {
     {SampleType::Int8, OIIO::TypeDesc::INT8},     {SampleType::UInt8, OIIO::TypeDesc::UINT8},
     {SampleType::Int16, OIIO::TypeDesc::INT16},   {SampleType::UInt16, OIIO::TypeDesc::UINT16},

@@ -1,4 +1,4 @@
-// Types that files store samples in.
+// The sample types of files.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@ namespace edgesplat::detail {
 enum class SampleType { Int8, UInt8, Int16, UInt16, Int32, UInt32, Int64, UInt64, Float32, Float64 };
 
 std::string_view name_of(SampleType type);
-/// Bytes.
+/// Bytes per sample.
 std::size_t size_of(SampleType type);
 
 }  // namespace edgesplat::detail

@@ -10,8 +10,8 @@
 namespace edgesplat {
 namespace {
 
-/// Every effect that the request calls for, with why.
-std::vector<std::pair<const Effect*, std::string>> called_for(const FrameRequest& request) {
+/// Every effect that the request enables, with the reason.
+std::vector<std::pair<const Effect*, std::string>> active_effects(const FrameRequest& request) {
     std::vector<std::pair<const Effect*, std::string>> found;
     for (const Effect& effect : effect_table()) {
         std::string reason = effect.reason(request);
@@ -20,7 +20,7 @@ std::vector<std::pair<const Effect*, std::string>> called_for(const FrameRequest
     return found;
 }
 
-/// The reasons of those effects of which `list` holds `name`.
+/// The reasons of the effects whose `list` contains `name`.
 std::string reason_for(const std::vector<std::pair<const Effect*, std::string>>& effects, std::string_view name,
                        std::vector<std::string_view> Effect::*list) {
     std::string text;
@@ -76,7 +76,7 @@ const char* name_of(Held held) {
     return "always";
 }
 
-/// Of times and bytes: what is held always and the most of the rest.
+/// Bytes of the rows of time "always" plus the largest sum over any other time.
 template <typename Rows, typename Time, typename Bytes>
 std::uint64_t most_at_once(const Rows& rows, const Time& time, const Bytes& bytes) {
     std::map<std::string, std::uint64_t> sums;
@@ -93,14 +93,14 @@ std::uint64_t sum_of(const std::vector<PlannedResource>& resources) {
         [](const PlannedResource& r) { return r.bytes; });
 }
 
-/// Whether some pass of those that an effect has runs, or it has none of its own.
+/// Whether the effect has no passes of its own or one of them is in `passes`.
 bool runs(const Effect& effect, const std::vector<PassDescription>& passes) {
     return effect.passes.empty() || std::ranges::any_of(effect.passes, [&](std::string_view name) {
                return std::ranges::find(passes, name, &PassDescription::name) != passes.end();
            });
 }
 
-/// What every effect that is off would add.
+/// Lists the effects that are off, with what each would add.
 std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device,
                               const std::vector<std::pair<const Effect*, std::string>>& on) {
     std::vector<LeftOut> rows;
@@ -112,7 +112,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
             effect.turn_on(with);
             validate(with.scene);
             if (effect.reason(with).empty()) {
-                row.obstacle = "it has no say beside what is called for";
+                row.obstacle = "it has no effect with the other settings of this picture";
             } else {
                 const double reach = kernel_reach(drawn_settings(with));
                 const CollectionPlan collection = planned_collection(with);
@@ -120,7 +120,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
                     collection == forecast.collection ? forecast.splats : count_splats(*with.volume, collection);
                 const FrameForecast other = forecast_frame(with, collection, splats, reach, *forecast.profile);
                 if (!runs(effect, described_passes(with, other, device))) {
-                    row.obstacle = "device profile " + std::string(forecast.profile->name) + " does without";
+                    row.obstacle = "device profile " + std::string(forecast.profile->name) + " does not use it";
                     rows.push_back(std::move(row));
                     continue;
                 }
@@ -138,7 +138,7 @@ std::vector<LeftOut> left_out(const FrameRequest& request, const FrameForecast& 
 }
 
 FrameDescription describe(const FrameRequest& request, const FrameForecast& forecast, const DeviceInfo* device) {
-    auto effects = called_for(request);
+    auto effects = active_effects(request);
     const glm::ivec3 dims = request.volume->geometry.dims;
     const FramePlan& plan = forecast.draws.front().plan;
     FrameDescription out;
@@ -155,7 +155,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     out.sheets = plan.params.sheet_count;
     out.sheet_groups = plan.params.group_count;
     out.passes = described_passes(request, forecast, device);
-    // What is called for, and done without on this device.
+    // Remove effects that the request enables but this device does not use.
     std::erase_if(effects, [&](const auto& entry) { return !runs(*entry.first, out.passes); });
     for (PassDescription& pass : out.passes)
         pass.reason = reason_for(effects, pass.name, &Effect::passes);
@@ -165,7 +165,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
             return r.name == resource.text.name && r.held == name_of(resource.held);
         });
         if (same != out.resources.end()) {
-            same->bytes += resource.bytes;  // placeholders
+            same->bytes += resource.bytes;  // placeholders share a name
             continue;
         }
         ResourceDescription row{resource.text.name,
@@ -186,7 +186,7 @@ FrameDescription describe(const FrameRequest& request, const FrameForecast& fore
     for (const auto& [effect, reason] : effects) {
         for (const RecordField& field : effect->record)
             out.record.push_back({std::string(field.name), fmt::format("{}: {}", effect->name, reason), field.bytes});
-        out.called_for.emplace_back(std::string(effect->name), reason);
+        out.active_effects.emplace_back(std::string(effect->name), reason);
     }
     out.left_out = left_out(request, forecast, device, effects);
     return out;
@@ -230,7 +230,7 @@ FrameDescription describe_frame(const FrameRequest& request, Renderer& renderer,
         resource.device_bytes = required.at({resource.name, resource.held});
     if (measured == nullptr) return out;
     for (const MemoryUse& use : measured->memory) {
-        // Of a name that is held at several times the largest was counted.
+        // If a name occurs with several lifetimes, the measured peak belongs to the largest.
         ResourceDescription* counted = nullptr;
         for (ResourceDescription& r : out.resources)
             if (r.name == use.name && (counted == nullptr || *r.device_bytes > *counted->device_bytes)) counted = &r;

@@ -19,18 +19,18 @@
 namespace edgesplat {
 namespace {
 
-/// Nanoseconds of a pass per thing that it goes over: fits to frames of the builtin scenes.
+/// Nanoseconds of a pass per voxel, splat, entry, sheet, fragment or pixel that it processes.
 struct Rates {
     double bury_voxel, normal_voxel, edge_voxel, spline_voxel, collect_voxel, collect_splat, occlude_splat;
     double select_splat, sort_entry, sort_sheet, draw_entry, fragment, warped_fragment, composite_pixel, resolve_pixel;
 };
 
-// Round numbers of the order that two processor cores take; not fitted to measurements.
+// Round numbers of the right order of magnitude for two processor cores; not fitted to measurements.
 constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4};
-// No GPU was measured: how much faster one may be.
+// Assumed speed of a GPU relative to two processor cores; not measured.
 constexpr double kGpuFactor = 200;
 
-/// Without a device, of one that is the processor.
+/// Whether times are for the processor; true without a device.
 bool on_processor(const DeviceInfo* device) {
     return device == nullptr || device->is_processor;
 }
@@ -45,7 +45,7 @@ constexpr std::array kConstants{
 #undef EDGESPLAT_SPECIALIZATION
 };
 constexpr std::string_view kPrefix = "SPEC_";
-// Their ids are their places: no name is missing, none stands twice.
+// Each id is its index: no name is missing or duplicate.
 static_assert(std::ranges::all_of(kConstants, [](const Constant& c) { return &kConstants.at(c.id) == &c; }));
 
 std::string variant(const char* shader, const gpu::Specialization& constants) {
@@ -55,7 +55,7 @@ std::string variant(const char* shader, const gpu::Specialization& constants) {
     return text;
 }
 
-/// Fragments that a draw shades: every splat's square on the screen, clipped by the picture.
+/// Estimated number of fragments that a draw shades: the splats' squares on the screen, each at most the picture.
 double fragments(const FrameRequest& request, const FramePlan& plan) {
     const auto& geometry = request.volume->geometry;
     const CameraFrame view = camera_frame(request.camera);
@@ -65,7 +65,7 @@ double fragments(const FrameRequest& request, const FramePlan& plan) {
     const double pixels_per_mm = request.size.y / (2 * view.tan_half_y * depth);
     const double across = 3.2 * geometry.mean_spacing() * pixels_per_mm + 1;
     const double pixels = static_cast<double>(request.size.x) * request.size.y;
-    // Each splat has its own part of every sheet that it is in; what is saturated is not shaded.
+    // A splat is drawn once per sheet that it reaches. About half of the fragments are saturated and not shaded.
     const double slices = 1 + 0.5 * (plan.sheets_per_splat - 1);
     return plan.params.splat_count * std::min(across * across, pixels) * slices / 2;
 }
@@ -175,7 +175,7 @@ class Passes {
                 {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.profile = profile_,
                                                                                     .refined = plan.refined,
                                                                                     .wide_marks = plan.wide_marks}))});
-            // A picture whose splats turn out to be small is drawn without.
+            // The pass is skipped if the splats turn out to be small.
             if (plan.refined) {
                 std::vector<std::string> steps;
                 for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
@@ -199,7 +199,7 @@ class Passes {
   private:
     double milliseconds_per_;
     const gpu::DeviceProfile* profile_;
-    int again_ = 1;  ///< how often a pass runs
+    int again_ = 1;  ///< number of runs of each pass
     std::vector<PassDescription> out_;
 };
 
@@ -217,10 +217,10 @@ std::vector<PassDescription> described_passes(const FrameRequest& request, const
 
 std::string estimate_basis(const DeviceInfo* device) {
     std::string text =
-        "estimates: round numbers of nanoseconds per voxel, splat, sheet entry, fragment and pixel for two processor "
-        "cores; they rank passes and may be several times off";
+        "estimates: from round numbers of nanoseconds per voxel, splat, sheet entry, fragment and pixel on two "
+        "processor cores; they rank the passes, but may be wrong by a factor of several";
     return on_processor(device) ? text
-                                : text + fmt::format("; divided by {:g} for a GPU, which is a guess", kGpuFactor);
+                                : text + fmt::format("; divided by {:g} for a GPU (assumed, not measured)", kGpuFactor);
 }
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// The passes of a forecast: order, pipeline variants, and what they will about take.
+// Lists the passes of a forecast: order, pipeline variants and estimated times.
 #pragma once
 
 #include "engine/forecast/description.h"
@@ -6,11 +6,11 @@
 
 namespace edgesplat {
 
-/// Without reasons. Times of that device; null: of one that is the machine's processor.
+/// The passes, reasons unset. Times are for `device`; null: a software device on the processor.
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
                                               const DeviceInfo* device);
 
-/// What the times are based on, a sentence.
+/// Basis of the estimated times, a sentence.
 std::string estimate_basis(const DeviceInfo* device);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// A frame's description for people: tables with aligned columns.
+// Prints a frame's description as tables with aligned columns.
 #include <algorithm>
 #include <array>
 
@@ -8,7 +8,7 @@
 namespace edgesplat {
 namespace {
 
-/// Cells in columns as wide as their widest; numbers to the right.
+/// A table whose columns are as wide as their widest cell; `right`: columns that are right-aligned.
 class Table {
   public:
     explicit Table(std::vector<bool> right) : right_(std::move(right)) {}
@@ -54,13 +54,13 @@ std::string to_text(const FrameDescription& d) {
     std::string text =
         fmt::format("{}; {} x {} pixels{}\n", d.volume, d.size.x, d.size.y, d.device.empty() ? "" : " on " + d.device);
     text += fmt::format("device profile {}: {}\n", d.profile, d.profile_reason);
-    text += fmt::format("{} of {} voxels are splats ({}), in {} sheets, {} groups\n", d.splats, d.voxels, d.splats_from,
+    text += fmt::format("{} splats ({}) from {} voxels, in {} sheets, {} groups\n", d.splats, d.splats_from, d.voxels,
                         d.sheets, d.sheet_groups);
     const bool measured =
         std::ranges::any_of(d.passes, [](const auto& p) { return p.measured_milliseconds.has_value(); });
     text += "\npasses\n";
     Table passes({false, false, true, true, false});
-    passes.row({"for", "pass", "ms estimated", measured ? "ms measured" : "", "because of"});
+    passes.row({"for", "pass", "ms estimated", measured ? "ms measured" : "", "reason"});
     for (const PassDescription& pass : d.passes) {
         passes.row({pass.draw, pass.name, fmt::format("{:.2f}", pass.estimated_milliseconds),
                     pass.measured_milliseconds ? fmt::format("{:.2f}", *pass.measured_milliseconds) : "", pass.reason});
@@ -72,13 +72,13 @@ std::string to_text(const FrameDescription& d) {
 
     text += "\nmemory\n";
     Table memory({true, false, false, false, false, false, false, false});
-    memory.row({"MiB", "name", "format", "shape", "contents", "written", "read", "because of"});
+    memory.row({"MiB", "name", "format", "shape", "contents", "written", "read", "reason"});
     for (const ResourceDescription& r : d.resources) {
         memory.row({mebibytes(static_cast<double>(r.allocated_bytes.value_or(r.device_bytes.value_or(r.bytes)))),
                     r.name, r.format, r.shape, r.contents, r.written, r.read,
-                    r.transient() ? "held " + r.held : r.reason});
+                    r.transient() ? "only " + r.held : r.reason});
     }
-    memory.row({mebibytes(static_cast<double>(d.total_bytes())), "at most at once"});
+    memory.row({mebibytes(static_cast<double>(d.total_bytes())), "peak"});
     text += memory.text();
 
     std::uint32_t bytes = 0;
@@ -91,7 +91,7 @@ std::string to_text(const FrameDescription& d) {
 
     text += "\nleft out\n";
     Table out({false, true, false, false});
-    out.row({"effect", "MiB", "passes", "called for by"});
+    out.row({"effect", "MiB", "passes", "enabled with"});
     for (const LeftOut& row : d.left_out) {
         if (row.obstacle.empty())
             out.row({row.effect, fmt::format("{:+.3f}", static_cast<double>(row.bytes) / (1024.0 * 1024.0)),

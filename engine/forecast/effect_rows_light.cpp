@@ -1,4 +1,4 @@
-// Effects of light and colour that a scene calls for.
+// Effects of light and colour, enabled by the scene.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,12 +23,12 @@ std::string_view kind_name(Light::Kind kind) {
     return "a headlight";
 }
 
-/// Lists the numbers of those for which `is` holds: "0, 2".
-template <typename Things, typename Is>
-std::string numbers(const Things& things, const Is& is) {
+/// Lists the indices of the elements for which `is` is true: "0, 2".
+template <typename Elements, typename Is>
+std::string numbers(const Elements& elements, const Is& is) {
     std::string text;
-    for (std::size_t i = 0; i < things.size(); ++i)
-        if (is(things[i])) text += fmt::format("{}{}", text.empty() ? "" : ", ", i);
+    for (std::size_t i = 0; i < elements.size(); ++i)
+        if (is(elements[i])) text += fmt::format("{}{}", text.empty() ? "" : ", ", i);
     return text;
 }
 
@@ -40,20 +40,21 @@ std::string shadow_reason(const FrameRequest& r) {
     const auto numbers = shadow_lights(r.scene);
     if (numbers.empty()) return "";
     const ShadowQuality& quality = r.scene.effects.shadows;
-    return fmt::format("lights[{}]{} cast{} shadows, seen by {} x {} pixels and at most {} layers", numbers[0],
+    return fmt::format("lights[{}]{} cast{} shadows, with {} x {} pixels and at most {} layers", numbers[0],
                        numbers.size() > 1 ? fmt::format(" and lights[{}]", numbers[1]) : "",
                        numbers.size() > 1 ? "" : "s", quality.resolution, quality.resolution, quality.layers);
 }
 
 std::string occlusion_reason(const FrameRequest& r) {
     if (!occludes_ambient(r.scene)) return "";
-    return fmt::format("occlusion within {:g} mm, {:g} of it shown", r.scene.effects.occlusion->radius,
+    return fmt::format("occlusion has a radius of {:g} mm and strength {:g}", r.scene.effects.occlusion->radius,
                        r.scene.effects.occlusion->strength);
 }
 
-/// What the materials are, as a transfer function that rises from nothing to the uppermost.
-constexpr double kFaintest = 1e-3;  ///< of the ramp, in shares of its end
+/// Extinction at the ramp's low end, relative to its high end.
+constexpr double kFaintest = 1e-3;
 
+/// Replaces the materials by a transfer function: a linear ramp up to the highest material's extinction.
 void ramp(FrameRequest& request) {
     const auto low = static_cast<double>(request.volume->min_value);
     const auto high = static_cast<double>(request.volume->max_value);
@@ -62,7 +63,7 @@ void ramp(FrameRequest& request) {
                               {high, material.color, material.extinction}};
 }
 
-/// Every voxel absorbs, as with the ramp.
+/// Gives every material at least the ramp's smallest extinction.
 void faint(FrameRequest& request) {
     const double least = kFaintest * request.scene.materials.back().extinction;
     for (Material& material : request.scene.materials)
@@ -86,7 +87,7 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_LIGHT, "SPEC_LIGHT"}, {shader::SPEC_EDGES, "SPEC_EDGES"}},
                     .frame_fields = {"light_at", "light_color", "ambient"}});
     rows.push_back({.name = "shadows",
-                    .help = "what stands in a light's way darkens what lies behind it",
+                    .help = "matter between a light and a surface darkens the surface",
                     .call = "lights[].shadows",
                     .reason = shadow_reason,
                     .turn_on = [](FrameRequest& r) { light(r), r.scene.lights[0].shadows = true; },
@@ -97,7 +98,7 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_SHADOWS, "SPEC_SHADOWS"}},
                     .frame_fields = {"splat_shadows", "shadow_channels"}});
     rows.push_back({.name = "ambient occlusion",
-                    .help = "light from everywhere reaches hollows less",
+                    .help = "less ambient light reaches hollows",
                     .call = "effects.occlusion",
                     .reason = occlusion_reason,
                     .turn_on = [](FrameRequest& r) { light(r), r.scene.effects.occlusion = AmbientOcclusion{}; },
@@ -108,8 +109,8 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_OCCLUSION, "SPEC_OCCLUSION"}},
                     .frame_fields = {"splat_occlusion", "occlusion_strength"}});
     rows.push_back({.name = "several lights",
-                    .help = "up to four lights of three kinds, each of its own colour",
-                    .call = "lights[1], lights[2], lights[3]; --light, repeated",
+                    .help = "up to four lights of three kinds, each with its own colour",
+                    .call = "lights[1], lights[2], lights[3]; --light several times",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const std::size_t count = r.scene.lights.size();
                         return count > 1 ? fmt::format("there are {} lights", count) : "";
@@ -126,7 +127,7 @@ std::vector<Effect> light_effects() {
                     .base = light,
                     .constants = {{shader::SPEC_LIGHT, "SPEC_LIGHT", 1}}});
     rows.push_back({.name = "response to light",
-                    .help = "materials take ambient, diffuse and specular light in shares of their own",
+                    .help = "materials have their own ambient, diffuse and specular factors",
                     .call = "materials[i].response",
                     .reason = [](const FrameRequest& r) -> std::string {
                         if (r.scene.lights.empty()) return "";
@@ -144,7 +145,7 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_RESPONSE, "SPEC_RESPONSE"}},
                     .frame_fields = {"responses"}});
     rows.push_back({.name = "gloss",
-                    .help = "highlights (Blinn and Phong) on materials that shine",
+                    .help = "highlights (Blinn-Phong) on glossy materials",
                     .call = "materials[i].response.specular > 0",
                     .reason = [](const FrameRequest& r) -> std::string {
                         if (r.scene.lights.empty()) return "";
@@ -161,10 +162,10 @@ std::vector<Effect> light_effects() {
                         },
                     .constants = {{shader::SPEC_GLOSS, "SPEC_GLOSS"}}});
     rows.push_back({.name = "light on edges only",
-                    .help = "splats away from edges are not shaded by their gradient",
+                    .help = "splats without an edge are not shaded by their gradient",
                     .call = "lit = \"edges\"",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        const bool on = wants_normals(r.scene) && only_edges_lit(r.scene, draws_warped(r.settings));
+                        const bool on = needs_normals(r.scene) && lights_edges_only(r.scene, draws_warped(r.settings));
                         return on ? "lit is `edges`" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.scene.lit = Lit::Edges; },
@@ -176,7 +177,7 @@ std::vector<Effect> light_effects() {
                         },
                     .constants = {{shader::SPEC_LIT_EDGES, "SPEC_LIT_EDGES"}}});
     rows.push_back({.name = "silhouettes",
-                    .help = "surfaces darken, or take a colour, where they turn away from the eye",
+                    .help = "surfaces that turn away from the eye get darker or coloured",
                     .call = "effects.silhouette; --silhouette",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const auto& silhouette = r.scene.effects.silhouette;
@@ -189,7 +190,7 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_SILHOUETTE, "SPEC_SILHOUETTE"}, {shader::SPEC_EDGES, "SPEC_EDGES"}},
                     .frame_fields = {"silhouette", "silhouette_sharpness"}});
     rows.push_back({.name = "fog",
-                    .help = "what is further away goes towards the fog's colour",
+                    .help = "colours approach the fog's colour with distance",
                     .call = "effects.fog; --fog DENSITY",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const auto& fog = r.scene.effects.fog;
@@ -199,7 +200,7 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_FOG, "SPEC_FOG"}},
                     .frame_fields = {"fog", "fog_start"}});
     rows.push_back({.name = "transfer function",
-                    .help = "colour and extinction by piecewise-linear functions of the value",
+                    .help = "colour and extinction are piecewise-linear functions of the value",
                     .call = "transfer, a list of points",
                     .reason = [](const FrameRequest& r) -> std::string {
                         if (r.scene.transfer.empty()) return "";

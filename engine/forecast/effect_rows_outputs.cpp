@@ -1,4 +1,4 @@
-// Extra outputs: each is the frame drawn once more with another quantity in place of colour.
+// Extra outputs: for each the frame is drawn once more, with another quantity instead of colour.
 #include <utility>
 
 #include "engine/forecast/effect_rows.h"
@@ -12,12 +12,12 @@ Effect output_effect() {
     const Aov& aov = aovs()[number];
     static const std::string name = "output " + std::string(aov.name);
     static const std::string call =
-        "output.aovs holds \"" + std::string(aov.name) + "\"; --aov " + std::string(aov.name);
+        "output.aovs contains \"" + std::string(aov.name) + "\"; --aov " + std::string(aov.name);
     return {.name = name,
             .help = aov.help,
             .call = call,
             .reason = [](const FrameRequest& r) -> std::string {
-                return r.outputs.*aovs()[number].wanted ? "it is asked for" : "";
+                return r.outputs.*aovs()[number].wanted ? "it is requested" : "";
             },
             .turn_on = [](FrameRequest& r) { r.outputs.*aovs()[number].wanted = true; },
             .constants = {{shader::SPEC_PAYLOAD, "SPEC_PAYLOAD"}}};

@@ -1,4 +1,4 @@
-// Effects that the settings call for.
+// Effects that settings enable.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,15 +25,16 @@ std::vector<Effect> settings_effects() {
     rows.push_back(
         {.name = "edge preservation",
          .help =
-             "kernels are cut at the surface, a quadric that is found once, and lit where rays meet it: it stays sharp "
-             "however near it is looked at",
+             "kernels are cut at the surface, a quadric fitted once, and shaded where rays meet it: the surface stays "
+             "sharp at any distance",
          .call = "settings.edges, warp and footprints; --edges, --warp, --footprints (on by default)",
          .reason = [](const FrameRequest& r) -> std::string {
              const Settings s = drawn_settings(r);
              if (!draws_warped(s)) return "";
-             return draws_faces(s) ? fmt::format("edges are found ({}) and kernels cut at faces", name_of(s.edges))
-                                   : fmt::format("edges are found ({}) and kernels warped by the paper's curve ({})",
-                                                 name_of(s.edges), name_of(s.footprints));
+             return draws_faces(s)
+                        ? fmt::format("edges are estimated ({}), kernels are cut at faces", name_of(s.edges))
+                        : fmt::format("edges are estimated ({}), kernels are warped by the paper's curve ({})",
+                                      name_of(s.edges), name_of(s.footprints));
          },
          .turn_on = cut_at_faces,
          .passes = {"1_estimate_edges"},
@@ -47,7 +48,7 @@ std::vector<Effect> settings_effects() {
          .frame_fields = {"footprint", "traits"},
          .scene_fields = {"traits"}});
     rows.push_back({.name = "spline edges",
-                    .help = "edges are found on the cubic B-spline through the samples",
+                    .help = "edges are estimated on the cubic B-spline through the samples",
                     .call = "settings.edges = \"cubic\"; --edges cubic",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const Settings s = drawn_settings(r);
@@ -59,10 +60,10 @@ std::vector<Effect> settings_effects() {
                     .resources = {"B-spline coefficients"},
                     .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 2}}});
     rows.push_back({.name = "footprint table",
-                    .help = "footprints of plane faces are looked up in layers that pass 3 selects and turns",
+                    .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        return draws_table(drawn_settings(r)) ? "footprints come from the `table`" : "";
+                        return draws_table(drawn_settings(r)) ? "footprints are read from the `table`" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.footprints = FootprintMode::Table; },
                     .base = cut_at_faces,
@@ -72,7 +73,7 @@ std::vector<Effect> settings_effects() {
                     .constants = {{shader::SPEC_FOOTPRINTS, "SPEC_FOOTPRINTS", shader::PROCEDURAL}},
                     .frame_fields = {"footprints"}});
     rows.push_back({.name = "sliced sheets",
-                    .help = "kernels are cut at the planes between sheets, so that nothing pops as the eye moves",
+                    .help = "kernels are cut at the planes between sheets, which avoids popping when the eye moves",
                     .call = "settings.sheets = \"sliced\"; --sheets sliced",
                     .reason = [](const FrameRequest& r) -> std::string {
                         if (drawn_settings(r).sheets != SheetCut::Sliced) return "";
@@ -83,7 +84,7 @@ std::vector<Effect> settings_effects() {
                                 "prepared splats"},
                     .constants = {{shader::SPEC_SLICED, "SPEC_SLICED"}, {shader::SPEC_NODES, "SPEC_NODES", 6}}});
     rows.push_back({.name = "refined pixels",
-                    .help = "where the picture is smooth one pixel of four or sixteen is drawn, and the others follow",
+                    .help = "in smooth parts one pixel of 4 or 16 is drawn; the others are interpolated",
                     .call = "settings.pixels = \"refined\"; --pixels refined (on by default)",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const Settings s = drawn_settings(r);
@@ -93,25 +94,25 @@ std::vector<Effect> settings_effects() {
                     .turn_on = [](FrameRequest& r) { r.settings.pixels = PixelChoice::Refined; },
                     .base =
                         [](FrameRequest& r) {
-                            // Near enough that splats are many pixels wide.
+                            // A close view, so that splats are many pixels wide.
                             r.settings.pixels = PixelChoice::Every;
                             r.camera.fov_y *= 0.6;
                             r.size *= 4;
                         },
                     .passes = {"5_refine_pixels"},
-                    .resources = {"lists of pixels", "closed pixels, seen", "finest splats of tiles"},
+                    .resources = {"lists of pixels", "saturated pixels, host", "finest splats of tiles"},
                     .resized = {"tile order", "tile entries"},
                     .constants = {{shader::SPEC_REFINED, "SPEC_REFINED"}},
                     .frame_fields = {"tile_finest"}});
     rows.push_back(
         {.name = "buried voxels",
-         .help = "voxels that opaque ones hide from every side are dropped: the picture is the same",
+         .help = "voxels that opaque ones occlude from every side are culled; the picture does not change",
          .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
          .reason = [](const FrameRequest& r) -> std::string {
              const bool keep = r.outputs.tau || eye_in_opaque(*r.volume, r.scene, r.camera);
              const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keep);
              if (!plan.buried) return "";
-             return fmt::format("what lies {} voxels behind an opaque surface cannot be seen",
+             return fmt::format("voxels at least {} voxels behind an opaque surface are culled",
                                 plan.params.bury_distance);
          },
          .turn_on = [](FrameRequest& r) { r.settings.cull_buried = true; },

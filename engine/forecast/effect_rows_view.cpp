@@ -1,4 +1,4 @@
-// Effects of what is cut away, of sampling, and of what is drawn behind and over the volume.
+// Effects of clipping, sampling, background and overlays.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -12,7 +12,7 @@ std::vector<Effect> view_effects() {
     std::vector<Effect> rows;
     rows.push_back(
         {.name = "clip",
-         .help = "what lies beyond planes, or within a box, is cut away sharply; the cut is lit by its own normal",
+         .help = "planes or a box cut matter away sharply; the cut is shaded with the plane's normal",
          .call = "effects.clip.keep, remove; --clip",
          .reason = [](const FrameRequest& r) -> std::string {
              const Clip& clip = r.scene.effects.clip;
@@ -39,7 +39,7 @@ std::vector<Effect> view_effects() {
          .frame_fields = {"clip_keep", "clip_remove"},
          .scene_fields = {"clip_keep", "clip_remove"}});
     rows.push_back({.name = "antialias",
-                    .help = "no footprint is narrower than a pixel, and what it holds is kept",
+                    .help = "footprints are at least a pixel wide; their integrals do not change",
                     .call = "effects.antialias; --antialias",
                     .reason = [](const FrameRequest& r) -> std::string {
                         return r.scene.effects.antialias ? "effects.antialias is true" : "";
@@ -49,7 +49,7 @@ std::vector<Effect> view_effects() {
                     .constants = {{shader::SPEC_ANTIALIAS, "SPEC_ANTIALIAS"}},
                     .frame_fields = {"pixel"}});
     rows.push_back({.name = "smooth outlines",
-                    .help = "a pixel that an outline passes shows what is on both its sides, by the faces' distance",
+                    .help = "a pixel on an outline blends the colours of both sides by the distance to the face",
                     .call = "effects.smooth_outlines; --smooth-outlines",
                     .reason = [](const FrameRequest& r) -> std::string {
                         return smooths_outlines(drawn_settings(r), r.scene) ? "effects.smooth_outlines is true" : "";
@@ -59,7 +59,7 @@ std::vector<Effect> view_effects() {
                     .resources = {"outlines"},
                     .constants = {{shader::SPEC_OUTLINES, "SPEC_OUTLINES"}}});
     rows.push_back({.name = "samples",
-                    .help = "a pixel is the mean of n x n rays, each a picture of its own",
+                    .help = "a pixel is the mean of n x n rays, each from its own picture",
                     .call = "effects.samples; --samples",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const int n = r.scene.effects.samples;
@@ -67,7 +67,7 @@ std::vector<Effect> view_effects() {
                     },
                     .turn_on = [](FrameRequest& r) { r.scene.effects.samples = 2; }});
     rows.push_back({.name = "background of two colours",
-                    .help = "the background goes from one colour at the bottom to another at the top",
+                    .help = "the background is a gradient from a colour at the bottom to another at the top",
                     .call = "effects.background_top",
                     .reason = [](const FrameRequest& r) -> std::string {
                         const auto& top = r.scene.effects.background_top;

@@ -1,5 +1,5 @@
-// The table of effects: for each, what calls for it and what it adds to a frame. The frame's description, the command
-// that measures what effects cost, and the tests that an effect which is off costs nothing are made from it.
+// The table of effects: how each is enabled and what it adds to a frame. The frame's description, the `effects` command
+// and the tests that a disabled effect costs nothing read it.
 #pragma once
 
 #include <cstdint>
@@ -20,39 +20,39 @@ struct EffectConstant {
     std::uint32_t off = 0;
 };
 
-/// What every splat carries more.
+/// An additional field of every splat's record.
 struct RecordField {
     std::string_view name;
     std::uint32_t bytes;
 };
 
-/// One effect. Lists name what is there because of it: another effect may call for the same.
+/// One effect. The lists name everything that exists for it; several effects may list the same name.
 struct Effect {
     std::string_view name;
     std::string_view help;  ///< what it shows, in one line
-    std::string_view call;  ///< how a scene or the command line calls for it
-    /// The values of the request that call for it, as a sentence; empty: nothing does.
+    std::string_view call;  ///< how a scene or the command line enables it
+    /// The values of the request that enable it, as a sentence; empty if it is off.
     std::string (*reason)(const FrameRequest&);
-    /// Makes a request call for it, with values that cost what is usual.
+    /// Enables it in a request, with values of typical cost.
     void (*turn_on)(FrameRequest&);
-    /// Makes of a plain request (plain_request()) one that differs from the effect's by the effect alone.
+    /// Prepares a plain request (plain_request()) such that turn_on() then adds this effect only.
     void (*base)(FrameRequest&) = nullptr;
-    std::vector<std::string_view> passes{};        ///< that run for it
-    std::vector<std::string_view> resources{};     ///< images and buffers that are there for it, by their names
-    std::vector<std::string_view> resized{};       ///< those of every frame that are of another size with it
+    std::vector<std::string_view> passes{};        ///< passes that run for it
+    std::vector<std::string_view> resources{};     ///< names of images and buffers that exist for it
+    std::vector<std::string_view> resized{};       ///< names of every frame's resources whose size it changes
     std::vector<RecordField> record{};             ///< fields of the splat record
-    std::vector<EffectConstant> constants{};       ///< pipeline variants
-    std::vector<std::string_view> frame_fields{};  ///< members of FrameParams that no frame without it reads
-    std::vector<std::string_view> scene_fields{};  ///< likewise of SceneParams
+    std::vector<EffectConstant> constants{};       ///< specialization constants that it changes
+    std::vector<std::string_view> frame_fields{};  ///< members of FrameParams that only frames with it read
+    std::vector<std::string_view> scene_fields{};  ///< members of SceneParams that only frames with it read
 };
 
-/// All effects, in the order of the pipeline.
+/// All effects, in the order of the table.
 std::span<const Effect> effect_table();
 
 /// The effect of that name; throws Error listing the names.
 const Effect& effect_named(std::string_view name);
 
-/// The same picture with every effect off: one unlit material over nothing, plain kernels, whole, in float sheets.
+/// The same picture with every effect off: unlit materials, plain kernels, whole sheets, every pixel drawn.
 FrameRequest plain_request(FrameRequest request);
 
 }  // namespace edgesplat

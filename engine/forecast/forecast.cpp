@@ -12,7 +12,7 @@
 namespace edgesplat {
 namespace {
 
-/// 1 where the cube [-reach, reach]^3 lies in the volume and is opaque: windows along one axis at a time, as pass 1a.
+/// 1 if the cube [-reach, reach]^3 around the voxel lies in the volume and is opaque. One axis at a time, as pass 1a.
 std::vector<std::uint8_t> buried_voxels(std::vector<std::uint8_t> opaque, const glm::ivec3& dims, int reach) {
     const std::size_t strides[3] = {1, static_cast<std::size_t>(dims.x),
                                     static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y)};
@@ -41,7 +41,7 @@ std::vector<std::uint8_t> buried_voxels(std::vector<std::uint8_t> opaque, const 
     return opaque;
 }
 
-/// is_cut_away() of shaders/common/clip.glsl, in its precision.
+/// is_cut_away() of shaders/common/clip.glsl, in the same precision.
 bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& clip, const glm::vec3& at, float radius) {
     bool beyond = false, within = clip.remove > 0;
     for (std::uint32_t i = 0; i < clip.keep; ++i)
@@ -51,8 +51,8 @@ bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& cli
     return beyond || within;
 }
 
-/// Bits of a voxel's own material and of those between the samples around it, as shaders/edges/values_around.glsl has
-/// them.
+/// Bit mask of the materials between the samples around a voxel, its own included, as in
+/// shaders/edges/values_around.glsl.
 std::uint32_t materials_around(std::span<const std::uint8_t> materials, const glm::ivec3& dims, const glm::ivec3& p) {
     const auto material = [&](const glm::ivec3& o) {
         const glm::ivec3 q = glm::clamp(p + o, glm::ivec3(0), dims - 1);
@@ -76,7 +76,7 @@ std::uint32_t materials_around(std::span<const std::uint8_t> materials, const gl
 SplatCount most_splats(const CollectionPlan& plan) {
     const glm::dvec3 dims(plan.dims);
     const auto voxels = static_cast<std::uint64_t>(dims.x * dims.y * dims.z);
-    const std::uint32_t carried = plan.params.seen_through, others = plan.params.visible_mask & ~carried;
+    const std::uint32_t carried = plan.params.translucent_mask, others = plan.params.visible_mask & ~carried;
     const auto of_a_voxel = static_cast<std::uint64_t>(std::popcount(carried) + (others != 0 ? 1 : 0));
     return {SplatCount::From::Voxels, {voxels * of_a_voxel, glm::ivec3(0), plan.dims - 1}};
 }
@@ -95,7 +95,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     for (std::uint64_t i = 0; i < voxels; ++i) {
         const glm::ivec3 at(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny));
         const std::uint32_t carried =
-            params.seen_through == 0 ? 0 : params.seen_through & materials_around(materials, dims, at);
+            params.translucent_mask == 0 ? 0 : params.translucent_mask & materials_around(materials, dims, at);
         splats[i] = static_cast<std::uint8_t>(std::popcount(carried | (params.visible_mask & 1U << materials[i])));
         if (plan.buried) opaque[i] = params.opaque_mask >> materials[i] & 1U;
         if (!plan.clip.any()) continue;
@@ -127,7 +127,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
 }
 
 Settings drawn_settings(const FrameRequest& request) {
-    return drawn_as(request.settings, request.scene);
+    return canonical_settings(request.settings, request.scene);
 }
 
 CollectionPlan planned_collection(const FrameRequest& request) {

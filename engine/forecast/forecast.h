@@ -1,4 +1,4 @@
-// What a request will run and hold, found before anything is allocated and without a device.
+// Forecasts the passes and resources of a request without a device, before anything is allocated.
 #pragma once
 
 #include <optional>
@@ -11,30 +11,31 @@
 
 namespace edgesplat {
 
-/// How many splats there are, and the voxels that hold them.
+/// Number and bounding box of splats, and how they were determined.
 struct SplatCount {
+    /// Voxels: upper bound from the number of voxels. Materials: visible voxels, counted on the host. Frame: collected.
     enum class From { Voxels, Materials, Frame };
-    From from = From::Voxels;  ///< every voxel; those that can be seen, found on the host; as collected
+    From from = From::Voxels;
     SplatExtent extent;
 };
 
-/// As if every voxel were a splat of each material that one sees through, and of one that one does not.
+/// Upper bound: every voxel is a splat of each translucent material and of one other visible material.
 SplatCount most_splats(const CollectionPlan& plan);
 
-/// The voxels that pass 2 keeps, counted on the host, pass 1a included: about 10 ns per voxel.
+/// Counts on the host the splats that passes 1a and 2 collect: about 10 ns per voxel.
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan);
 
-/// When something is held. Only one of the last four at a time; what a picture is drawn with stays until the next.
+/// Lifetime of a resource. Of the last four only one is active at a time; Drawing lasts until the next picture.
 enum class Held { Always, Uploading, Occluding, Sweeping, Drawing };
 
-/// An image or a buffer that a frame holds.
+/// An image or a buffer that a frame needs.
 struct PlannedResource {
     ResourceText text;
     std::optional<gpu::ImageShape> image;  ///< else a buffer
     std::uint64_t bytes = 0;               ///< of its texels or elements; the device may round up
-    vk::Format texels{};                   ///< of a buffer that shaders have as texels
+    vk::Format texels{};                   ///< format if shaders load the buffer as texels
     gpu::Buffer::Place place = gpu::Buffer::Place::Device;
-    bool grows = false;  ///< a larger one of an earlier frame is kept
+    bool grows = false;  ///< a larger one of an earlier frame is reused
     Held held = Held::Always;
 };
 
@@ -45,30 +46,30 @@ struct ForecastDraw {
 };
 
 struct FrameForecast {
-    Settings settings;  ///< as drawn: drawn_as()
+    Settings settings;  ///< canonical_settings()
     CollectionPlan collection;
     SplatCount splats;
-    const gpu::DeviceProfile* profile = nullptr;  ///< of the device that it is for
+    const gpu::DeviceProfile* profile = nullptr;  ///< the device's profile
     std::vector<ForecastDraw> draws;
-    std::vector<FramePlan> light_frames;     ///< pictures that the lights with shadows take
-    bool occluded = false;                   ///< ambient light is
-    std::vector<PlannedResource> resources;  ///< everything a Renderer holds at some time of this frame
+    std::vector<FramePlan> light_frames;     ///< pictures of the lights with shadows
+    bool occluded = false;                   ///< ambient occlusion is on
+    std::vector<PlannedResource> resources;  ///< all resources of a Renderer during this frame
 };
 
-/// The request's settings as they are drawn: drawn_as().
+/// The request's canonical_settings().
 Settings drawn_settings(const FrameRequest& request);
 
-/// Whether nothing may be dropped for being buried.
+/// Whether buried voxels must be kept.
 bool keeps_buried(const FrameRequest& request);
 
 /// The resources of `forecast`, from its plans.
 std::vector<PlannedResource> planned_resources(const FrameForecast& forecast);
 
-/// What the request's passes 1 and 2 do.
+/// The plan of the request's passes 1 and 2.
 CollectionPlan planned_collection(const FrameRequest& request);
 
-/// `collection` is planned_collection(request), `reach` kernel_reach(drawn_settings(request)). Throws Error as
-/// plan_frame does.
+/// Preconditions: `collection` is planned_collection(request), `reach` is kernel_reach(drawn_settings(request)). Throws
+/// Error like plan_frame().
 FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
                              double reach, const gpu::DeviceProfile& profile);
 

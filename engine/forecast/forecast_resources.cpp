@@ -1,4 +1,5 @@
-// The images and buffers of a frame, from the table that they are allocated by; a test compares the bytes.
+// Lists the images and buffers of a frame from the resource table, which also allocates them; a test compares the
+// bytes.
 #include <algorithm>
 #include <vulkan/vulkan_format_traits.hpp>
 
@@ -50,7 +51,7 @@ void add_volume_resources(const FrameForecast& f, std::vector<PlannedResource>& 
             out.push_back(buffer(row.text, f.splats.extent.count * bytes));
 }
 
-/// What of the light reaches each splat, and what that is found with.
+/// Adds the lists of the light that reaches each splat, and the temporary resources for computing them.
 void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const auto add_list = [&](gpu::Buffer SplatLists::*list) {
         out.push_back(buffer(row_of(list).text, f.splats.extent.count * kLightBytes));
@@ -69,7 +70,7 @@ void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
     out.back().held = Held::Sweeping;
 }
 
-/// What pictures are drawn with: the one that is asked for, or a light's. Each draw may make a larger one.
+/// Adds the targets of the picture's draws or of the lights' pictures, each as large as its largest draw needs.
 void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& profile, Held held,
                  std::vector<PlannedResource>& out) {
     for (const TargetImageRow& row : target_image_rows()) {
@@ -78,7 +79,7 @@ void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& 
             if (const auto size = row.size(plan)) largest = glm::max(largest.value_or(*size), *size);
         if (!largest) continue;
         out.push_back(image(row.text, row.shape(*largest)));
-        out.back().grows = row.higher_serves;
+        out.back().grows = row.taller_is_reusable;
         out.back().held = held;
     }
     for (const TargetBufferRow& row : target_buffer_rows()) {
@@ -105,7 +106,7 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     add_targets(draws, *forecast.profile, Held::Drawing, out);
     add_targets(forecast.light_frames, *forecast.profile, Held::Sweeping, out);
     add_placeholders(out);
-    // Uploads go through one buffer, one after another.
+    // Uploads are sequential; the largest staging buffer counts.
     std::uint64_t staging = 0;
     for (const PlannedResource& resource : out)
         if (resource.image && resource.text.written == "host")

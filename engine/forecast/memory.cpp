@@ -19,11 +19,11 @@ double mebibytes(std::uint64_t bytes) {
     return static_cast<double>(bytes) / kMebibyte;
 }
 
-/// What one resource takes on the device; notes where it is beyond a limit.
+/// Bytes of one resource on the device; adds a sentence to need.too_large if it exceeds a limit.
 std::uint64_t bytes_on(const gpu::Device& device, const PlannedResource& resource, MemoryNeed& need) {
-    const std::string beyond = resource.image ? gpu::beyond_limits(device, *resource.image)
+    const std::string beyond = resource.image ? gpu::exceeds_limits(device, *resource.image)
                                : resource.texels != vk::Format{}
-                                   ? gpu::Buffer::beyond_texels(device, resource.bytes, resource.texels)
+                                   ? gpu::Buffer::texel_limit_error(device, resource.bytes, resource.texels)
                                    : "";
     if (!beyond.empty()) {
         need.too_large.push_back(fmt::format("{}: {}", resource.text.name, beyond));
@@ -39,7 +39,7 @@ std::uint64_t bytes_on(const gpu::Device& device, const PlannedResource& resourc
     return bytes;
 }
 
-/// The middle of a volume, `eighths` of its voxels along each axis.
+/// The central part of a volume, `eighths` / 8 of its voxels along each axis.
 std::shared_ptr<const Volume> middle_of(const Volume& volume, int eighths) {
     const auto part = std::make_shared<Volume>();
     const glm::ivec3 dims = volume.geometry.dims;
@@ -59,7 +59,7 @@ std::shared_ptr<const Volume> middle_of(const Volume& volume, int eighths) {
     return part;
 }
 
-/// Whether a request fits, its splats counted on the host where the bound by its voxels does not tell.
+/// Whether a request fits. Splats are counted on the host if the upper bound by voxels does not fit.
 class Fit {
   public:
     Fit(const gpu::Device& device, std::uint64_t budget) : device_(&device), budget_(budget) {}
@@ -84,7 +84,7 @@ class Fit {
     std::uint64_t budget_;
 };
 
-/// The largest picture of the same shape that fits; nothing if one pixel does not.
+/// The largest picture of the same aspect that fits; nullopt if 1/1000 of the size does not.
 std::optional<glm::ivec2> largest_size(const Fit& fits, FrameRequest request) {
     const glm::dvec2 whole(request.size);
     const auto scaled = [&](int thousandths) {
@@ -112,11 +112,11 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
         const auto found = held.find(name);
         return found == held.end() ? std::uint64_t{0} : found->second.bytes;
     };
-    // By place: of the device, of the host.
+    // Two places: [0] device, [1] host.
     struct Sums {
         std::array<std::uint64_t, 5> by_time{};  ///< Held
-        std::uint64_t before = 0;                ///< held now under the names of this frame
-        std::uint64_t picture_before = 0;        ///< of that, what a picture was drawn with
+        std::uint64_t before = 0;                ///< allocated now under the names of this frame
+        std::uint64_t picture_before = 0;        ///< the part of `before` with lifetime Drawing
     };
     std::array<Sums, 2> sums;
     std::map<std::string, MemoryNeed::Row> rows;
@@ -127,7 +127,7 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
         one = &resource;
     }
     std::uint64_t kept = device.allocated_bytes();
-    bool uploads = false;  // what is on the device already needs no staging buffer
+    bool uploads = false;  // data already on the device needs no staging buffer
     for (const auto& [key, entry] : merged) {
         const auto& [name, when] = key;
         const auto& [bytes, resource] = entry;
@@ -164,7 +164,7 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
         both.before += place.before;
         both.picture_before += place.picture_before;
     }
-    // The heap that has least to spare is the one that counts.
+    // The limit with the least spare memory decides.
     std::optional<double> least;
     const auto limit = [&](std::uint64_t total, std::uint64_t available, const std::string& by) {
         const double spare = static_cast<double>(available) - static_cast<double>(total);
@@ -176,7 +176,7 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
     };
     const auto heap_limit = [&](std::uint32_t heap, const Sums& place) {
         limit(most(place) + kept, device.free_bytes(heap) + place.before + kept,
-              fmt::format("what memory heap {} of {} has left", heap, device.info().name));
+              fmt::format("the free memory of heap {} of {}", heap, device.info().name));
     };
     const std::uint32_t device_heap = device.heap_of(false), host_heap = device.heap_of(true);
     if (device_heap == host_heap) {
@@ -189,7 +189,8 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
     return need;
 }
 
-std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameRequest& request, std::uint64_t budget) {
+std::vector<FittingChange> fitting_changes(const gpu::Device& device, const FrameRequest& request,
+                                           std::uint64_t budget) {
     const Fit fits(device, budget);
     std::vector<FittingChange> changes;
     const auto offer = [&](std::string text, const FrameRequest& changed) {
@@ -226,7 +227,7 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
     changed = request;
     if (request.outputs.tau) {
         changed.outputs.tau = false;
-        offer("no output tau, which needs every voxel", changed);
+        offer("without output tau, which needs every voxel", changed);
     }
     const auto offer_crop = [&](const std::string& before, FrameRequest cropped) {
         for (int eighths = 7; eighths > 0; --eighths) {
@@ -250,7 +251,7 @@ std::vector<FittingChange> what_fits(const gpu::Device& device, const FrameReque
 void refuse_memory(const gpu::Device& device, const FrameRequest& request, const MemoryNeed& need,
                    std::uint64_t budget) {
     std::string text =
-        fmt::format("the frame needs {:.2f} MiB of memory on {}, and {:.2f} MiB are available ({})",
+        fmt::format("the frame needs {:.2f} MiB of memory on {}, but {:.2f} MiB are available ({})",
                     mebibytes(need.total), device.info().name, mebibytes(need.available), need.limited_by);
     for (const std::string& sentence : need.too_large)
         text += "\n  " + sentence;
@@ -261,8 +262,8 @@ void refuse_memory(const gpu::Device& device, const FrameRequest& request, const
         rest -= std::min(rest, need.rows[i].needed);
     }
     text += fmt::format("\n  {:<22} {:>10.2f} MiB", "everything else", mebibytes(rest));
-    const auto changes = what_fits(device, request, budget);
-    text += changes.empty() ? "\nno smaller picture or part of this volume fits" : "\nany one of these would fit:";
+    const auto changes = fitting_changes(device, request, budget);
+    text += changes.empty() ? "\nno smaller picture or part of this volume fits" : "\neach of these changes fits:";
     for (const FittingChange& change : changes)
         text += "\n  " + change.text;
     fail("{}", text);

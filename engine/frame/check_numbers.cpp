@@ -1,4 +1,4 @@
-// DeviceChoice::check_numbers: the first pass and splat that come to something which is no finite number.
+// DeviceChoice::check_numbers: finds the first pass and splat with a number that is not finite.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ std::string named(DeviceSession& session, const LevelStore& level, std::uint32_t
                        splat.edge >> 28U);
 }
 
-/// The first number of the picture that is none; its size where all are.
+/// Index of the first number that is not finite; the size if there is none.
 std::size_t first_bad(std::span<const float> pixels) {
     const auto bad = std::ranges::find_if(pixels, [](float v) { return !std::isfinite(v); });
     return static_cast<std::size_t>(bad - pixels.begin());
@@ -35,7 +35,7 @@ void check_splats(DeviceSession& session, const LevelStore& level) {
     const auto values = gpu::read_back<float>(session.device(), session.commands(), lists.values, 0, count);
     const std::size_t bad = first_bad(values);
     if (bad == values.size()) return;
-    fail("2_collect_splats: {}: it is classified by {}, expected a finite number",
+    fail("2_collect_splats: {}: its classified value is {}, expected a finite number",
          named(session, level, static_cast<std::uint32_t>(bad)), values[bad]);
 }
 
@@ -47,14 +47,14 @@ void PictureDrawer::check_picture(const LevelStore& level) {
     const std::string where = fmt::format("pixel {}, {}, channel {} is {}, expected a finite number", pixel % width,
                                           pixel / width, bad % 4, pixels()[bad]);
 
-    // The picture of the first n splats is sound and that of one more is not: by halves.
+    // Bisection for n: the picture of the first n splats is finite, that of n + 1 is not.
     const std::uint32_t all = plan_.params.splat_count;
     const auto sound = [&](std::uint32_t splats) {
         draw_first(plan_, splats);
         draw_planned(level);
         return first_bad(pixels()) == pixels().size();
     };
-    if (!sound(0)) fail("7_resolve: {}, without any splat", where);
+    if (!sound(0)) fail("7_resolve: {}, even without splats", where);
     std::uint32_t good = 0, not_good = all;
     while (not_good - good > 1) {
         const std::uint32_t middle = good + (not_good - good) / 2;

@@ -47,14 +47,14 @@ std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan
     return commands.span_times();
 }
 
-void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool goes_on) {
+void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool continues) {
     if (plan.variant.culled) commands.to_device(targets.batches);
     for (const gpu::Buffer* zeroed : {&targets.counters, &targets.sheet_pairs})
         commands.fill(*zeroed, 0);
-    if (!goes_on)
+    if (!continues)
         for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
             commands.fill(*zeroed, 0);
-    if (!goes_on && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
+    if (!continues && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
     commands.span("3_select_footprints",
@@ -82,7 +82,7 @@ std::uint64_t TilePasses::most_pairs(std::uint32_t chunk, std::uint32_t columns)
 }
 
 void TilePasses::sort(std::uint32_t chunk) {
-    // Side by side a column is gone through at once.
+    // The parallel sort processes a column in one dispatch.
     const std::uint64_t in_column = how_.profile->side_by_side ? 0 : most_pairs(chunk, plan_.params.tile_blocks);
     const auto steps = static_cast<std::uint32_t>((in_column + shader::PAIR_STEPS - 1) / shader::PAIR_STEPS);
     if (how_.refined) {
@@ -98,7 +98,7 @@ void TilePasses::sort(std::uint32_t chunk) {
 void TilePasses::prepare(std::uint32_t chunk) {
     const std::uint32_t places = plan_.params.prepared_mask + 1;
     if (entries(chunk) > places || prepared_[chunk]) return;
-    // Places are taken in turn.
+    // Places are reused in turn: if the order has more entries than places, earlier chunks are overwritten.
     if (parts_.back().y - parts_.front().x > places) std::fill(prepared_.begin(), prepared_.end(), false);
     prepared_[chunk] = true;
     commands_.span("4_prepare_splats",
@@ -108,7 +108,7 @@ void TilePasses::prepare(std::uint32_t chunk) {
 void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t tiles, std::uint64_t groups,
                       std::uint32_t round) {
     passes::TileDraw of_chunk = how_;
-    // A sheet of very many splats is drawn from the splats themselves.
+    // A chunk with more splats than places is drawn from the splat list directly.
     of_chunk.prepared = entries(chunk) <= plan_.params.prepared_mask + 1;
     const passes::TileRound part{.groups = groups,
                                  .round = round,
@@ -120,20 +120,21 @@ void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t til
     commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
 }
 
-void TilePasses::see_tiles() {
+void TilePasses::copy_saturated_to_host() {
     if (!how_.refined || !how_.profile->rounds) return;
-    commands_.copy(targets_.tile_closed, targets_.tiles_seen, {{0, 0, tile_count(plan_) * sizeof(std::uint32_t)}});
+    commands_.copy(targets_.tile_closed, targets_.tile_closed_on_host,
+                   {{0, 0, tile_count(plan_) * sizeof(std::uint32_t)}});
     commands_.barrier();
 }
 
 void TilePasses::finish(std::uint32_t step) {
     if (step > 1) {
         commands_.span("5_refine_pixels", [&] { passes::refine_pixels(commands_, tile_count(plan_), step); });
-        see_tiles();
+        copy_saturated_to_host();
     } else if (!how_.part) {
         const auto& p = plan_.params;
         commands_.span("7_resolve", [&] {
-            // A pixel that an outline passes shows its neighbour, too, as it was.
+            // A pixel on an outline also blends in its neighbour's colour before this pass.
             if (plan_.variant.outlines) {
                 commands_.copy(targets_.output, targets_.tile_sheets, {{0, 0, picture_bytes(plan_)}});
                 commands_.barrier();

@@ -1,4 +1,5 @@
-// The frame on one page: which pass runs when, on what. Passes 1 and 2, which no camera changes, are in engine/store.
+// Records and runs passes 3 to 7 of a frame; rounds.cpp decides their order. Passes 1 and 2, which do not depend on the
+// camera, are in engine/store.
 #pragma once
 
 #include <functional>
@@ -9,37 +10,37 @@
 
 namespace edgesplat {
 
-/// A frame whose sheets are layers of a target: splat list -> pixels in `targets.output`. Runs and waits. With
-/// `shadow_channel` it is the picture of a light instead: what reaches each splat goes to that half of `splat_shadows`.
+/// Draws a frame whose sheets are layers of a target: splat list -> pixels in `targets.output`. Runs and waits. With
+/// `shadow_channel` it draws a light's picture: the light that reaches each splat goes to that half of `splat_shadows`.
 std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                   std::optional<std::uint32_t> shadow_channel = {});
 
-/// Of a frame whose sheets are summed tile by tile, passes 3 and 4 up to the sheets' order, recorded into the run that
-/// is being made. `goes_on`: behind what is drawn already.
-void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool goes_on);
+/// Records passes 3 and 4 of a tiled frame, up to the order of sheets, into the current run. `continues`: the frame
+/// continues behind sheets that are drawn already, so that the picture is kept.
+void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, bool continues);
 
-/// Runs that, waits, and says what is to be drawn of the part. Milliseconds are left in `commands`.
+/// Runs sort_splats(), waits and returns the chunks of the division's sheets. The times are left in `commands`.
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                   const Division& division = {});
 
-/// The rest of that frame. `targets.tile_entries` holds the pairs of the largest chunk, `targets.chunks` the chunks.
-/// With a profile's rounds each chunk is waited for, and each round where `between` is to be called after it (it may
-/// throw). Of a part (`TileDraw::part`) pass 7 is left out.
+/// Draws that frame after the sort. `targets.tile_entries` must have room for the largest chunk's pairs,
+/// `targets.chunks` the chunks. If the profile has rounds, the host waits after each chunk, and with `between` after
+/// each round, then calls it (it may throw). A part (`TileDraw::part`) skips pass 7.
 std::vector<PassTime> draw_tiles(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                  std::uint32_t chunks, passes::TileDraw how, const std::function<void()>& between = {});
 
-/// All of a tiled frame that is not refined, in one list: waits once, where the profile has no rounds. The device plans
-/// FrameParams::chunk_slots chunks. What it came to; nothing where that was too few, or a chunk is too large, and the
-/// picture is not whole.
+/// Draws a tiled frame without refinement in one command list and waits once; only for profiles without rounds. The
+/// device plans FrameParams::chunk_slots chunks. Returns the chunks; nullopt if there are more than that or one is too
+/// large: then the picture is incomplete.
 std::optional<Chunks> draw_at_once(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                    passes::TileDraw how);
 
-/// One step of `draw_tiles`, without what finishes it: of a refined picture the pixels of `step`, REFINE_STEP first,
-/// then those that pass 5_refine_pixels lists; of any other all, step 1.
+/// One step of `draw_tiles` without the passes that follow a step. A refined picture: the pixels of `step`, first at
+/// multiples of REFINE_STEP, then those that 5_refine_pixels lists. Any other picture: all pixels, step 1.
 std::vector<PassTime> draw_step(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                                 std::uint32_t chunks, passes::TileDraw how, std::uint32_t step);
 
-/// The passes of a tiled frame from its chunks on, recorded into the run that is being made.
+/// Records the passes of a tiled frame that follow the choice of chunks into the current run.
 class TilePasses {
   public:
     TilePasses(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets, std::uint32_t chunks,
@@ -47,21 +48,21 @@ class TilePasses {
 
     const passes::TileDraw& how() const { return how_; }
     std::uint32_t chunk_count() const { return static_cast<std::uint32_t>(parts_.size()); }
-    /// Of a chunk's lists, at most.
+    /// Upper bound of pairs per column of a chunk's lists.
     std::uint64_t most_pairs(std::uint32_t chunk, std::uint32_t columns = 1) const;
 
     void sort(std::uint32_t chunk);
-    /// Unless the chunk's splats still are.
+    /// Skipped if the chunk's splats are still prepared.
     void prepare(std::uint32_t chunk);
-    /// Marks, then draws, so many tiles and groups of their pixels.
+    /// Marks, then draws, `tiles` tiles and `groups` groups of their pixels.
     void draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t tiles, std::uint64_t groups, std::uint32_t round);
-    /// For the host: pixels of tiles that take no more.
-    void see_tiles();
-    /// After the pixels of a step.
+    /// Copies the count of saturated pixels of each tile to the host.
+    void copy_saturated_to_host();
+    /// Records what follows a step: refinement after steps above 1, pass 7 after the last.
     void finish(std::uint32_t step);
 
   private:
-    /// At most.
+    /// Upper bound of a chunk's entries of the order.
     std::uint32_t entries(std::uint32_t chunk) const {
         return how_.planned ? plan_.params.prepared_mask + 1 : parts_[chunk].y - parts_[chunk].x;
     }
@@ -71,7 +72,7 @@ class TilePasses {
     const TargetResources& targets_;
     passes::TileDraw how_;
     std::span<const glm::uvec2> parts_;
-    std::vector<bool> prepared_;  ///< chunks whose splats are
+    std::vector<bool> prepared_;  ///< by chunk: its splats are prepared
 };
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// PictureDrawer: a picture of which others draw the other sheets.
+// PictureDrawer: draws one part of a picture whose sheets are divided between processes.
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -15,7 +15,7 @@
 namespace edgesplat {
 namespace {
 
-/// Adds the time between its making and its end to a sum, and the processor's to another.
+/// Adds its lifetime to a sum (ms), and the processor time meanwhile to another.
 class AddedTime {
   public:
     explicit AddedTime(double& milliseconds, double* processor = nullptr)
@@ -35,7 +35,7 @@ class AddedTime {
 
 /// Writes `values` to the beginning of a buffer on the device.
 void write(gpu::Commands& commands, const gpu::Buffer& buffer, std::span<const std::uint32_t> values) {
-    constexpr std::size_t kMostWords = 65536 / sizeof(std::uint32_t);  // what one vkCmdUpdateBuffer may bring
+    constexpr std::size_t kMostWords = 65536 / sizeof(std::uint32_t);  // limit of vkCmdUpdateBuffer
     commands.run([&] {
         for (std::size_t done = 0; done < values.size(); done += kMostWords) {
             const auto piece = values.subspan(done, std::min(kMostWords, values.size() - done));
@@ -45,7 +45,8 @@ void write(gpu::Commands& commands, const gpu::Buffer& buffer, std::span<const s
     });
 }
 
-/// Tiles of which what is in front leaves some of the first pixels open.
+/// Marks tiles in which the parts in front leave a pixel of the first step unsaturated. `in_front`: their
+/// transmittance.
 void mark_reached(const FramePlan& plan, std::span<const float> in_front, std::vector<bool>& reached) {
     constexpr std::size_t kStep = shader::REFINE_STEP, kTile = shader::TILE;
     const glm::u64vec2 size(plan.params.size), tiles(plan.params.tiles);
@@ -59,22 +60,22 @@ void mark_reached(const FramePlan& plan, std::span<const float> in_front, std::v
 
 bool PictureDrawer::parts_refine(const Chunks& own) {
     if (!plan_.refined) return false;
-    PartExchange& exchange = *orders_->exchange;
+    PartExchange& exchange = *options_->exchange;
     std::vector<glm::vec4> sum{{static_cast<float>(own.pairs), static_cast<float>(own.entries), 0, 0}};
     exchange.add(sum);
-    std::vector<std::uint32_t> said{0};
+    std::vector<std::uint32_t> decision{0};
     if (exchange.part().index == 0) {
         Chunks all;
         all.pairs = static_cast<std::uint64_t>(sum[0].x);
         all.entries = static_cast<std::uint64_t>(sum[0].y);
-        said[0] = worth_refining(all) ? 1 : 0;
+        decision[0] = should_refine(all) ? 1 : 0;
     }
-    exchange.share(said);
-    return said[0] == 1;
+    exchange.share(decision);
+    return decision[0] == 1;
 }
 
 void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole) {
-    PartExchange& exchange = *orders_->exchange;
+    PartExchange& exchange = *options_->exchange;
     gpu::Commands& commands = session_->commands();
     const gpu::Device& device = session_->device();
     const TargetResources& targets = targets_.resources();
@@ -118,7 +119,7 @@ void PictureDrawer::share_pixels(std::uint32_t step, const std::vector<bool>& re
 }
 
 void PictureDrawer::draw_part(passes::TileDraw how) {
-    PartExchange& exchange = *orders_->exchange;
+    PartExchange& exchange = *options_->exchange;
     gpu::Commands& commands = session_->commands();
     const TargetResources& targets = targets_.resources();
     std::uint32_t chunks = 0;
@@ -154,10 +155,10 @@ void PictureDrawer::draw_part(passes::TileDraw how) {
 
 std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
                                                      std::vector<bool>& reached) {
-    PartExchange& exchange = *orders_->exchange;
+    PartExchange& exchange = *options_->exchange;
     gpu::Commands& commands = session_->commands();
     const TargetResources& targets = targets_.resources();
-    const bool sums = plan_.variant.payload == shader::PAYLOAD_TAU;
+    const bool is_sum = plan_.variant.payload == shader::PAYLOAD_TAU;
     const auto& size = plan_.params.size;
     const std::span<glm::vec4> pixels = targets_.pixels(plan_);
     {
@@ -170,7 +171,7 @@ std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::
     };
     wait();
     std::vector<glm::vec4> part(pixels.begin(), pixels.end());
-    if (!sums) {
+    if (!is_sum) {
         std::vector<float> in_front(pixels.size());
         {
             const AddedTime time(share_.composite_milliseconds);
@@ -192,7 +193,7 @@ std::vector<glm::vec4> PictureDrawer::draw_part_step(passes::TileDraw how, std::
         wait();
     }
     const AddedTime time(share_.composite_milliseconds);
-    sums ? exchange.add(part) : exchange.fold(part);
+    is_sum ? exchange.add(part) : exchange.fold(part);
     return part;
 }
 

@@ -13,20 +13,20 @@ namespace edgesplat {
 void need_layers(const gpu::Device& device, const Scene& scene, const Settings& settings) {
     const std::string& obstacle = device.layers_obstacle();
     if (obstacle.empty()) return;
-    if (drawn_as(settings, scene).sheet_format != SheetFormat::Tiles)
-        fail("sheet_format: {} has {}, expected `tiles` there", device.info().name, obstacle);
+    if (canonical_settings(settings, scene).sheet_format != SheetFormat::Tiles)
+        fail("sheet_format: {} has {}, expected `tiles`", device.info().name, obstacle);
     if (!shadow_lights(scene).empty())
-        fail("shadows: {} has {}, expected lights without shadows there", device.info().name, obstacle);
+        fail("shadows: {} has {}, expected lights without shadows", device.info().name, obstacle);
 }
 
 FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const Camera& camera,
                               const Settings& settings, const glm::ivec2& size, std::uint32_t payload) const {
     const Volume& volume = *level.volume.volume();
-    // Parts of a picture that several devices draw agree.
-    const bool refines = session_->profile().refines || orders_->exchange != nullptr;
+    // All parts of a divided picture must agree, whatever their devices.
+    const bool refines = session_->profile().refines || options_->exchange != nullptr;
     FramePlan out = plan_frame(volume, scene, camera, settings, size, payload, level.splats.lists().extent(),
                                kernel_reach(settings), refines);
-    out.params.chunk_slots = std::min(foreseen_, out.params.sheet_count);
+    out.params.chunk_slots = std::min(expected_chunks_, out.params.sheet_count);
     if (culling_.bricks)
         cull_bricks(out, level.splats.lists().bricks, {volume.geometry, camera, size, out.variant.antialias});
     return out;
@@ -41,9 +41,9 @@ bool PictureDrawer::provide_shadows(LevelStore& level, const Scene& scene, const
 void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {
     plan_ = std::move(plan);
     level.splats.bind(level.volume);
-    if (orders_->check_numbers) check_splats(*session_, level);
+    if (options_->check_numbers) check_splats(*session_, level);
     draw_planned(level);
-    if (orders_->check_numbers) check_picture(level);
+    if (options_->check_numbers) check_picture(level);
 }
 
 void PictureDrawer::draw_planned(const LevelStore& level) {
@@ -55,15 +55,15 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
         return;
     }
     const passes::TileDraw how{
-        .profile = &session_->profile(), .count = orders_->counting, .part = orders_->exchange != nullptr};
-    if (orders_->exchange) return draw_part(how);
+        .profile = &session_->profile(), .count = options_->counting, .part = options_->exchange != nullptr};
+    if (options_->exchange) return draw_part(how);
     times_.clear();
     if (draw_front_first(level, how)) return;
-    // As many chunks as the last picture had: each that turns out empty takes as long as waiting would. None where the
-    // device could not plan them.
+    // Expect as many chunks as the last picture had: an empty one costs as much as waiting once. 0 if the device could
+    // not have planned them.
     const auto foresee = [&](const Chunks& chunks) {
         const auto count = std::max(static_cast<std::uint32_t>(chunks.parts.size()), 1U);
-        foreseen_ = fit(chunks, plan_.params, count) ? count : 0;
+        expected_chunks_ = fit(chunks, plan_.params, count) ? count : 0;
     };
     const bool chunks_foreseen = plan_.params.chunk_slots > 0 && !how.profile->rounds && !plan_.refined;
     if (chunks_foreseen) {
@@ -73,7 +73,7 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
     }
     const Chunks chunks = sort_frame(commands, plan_, targets_.resources());
     add_times(times_, commands.span_times());
-    plan_.refined = plan_.refined && worth_refining(chunks);
+    plan_.refined = plan_.refined && should_refine(chunks);
     draw_chunks(chunks, how);
     foresee(chunks);
 }
@@ -84,14 +84,14 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     const SplatLists& splats = level.splats.lists();
     const TargetResources& targets = targets_.resources();
     gpu::Commands& commands = session_->commands();
-    const auto divided = divide_front(plan_, splats.bricks, culling_.least_hiding);
+    const auto divided = divide_front(plan_, splats.bricks, culling_.min_splats_to_hide);
     if (!divided) return false;
     const FramePlan whole = plan_;
     draw_bricks(plan_, splats.bricks, divided->front);
     targets_.provide(plan_, splats);
     Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, divided->sheet)});
     times_ = commands.span_times();
-    if (whole.refined && worth_refining(chunks)) {
+    if (whole.refined && should_refine(chunks)) {
         plan_ = whole;
         targets_.provide(plan_, splats);
         return false;
@@ -101,11 +101,11 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     front.part = true;
     draw_chunks(chunks, front);
     const auto counts = targets.drawn.mapped<std::uint32_t>(3);
-    const std::uint32_t evaluated = counts[1], of_open = counts[2];
+    const std::uint32_t evaluated = counts[1], shaded = counts[2];
     const auto in_front = static_cast<std::uint32_t>(chunks.entries);
     const auto pairs_now = targets.sheet_pairs.mapped<std::uint32_t>(plan_.params.sheet_count);
     const std::vector<std::uint32_t> pairs(pairs_now.begin(), pairs_now.begin() + chunks.sheets.y);
-    const std::uint64_t looked_at = plan_.looked_at;
+    const std::uint64_t splats_examined = plan_.splats_examined;
     const auto closed =
         gpu::read_back<std::uint32_t>(session_->device(), commands, targets.tile_closed, 0, tile_count(plan_));
 
@@ -116,31 +116,31 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     draw_bricks(plan_, splats.bricks, shown);
     targets_.provide(plan_, splats);
     chunks = sort_frame(commands, plan_, targets,
-                        {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .goes_on = true});
+                        {.slab = glm::ivec2(divided->sheet, std::numeric_limits<int>::max()), .continues = true});
     add_times(times_, commands.span_times());
     draw_chunks(chunks, how);
-    // What is known of the picture is of both parts.
-    plan_.looked_at += looked_at;
+    // Statistics of the picture are of both parts.
+    plan_.splats_examined += splats_examined;
     std::ranges::copy(pairs, pairs_now.begin());
     counts[0] = in_front + static_cast<std::uint32_t>(chunks.entries);
     counts[1] += evaluated;
-    counts[2] += of_open;
+    counts[2] += shaded;
     return true;
 }
 
 void PictureDrawer::draw_chunks(const Chunks& chunks, const passes::TileDraw& how) {
     targets_.provide_chunks(plan_, chunks);
     std::function<void()> between;
-    if (orders_->interruption) between = [this] { orders_->heed_interruption(); };
+    if (options_->interruption) between = [this] { options_->throw_if_interrupted(); };
     add_times(times_, draw_tiles(session_->commands(), plan_, targets_.resources(),
                                  static_cast<std::uint32_t>(chunks.parts.size()), how, between));
 }
 
 OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest& request, int sheet) {
     gpu::Commands& commands = session_->commands();
-    plan_ = plan(level, request.scene, request.camera, drawn_as(request.settings, request.scene), request.size,
-                 shader::PAYLOAD_COLOR);
-    // A little more than a pixel needs to be closed, for what the box of the splats does to rounding.
+    plan_ = plan(level, request.scene, request.camera, canonical_settings(request.settings, request.scene),
+                 request.size, shader::PAYLOAD_COLOR);
+    // A stricter saturation than the picture's, since a plan for another box of splats rounds differently.
     plan_.params.saturation += 0.2F * (1 - plan_.params.saturation);
     plan_.refined = plan_.may_refine = false;
     level.splats.bind(level.volume);
@@ -158,8 +158,8 @@ OpenTiles PictureDrawer::open_tiles(const LevelStore& level, const FrameRequest&
 
 namespace {
 
-/// Of the picture's pixels, those in tiles that a sheet's splats touch; on average over the sheets. Tiles that several
-/// splats of a sheet touch count for each, up to all of the picture.
+/// Share of the picture's tiles that a sheet's splats touch, averaged over the sheets. A tile counts once per splat;
+/// each sheet counts at most 1.
 double dirty_share_of_tiles(const FramePlan& plan, const TargetResources& targets) {
     const auto tiles = static_cast<double>(tile_count(plan));
     double sum = 0;

@@ -1,98 +1,98 @@
-// A picture of the splats of a level: passes 3 to 7, once for each payload and sample.
+// Draws pictures of a level's splats: passes 3 to 7, once for each payload and sample.
 #pragma once
 
 #include "engine/compositors/tiles/hiding.h"
 #include "engine/frame/frame.h"
-#include "engine/frame/orders.h"
+#include "engine/frame/render_options.h"
 #include "engine/frame/targets.h"
 #include "engine/scene/frame_request.h"
 #include "engine/store/splat_store.h"
 
 namespace edgesplat {
 
-/// What drawing a picture came to, counted by the device.
+/// Counts of the last picture, by the device.
 struct PictureCounts {
-    std::optional<DrawCounts> draws;  ///< where the device can count
-    double dirty_share = 0;           ///< of the picture, that a sheet group covers with its rectangle, on average
+    std::optional<DrawCounts> draws;  ///< nullopt if the device cannot count
+    double dirty_share = 0;           ///< mean share of the picture that a sheet (tiles) or sheet group (layers) covers
 };
 
-/// What of a level's splats is not looked at. None of it changes a picture.
+/// Which splats of a level are culled. Does not change pictures.
 struct Culling {
-    bool bricks = true;  ///< those that lie outside the picture
-    /// And those that are hidden, of so many splats in view: selecting and sorting fewer twice takes longer than all
-    /// once.
-    std::uint64_t least_hiding = std::uint64_t{1} << 16U;
+    bool bricks = true;  ///< culls bricks outside the picture
+    /// Occluded bricks are culled, too, if at least this many splats are in view: with fewer, selecting and sorting in
+    /// two parts takes longer than all at once.
+    std::uint64_t min_splats_to_hide = std::uint64_t{1} << 16U;
 };
 
-/// Throws Error where sheets must be layers of a target, in the picture or in one that a light takes, and the device
-/// has no such targets.
+/// Throws Error if the picture or a light's picture needs sheets as layers of a target and the device cannot do that.
 void need_layers(const gpu::Device& device, const Scene& scene, const Settings& settings);
 
-/// Throws Error naming a splat that is classified by what is no finite number.
+/// Throws Error naming a splat whose classified value is not finite.
 void check_splats(DeviceSession& session, const LevelStore& level);
 
 class PictureDrawer {
   public:
-    PictureDrawer(DeviceSession& session, const Orders& orders)
-        : session_(&session), orders_(&orders), targets_(session) {}
+    PictureDrawer(DeviceSession& session, const RenderOptions& options)
+        : session_(&session), options_(&options), targets_(session) {}
 
     void set_culling(const Culling& culling) { culling_ = culling; }
-    /// Of a picture that is drawn in parts from blocks: this part's sheets, from the eye on.
+    /// For a picture drawn in parts from blocks: draws only these sheets, numbered from the eye on.
     void set_slab(std::optional<glm::ivec2> slab) { slab_ = slab; }
 
     FramePlan plan(const LevelStore& level, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
-    /// Passes 2c and 2d for the level's splats, if lights of the scene cast shadows and what was found differs; the
-    /// targets are dropped then. Whether they ran.
+    /// Runs passes 2c and 2d for the level's splats if lights cast shadows and the stored shadows do not match; this
+    /// frees the targets. Returns whether they ran.
     bool provide_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
-    /// Draws what the plan says and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the
-    /// splat where something is no finite number: in the list, in the picture.
+    /// Draws the plan and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the splat if a
+    /// number in the splat list or the picture is not finite.
     void draw(const LevelStore& level, FramePlan plan);
-    /// The tiles that the sheets in front of `sheet`, numbered from the eye on, leave open. The targets are dropped.
+    /// The tiles that the sheets in front of `sheet` (numbered from the eye on) leave unsaturated. Frees the targets.
     OpenTiles open_tiles(const LevelStore& level, const FrameRequest& request, int sheet);
 
-    /// Of the last picture.
+    /// The plan of the last picture.
     const FramePlan& drawn() const { return plan_; }
     std::span<const glm::vec4> pixels() const { return targets_.pixels(plan_); }
     const std::vector<PassTime>& times() const { return times_; }
     std::uint32_t splats_drawn() const { return targets_.resources().drawn.mapped<std::uint32_t>(1)[0]; }
     PictureCounts counts() const;
-    /// Of all pictures since begin_share().
+    /// Sums over all pictures since begin_share().
     const SheetShare& share() const { return share_; }
     void begin_share() { share_ = {}; }
 
     Targets& targets() { return targets_; }
 
   private:
-    /// provide_shadows() of a scene with such lights.
+    /// provide_shadows() of a scene with shadow-casting lights.
     bool cast_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     void draw_planned(const LevelStore& level);
-    /// What follows the sort of a tiled picture.
+    /// Draws a tiled picture after the sort.
     void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);
-    /// A tiled picture in two parts, the second without bricks that the first one hides; false where that saves
-    /// nothing, and nothing is drawn.
+    /// Draws a tiled picture in two parts, the second without the bricks that the first one occludes. Returns false
+    /// and draws nothing if that saves no time.
     bool draw_front_first(const LevelStore& level, const passes::TileDraw& how);
 
     void check_picture(const LevelStore& level);
 
-    /// Of a tiled picture, the part that the exchange says; with the first part, the whole is left in the targets.
+    /// Draws this process's part of a tiled picture, as options_->exchange assigns it. The first part gets the whole
+    /// picture in its targets.
     void draw_part(passes::TileDraw how);
-    /// Whether the whole picture is refined: what a part knows of its splats is its own.
+    /// Whether the whole picture is refined, decided from the chunks of all parts. `own`: this part's chunks.
     bool parts_refine(const Chunks& own);
-    /// This part's pixels of a step; the whole ones with the first part.
+    /// Draws this part's pixels of a step; the first part returns the composited ones.
     std::vector<glm::vec4> draw_part_step(passes::TileDraw how, std::uint32_t chunks, std::uint32_t step,
                                           std::vector<bool>& reached);
-    /// After a step: the first part fills in what follows, and says which pixels all are to draw next.
-    /// `reached`: tiles that what is in front leaves open.
+    /// After a step: the first part interpolates pixels and tells all parts which pixels to draw next.
+    /// `reached`: tiles that the parts in front leave unsaturated.
     void share_pixels(std::uint32_t step, const std::vector<bool>& reached, std::span<glm::vec4> whole);
 
     DeviceSession* session_;
-    const Orders* orders_;
+    const RenderOptions* options_;
     Targets targets_;
     Culling culling_;
     std::optional<glm::ivec2> slab_;
     FramePlan plan_;
-    std::uint32_t foreseen_ = 0;  ///< chunks of the next picture; 0: nothing is known
+    std::uint32_t expected_chunks_ = 0;  ///< expected number of chunks of the next picture; 0: unknown
     std::vector<PassTime> times_;
     SheetShare share_;
 };

@@ -1,4 +1,5 @@
-// When the passes of a tiled frame run: all at once, or in rounds between which the host looks at the lists.
+// Decides when the passes of a tiled frame run: all in one command list, or in rounds between which the host reads the
+// tile lists.
 #include <algorithm>
 
 #include "engine/frame/frame.h"
@@ -7,17 +8,17 @@
 namespace edgesplat {
 namespace {
 
-/// Steps of a picture from `first` to `last`, each half of the one before.
+/// Refinement steps of a picture from `first` to `last`, each half of the one before.
 struct Steps {
     std::uint32_t first = 1, last = 1;
-    bool finish = true;  ///< what follows a step's pixels runs, too
+    bool finish = true;  ///< also run the passes that follow a step's pixels
 };
 
 void record_steps(const FramePlan& plan, TilePasses& frame, const Steps& steps) {
     for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
         const std::uint64_t tiles = tile_count(plan);
         for (std::uint32_t chunk = 0; chunk < frame.chunk_count(); ++chunk) {
-            // The lists of a single chunk stand until the picture is there.
+            // A single chunk's lists remain valid for all steps.
             if (step == steps.first || frame.chunk_count() > 1) frame.sort(chunk);
             frame.prepare(chunk);
             frame.draw(chunk, step, tiles, tiles * tile_groups(frame.how(), step), 0);
@@ -49,7 +50,7 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
     KeptLists kept(plan, targets, frame.chunk_count());
     for (std::uint32_t step = steps.first; step >= steps.last; step /= 2) {
         order.clear();
-        const std::uint32_t count = order.any_todo() ? frame.chunk_count() : 0;
+        const std::uint32_t count = order.has_pixels_to_draw() ? frame.chunk_count() : 0;
         for (std::uint32_t chunk = 0; chunk <= count; ++chunk) {
             std::uint32_t round = 0;
             const auto draw_round = [&] {
@@ -60,7 +61,7 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
             while (between && order.groups_in(round) > 0) {
                 run([&] {
                     draw_round();
-                    frame.see_tiles();
+                    frame.copy_saturated_to_host();
                 });
                 between();
             }
@@ -75,12 +76,12 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
                 });
                 break;
             }
-            // Whether lists that were kept still serve is seen once the chunk before is drawn, and others lie
-            // elsewhere.
+            // The chunk before must be drawn first: its saturated tiles decide whether kept lists are still valid, and
+            // take() then points to other lists.
             if (refined && order.groups_in(round) > 0) {
                 run([&] {
                     draw_rest();
-                    frame.see_tiles();
+                    frame.copy_saturated_to_host();
                 });
             }
             if (!refined || !kept.take(chunk)) {
@@ -88,7 +89,7 @@ std::vector<PassTime> in_rounds(gpu::Commands& commands, const FramePlan& plan, 
                 run([&] {
                     draw_rest();
                     frame.sort(chunk);
-                    frame.see_tiles();
+                    frame.copy_saturated_to_host();
                 });
                 if (refined) kept.keep(chunk);
             }
@@ -116,7 +117,7 @@ std::vector<PassTime> draw(gpu::Commands& commands, const FramePlan& plan, const
 
 Chunks sort_frame(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
                   const Division& division) {
-    commands.run([&] { sort_splats(commands, plan, targets, division.goes_on); });
+    commands.run([&] { sort_splats(commands, plan, targets, division.continues); });
     return chunks_of(plan, targets, division.sheets(sheet_pairs(plan, targets), plan.params.sheet_base),
                      commands.profile());
 }

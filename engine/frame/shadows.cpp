@@ -1,4 +1,4 @@
-// PictureDrawer: the pictures that lights with shadows take, passes 2c and 2d.
+// PictureDrawer: draws the pictures of shadow-casting lights, passes 2c and 2d.
 #include "engine/error.h"
 #include "engine/frame/picture.h"
 #include "footprints/kernel.h"
@@ -6,7 +6,7 @@
 namespace edgesplat {
 namespace {
 
-// The layers are indexed by a signed 32-bit number.
+// Shaders index the layers' floats by a signed 32-bit number.
 constexpr std::uint64_t kMostLayerBytes = std::uint64_t{1} << 33U;
 
 }  // namespace
@@ -27,8 +27,8 @@ bool PictureDrawer::cast_shadows(LevelStore& level, const Scene& scene, const Se
             FramePlan light = plan_light_frame(volume, scene, wanted, view, extent, reach);
             if (light_layer_bytes(light) > kMostLayerBytes) {
                 fail(
-                    "shadows: {} x {} pixels of {} layers take {} MiB; {} are possible: choose a smaller resolution "
-                    "or fewer layers",
+                    "shadows: {} x {} pixels of {} layers take {} MiB; at most {} MiB are possible: choose a smaller "
+                    "resolution or fewer layers",
                     light.params.size.x, light.params.size.y, light.params.sheet_count, light_layer_bytes(light) >> 20U,
                     kMostLayerBytes >> 20U);
             }

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::uint64_t kWord = sizeof(std::uint32_t);
 
-bool serves(const gpu::GpuImage& image, const glm::ivec3& size, bool higher_serves) {
+bool serves(const gpu::GpuImage& image, const glm::ivec3& size, bool taller_is_reusable) {
     if (!image) return false;
     const gpu::ImageShape& shape = image.shape();
-    const bool as_high = higher_serves ? shape.size.y >= size.y : shape.size.y == size.y;
+    const bool as_high = taller_is_reusable ? shape.size.y >= size.y : shape.size.y == size.y;
     return shape.size.x == size.x && as_high && shape.layers >= size.z;
 }
 
@@ -55,7 +55,7 @@ void Targets::grow(const TargetBufferRow& row, std::uint64_t bytes) {
 void Targets::provide_images(const FramePlan& plan) {
     for (const TargetImageRow& row : target_image_rows()) {
         const auto size = row.size(plan);
-        if (!size || !serves(resources_.*row.image, *size, row.higher_serves)) resources_.*row.image = {};
+        if (!size || !serves(resources_.*row.image, *size, row.taller_is_reusable)) resources_.*row.image = {};
     }
     std::vector<const gpu::GpuImage*> fresh;
     for (const TargetImageRow& row : target_image_rows()) {
@@ -76,7 +76,7 @@ void Targets::provide_images(const FramePlan& plan) {
 void Targets::provide(FramePlan& plan, const SplatLists& splats) {
     auto& p = plan.params;
     const gpu::DeviceProfile& profile = session_->profile();
-    // What such pictures do without goes before anything new comes.
+    // Free what this plan does not need before allocating.
     for (const TargetBufferRow& row : target_buffer_rows())
         if (row.bytes(plan, profile) == 0) resources_.*row.buffer = {};
     provide_images(plan);

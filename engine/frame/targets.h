@@ -1,4 +1,4 @@
-// What a picture is drawn into: images and buffers of its size, of its sheets and of its splats.
+// Owns the images and buffers of a picture, sized by its pixels, sheets and splats.
 #pragma once
 
 #include "engine/compositors/tiles/lists.h"
@@ -7,7 +7,7 @@
 
 namespace edgesplat {
 
-/// Pixels as the numbers that they consist of.
+/// The components of the pixels.
 inline std::span<const float> floats(std::span<const glm::vec4> pixels) {
     return {&pixels.front().x, 4 * pixels.size()};
 }
@@ -17,26 +17,26 @@ class Targets {
     explicit Targets(DeviceSession& session);
 
     const TargetResources& resources() const { return resources_; }
-    /// What the plan's passes take, as large as they need it; fills in addresses and the frame's parameters. Larger
-    /// ones of earlier pictures stay, what pictures of this plan do without goes.
+    /// Allocates what the plan's passes need, fills in addresses and writes the frame's parameters. Larger resources
+    /// of earlier pictures are reused; those that this plan does not need are freed.
     void provide(FramePlan& plan, const SplatLists& splats);
-    /// Room for the pairs of the largest chunk; brings the chunks to the device.
+    /// Allocates room for the pairs of the largest chunk and writes the chunks.
     void provide_chunks(FramePlan& plan, const Chunks& chunks);
-    /// Frees everything of a picture but what any picture needs.
+    /// Frees all resources except those that every picture needs.
     void drop();
 
-    /// (height, width) vec4 of the picture that was drawn with this plan.
+    /// Pixels of the picture drawn with this plan: (height, width) vec4.
     std::span<glm::vec4> pixels(const FramePlan& plan) const;
 
   private:
     void grow(const TargetBufferRow& row, std::uint64_t bytes);
     void provide_images(const FramePlan& plan);
-    /// The footprints of kernels at faces, in the table.
+    /// Uploads the table of footprints of kernels at faces, for face depth `depth` (voxels).
     void fill_table(double depth);
 
     DeviceSession* session_;
     TargetResources resources_;
-    double table_depth_ = -1;  ///< what the footprint table was made for, voxels; below 0: it was not
+    double table_depth_ = -1;  ///< face depth of the uploaded footprint table, voxels; below 0: none uploaded
 };
 
 }  // namespace edgesplat

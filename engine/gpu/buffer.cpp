@@ -30,7 +30,7 @@ std::uint64_t Buffer::required_bytes(const Device& device, std::size_t bytes) {
         .memoryRequirements.size;
 }
 
-std::string Buffer::beyond_texels(const Device& device, std::size_t bytes, vk::Format texels) {
+std::string Buffer::texel_limit_error(const Device& device, std::size_t bytes, vk::Format texels) {
     const std::uint64_t most = device.physical().getProperties().limits.maxTexelBufferElements;
     const std::uint64_t count = bytes / vk::blockSize(texels);
     return device.loads_texels() && count > most
@@ -46,7 +46,7 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
     using Memory = vk::MemoryPropertyFlagBits;
     if (place == Place::Shared) {
         place = device.profile().own_memory ? Place::Device : Place::Host;
-        if (place == Place::Device) of_host_ = std::make_unique<Buffer>(device, bytes, Place::Copy, name);
+        if (place == Place::Device) host_copy_ = std::make_unique<Buffer>(device, bytes, Place::Copy, name);
     }
     auto requirements = buffer_.getMemoryRequirements();
     allocated_ = place == Place::Copy ? 0 : requirements.size;
@@ -63,10 +63,10 @@ Buffer::Buffer(const Device& device, std::size_t bytes, Place place, const char*
         std::fill_n(guard_, kGuardBytes, kGuard);
     }
     address_ = device.handle().getBufferAddress({*buffer_});
-    // Where buffers are not loaded as texels, only what stands in for them has a view.
-    constexpr std::size_t kStandIn = 16;
-    if (texels != vk::Format::eUndefined && (device.loads_texels() || bytes_ <= kStandIn)) {
-        const std::string beyond = beyond_texels(device, bytes_, texels);
+    // If buffers are not loaded as texels, only placeholders have a view.
+    constexpr std::size_t kPlaceholderBytes = 16;
+    if (texels != vk::Format::eUndefined && (device.loads_texels() || bytes_ <= kPlaceholderBytes)) {
+        const std::string beyond = texel_limit_error(device, bytes_, texels);
         if (!beyond.empty()) fail("{}: {}", name_, beyond);
         texels_ = vk::raii::BufferView(device.handle(), {{}, *buffer_, texels, 0, VK_WHOLE_SIZE});
     }
@@ -77,7 +77,7 @@ Buffer& Buffer::operator=(Buffer&& other) noexcept {
     if (this == &other) return *this;
     release();
     device_ = std::exchange(other.device_, nullptr);
-    of_host_ = std::move(other.of_host_);
+    host_copy_ = std::move(other.host_copy_);
     memory_ = std::move(other.memory_);
     buffer_ = std::move(other.buffer_);
     texels_ = std::move(other.texels_);
@@ -95,19 +95,19 @@ void Buffer::check_guard() const {
     const std::span<const unsigned char> guard(guard_, kGuardBytes);
     const auto written = std::ranges::find_if(guard, [](unsigned char byte) { return byte != kGuard; });
     if (written != guard.end())
-        device_->report(fmt::format("{}: something was written {} bytes behind its end; it has {}", name_,
+        device_->report(fmt::format("{}: a shader wrote {} bytes behind the buffer's end; it has {} bytes", name_,
                                     written - guard.begin(), bytes_));
 }
 
 void Buffer::too_small(std::size_t count, std::size_t of_bytes) const {
-    fail("{}: it has {} bytes, and {} times {} were asked for", name_, bytes_, count, of_bytes);
+    fail("{}: the buffer has {} bytes, but {} elements of {} bytes were requested", name_, bytes_, count, of_bytes);
 }
 
 void Buffer::release() noexcept {
     if (device_ == nullptr) return;
     check_guard();
     if (allocated_ > 0) device_->count_bytes(name_, -static_cast<std::int64_t>(allocated_));
-    of_host_ = nullptr;
+    host_copy_ = nullptr;
     texels_ = nullptr;
     buffer_ = nullptr;
     memory_ = nullptr;

@@ -7,9 +7,9 @@
 namespace edgesplat::gpu {
 namespace {
 
-// Two per span; a frame of 10^4 sheets in groups of 8 has 2500 spans.
+// Two per span. A frame of 10^4 sheets in groups of 8 has 2500 spans.
 constexpr std::uint32_t kMaxTimestamps = 8192;
-// Reset together when the first of them is written: validation keeps a state for every query that is ever reset.
+// Queries that are reset together, when the first is written: validation keeps a state for every query ever reset.
 constexpr std::uint32_t kTimestampsAtOnce = 64;
 constexpr std::uint32_t kMaxCountedDraws = 8192;
 
@@ -38,7 +38,7 @@ Commands::Commands(const Device& device, Pipelines& pipelines, const DescriptorS
 
 Commands::~Commands() {
     if (!busy_) return;
-    // It is still at what is freed next. By way of the C function, which does not throw.
+    // The device still uses objects that are freed next. The C function is used because it does not throw.
     const VkFence fence = *fence_;
     (void)device_->handle().getDispatcher()->vkWaitForFences(*device_->handle(), 1, &fence, VK_TRUE, kTimeout);
 }
@@ -53,11 +53,11 @@ void Commands::finish() {
 }
 
 void Commands::run(const std::function<void()>& body) {
-    finish();  // where the last run was given up, the device may still be at it
+    finish();  // after a time-out the device may still execute the last run
     span_names_.clear();
     counted_ = 0;
     draws_ = false;
-    buffer_.reset();  // a body that threw left it half recorded
+    buffer_.reset();  // a body that threw leaves it half recorded
     buffer_.begin({vk::CommandBufferUsageFlagBits::eOneTimeSubmit});
     for (const vk::raii::QueryPool* pool : {&statistics_, &samples_})
         if (**pool) buffer_.resetQueryPool(**pool, 0, kMaxCountedDraws);
@@ -131,14 +131,14 @@ void Commands::clear(const GpuImage& image) {
 }
 
 void Commands::to_device(const Buffer& buffer) {
-    if (buffer.of_host() == nullptr) return;
-    copy(*buffer.of_host(), buffer, {{0, 0, buffer.bytes()}});
+    if (buffer.host_copy() == nullptr) return;
+    copy(*buffer.host_copy(), buffer, {{0, 0, buffer.bytes()}});
     barrier();
 }
 
 void Commands::to_host(const Buffer& buffer) {
-    if (buffer.of_host() == nullptr) return;
-    copy(buffer, *buffer.of_host(), {{0, 0, buffer.bytes()}});
+    if (buffer.host_copy() == nullptr) return;
+    copy(buffer, *buffer.host_copy(), {{0, 0, buffer.bytes()}});
     barrier();
 }
 
@@ -158,7 +158,7 @@ void Commands::begin_rendering(const GpuImage& color, const GpuImage* depth, std
 
 void Commands::bind_draw(const DrawState& state, std::uint32_t number) {
     bind_pipeline(vk::PipelineBindPoint::eGraphics, pipelines_->draw(state), number);
-    // Not before: a driver may look for the pipeline of a descriptor set with uniform blocks.
+    // After the pipeline: a driver may need the bound pipeline to bind a descriptor set with uniform blocks.
     if (!draws_)
         buffer_.bindDescriptorSets(vk::PipelineBindPoint::eGraphics, pipelines_->layout(), 0, set_->handle(), nullptr);
     draws_ = true;

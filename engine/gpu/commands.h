@@ -1,4 +1,4 @@
-// Recording and running one list of commands at a time, with the few that the passes are made of.
+// Records and runs one command list at a time, with the few commands that the passes need.
 #pragma once
 
 #include <functional>
@@ -16,19 +16,19 @@
 
 namespace edgesplat::gpu {
 
-/// Numbers of a dispatch's workgroups.
+/// Number of workgroups of a dispatch along each axis.
 struct Groups {
     std::uint32_t x = 1, y = 1, z = 1;
 };
 
-/// Enough groups of `local` invocations for `count`, folded into y beyond the 65535 that every device allows.
+/// Groups of `local` invocations for at least `count` invocations; above 65535, every device's limit, they use y, too.
 Groups groups_for(std::uint64_t count, std::uint32_t local);
 
-/// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: the passes depend on one
-/// another as wholes, and a finer barrier buys nothing there.
+/// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: each pass depends on the
+/// whole of the one before, so finer barriers save nothing.
 class Commands {
   public:
-    /// How long the device may take for a run, ns: a software device may take minutes for a huge frame.
+    /// Time limit of a run, ns: a software device may need minutes for a huge frame.
     static constexpr std::uint64_t kTimeout = 600'000'000'000;
 
     Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
@@ -36,67 +36,67 @@ class Commands {
     Commands(const Commands&) = delete;
     Commands& operator=(const Commands&) = delete;
 
-    /// Records what `body` asks for, submits it and waits until the device is done. Throws Error where that takes
-    /// longer than the time-out; the next run waits as long for it again.
+    /// Records the commands of `body`, submits them and waits for the device. Throws Error after the time limit; the
+    /// next run then first waits up to the limit for this one.
     void run(const std::function<void()>& body);
     void set_timeout(std::uint64_t nanoseconds) { timeout_ = nanoseconds; }
     const DeviceProfile& profile() const { return device_->profile(); }
-    /// How many lists the device was given.
+    /// Number of command lists submitted so far.
     std::uint64_t submissions() const { return submissions_; }
 
-    /// For the dispatches to come of this run; else they have the set of the constructor.
+    /// The descriptor set of the following dispatches of this run; the default is the constructor's.
     void bind_compute_set(const DescriptorSet& set);
     void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
-    /// Everything before, visible to everything after.
+    /// Makes all earlier writes visible to all later commands and to the host.
     void barrier();
-    /// Brings fresh images into layout GENERAL.
+    /// Transitions new images to layout GENERAL.
     void prepare(std::initializer_list<const GpuImage*> images);
 
-    /// `value` into `bytes` from `offset` on.
+    /// Writes `value` to every word of `bytes` bytes from `offset` on.
     void fill(const Buffer& buffer, std::uint32_t value, std::uint64_t offset = 0, std::uint64_t bytes = VK_WHOLE_SIZE);
-    /// 65536 bytes at most.
+    /// Writes `values` at byte `offset`, at most 65536 bytes.
     void update(const Buffer& buffer, std::uint64_t offset, std::span<const std::uint32_t> values);
     void copy(const Buffer& from, const Buffer& to, const std::vector<vk::BufferCopy>& parts);
     void copy(const Buffer& from, const GpuImage& to, const vk::BufferImageCopy& part);
     void copy(const GpuImage& from, const Buffer& to, const vk::BufferImageCopy& part);
     void clear(const GpuImage& image);
-    /// What the host wrote into a buffer of Place::Shared, and what the device did; nothing where both see the same.
+    /// Copy a Place::Shared buffer from host to device, and back; no-ops if both use the same memory.
     void to_device(const Buffer& buffer);
     void to_host(const Buffer& buffer);
 
-    /// Into all of `color` and `layers` of it, over what is there.
+    /// Draws into the whole of `color`, into `layers` of its layers; the old contents are kept.
     void begin_rendering(const GpuImage& color, const GpuImage* depth = nullptr, std::uint32_t layers = 1);
     void bind_draw(const DrawState& state, std::uint32_t number);
     void draw(std::uint32_t vertices, std::uint32_t instances);
-    /// What `draws` says at byte `offset` (vk::DrawIndexedIndirectCommand).
+    /// Draws by the vk::DrawIndexedIndirectCommand at byte `offset` of `draws`.
     void draw_indirect(const Buffer& indices, const Buffer& draws, std::uint64_t offset);
     void end_rendering();
 
-    /// Records `body` as a named span of device time; spans of one name add up. Must not nest.
+    /// Records `body` as a named span of device time; spans of equal name are added. Must not nest.
     template <typename Body>
     void span(const char* name, const Body& body) {
         begin_span(name);
         body();
         end_span();
     }
-    /// Milliseconds of the spans of the last run, in order of first use; empty without timestamps.
+    /// Times of the last run's spans (ms), in order of first use; empty without timestamps.
     std::vector<PassTime> span_times() const;
 
-    /// Whether draws between begin_count and end_count are counted from the next run on. Only where the device can.
+    /// From the next run on, counts the draws between begin_count and end_count; only if the device can.
     void count_draws(bool on);
-    /// Within one rendering; do nothing unless draws are counted.
+    /// Both within one rendering; no-ops unless draws are counted.
     void begin_count();
     void end_count();
-    /// Sums over the last run; nothing unless all of its draws were counted.
+    /// Sums over the last run; nullopt unless all of its draws were counted.
     std::optional<DrawCounts> draw_counts() const;
 
   private:
-    /// Waits for what was submitted.
+    /// Waits for the submitted list.
     void finish();
     void begin_span(const char* name);
     void end_span();
     void write_timestamp();
-    /// With the push constant of every pass.
+    /// Binds the pipeline and sets the passes' push constant to `number`.
     void bind_pipeline(vk::PipelineBindPoint point, vk::Pipeline pipeline, std::uint32_t number);
     const Device* device_;
     Pipelines* pipelines_;
@@ -106,11 +106,11 @@ class Commands {
     vk::raii::CommandBuffer buffer_ = nullptr;
     std::uint64_t submissions_ = 0;
     vk::raii::Fence fence_ = nullptr;
-    bool busy_ = false;  ///< the fence is that of a list that was submitted
+    bool busy_ = false;  ///< a list was submitted and its fence not yet waited for
     std::uint64_t timeout_ = kTimeout;
     vk::raii::QueryPool queries_ = nullptr;
     std::vector<std::string> span_names_;
-    vk::raii::QueryPool statistics_ = nullptr, samples_ = nullptr;  ///< a query per counted draw; absent: not counted
+    vk::raii::QueryPool statistics_ = nullptr, samples_ = nullptr;  ///< a query per counted draw; null: no counting
     std::uint32_t counted_ = 0;
 };
 
@@ -118,7 +118,7 @@ class Commands {
 
 namespace edgesplat {
 
-/// Adds times to those of the same name.
+/// Adds each time to the sum of the same name.
 void add_times(std::vector<PassTime>& sums, const std::vector<PassTime>& times);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// The descriptor set: which resource stands in which slot (shaders/shared/bindings.h).
+// The descriptor set: binds resources to slots (shaders/shared/bindings.h).
 #pragma once
 
 #include "engine/gpu/buffer.h"
@@ -8,14 +8,14 @@
 
 namespace edgesplat::gpu {
 
-/// Slots are written between runs, never while the device is at one.
+/// Slots are written between runs, never while the device executes one.
 class DescriptorSet {
   public:
     DescriptorSet(const Device& device, const Pipelines& pipelines);
 
     vk::DescriptorSet handle() const { return *set_; }
 
-    /// With a sampler: as a texture. One slot has always the same sampler.
+    /// With a sampler: as a texture, else as a storage image. A slot always gets the same sampler.
     void put_image(std::uint32_t slot, const GpuImage& image, vk::Sampler sampler = {});
     void put_texels(std::uint32_t slot, const Buffer& buffer);
     void put_block(std::uint32_t slot, const Buffer& block);

@@ -22,9 +22,9 @@ VKAPI_ATTR VkBool32 VKAPI_CALL on_message(VkDebugUtilsMessageSeverityFlagBitsEXT
     return VK_FALSE;
 }
 
-// Performance hints are left out: images stay in layout GENERAL on purpose (see Commands). So is what is general: that
-// is the loader's, about drivers and layers of the machine, and no fault of ours.
-// By way of the C struct: Vulkan-Hpp changed its own type of callbacks, and deprecates the other one.
+// Performance messages are off: images stay in layout GENERAL on purpose (see Commands). General messages are off, too:
+// they are the loader's, about the machine's drivers and layers, not about this program.
+// The C struct is used because Vulkan-Hpp changed its callback type and deprecates the old one.
 vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
     VkDebugUtilsMessengerCreateInfoEXT info{};
     info.sType = VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT;
@@ -39,7 +39,7 @@ vk::DebugUtilsMessengerCreateInfoEXT messenger_info(ValidationLog* log) {
 using Features = vk::StructureChain<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features,
                                     vk::PhysicalDeviceVulkan13Features>;
 
-/// One device feature that the frame cannot do without.
+/// One device feature that every frame needs.
 struct Need {
     const char* name;
     const char* reason;
@@ -55,15 +55,15 @@ const Need kNeeds[] = {
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().bufferDeviceAddress; }},
     {"scalarBlockLayout", "C++ and shaders share their structs",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan12Features>().scalarBlockLayout; }},
-    {"synchronization2", "barriers name both of their ends",
+    {"synchronization2", "barriers are vkCmdPipelineBarrier2",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().synchronization2; }},
     {"maintenance4", "workgroup sizes are given by id",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().maintenance4; }},
-    {"dynamicRendering", "no render pass objects are made",
+    {"dynamicRendering", "draws use no render pass objects",
      [](Features& f) -> vk::Bool32& { return f.get<vk::PhysicalDeviceVulkan13Features>().dynamicRendering; }},
 };
 
-/// Why sheets cannot be layers of a target; empty: they can.
+/// Why sheets cannot be layers of a target; empty if they can.
 std::string layers_obstacle(const vk::raii::PhysicalDevice& physical) {
     const auto features = physical.getFeatures2<vk::PhysicalDeviceFeatures2, vk::PhysicalDeviceVulkan12Features>();
     if (features.get<vk::PhysicalDeviceVulkan12Features>().shaderOutputLayer != VK_TRUE)
@@ -82,7 +82,7 @@ std::optional<std::uint32_t> find_queue_family(const vk::raii::PhysicalDevice& p
     return std::nullopt;
 }
 
-/// Physical devices, best kind first; devices of one kind keep the loader's order.
+/// Physical devices in order of rank_of(), lowest rank first; devices of equal rank keep the loader's order.
 std::vector<vk::raii::PhysicalDevice> sorted_devices(const vk::raii::Instance& instance) {
     auto devices = instance.enumeratePhysicalDevices();
     std::vector<vk::raii::PhysicalDevice> sorted;
@@ -129,9 +129,8 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         if (std::none_of(present.begin(), present.end(), [](const vk::LayerProperties& layer) {
                 return std::string(layer.layerName.data()) == kValidationLayer;
             })) {
-            fail(
-                "validation was asked for, but the layer {} is not installed (Debian package: vulkan-validationlayers)",
-                kValidationLayer);
+            fail("validation is on, but the layer {} is not installed (Debian package: vulkan-validationlayers)",
+                 kValidationLayer);
         }
         layers.push_back(kValidationLayer);
         extensions.push_back(VK_EXT_DEBUG_UTILS_EXTENSION_NAME);
@@ -146,7 +145,7 @@ vk::raii::Instance create_instance(const vk::raii::Context& context, bool valida
         return {context, info};
     } catch (const vk::SystemError& error) {
         fail(
-            "no Vulkan instance could be made ({}); a driver is needed (software driver on Debian: "
+            "no Vulkan instance could be created ({}); a driver is needed (software driver on Debian: "
             "mesa-vulkan-drivers)",
             error.what());
     }
@@ -184,15 +183,15 @@ DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index, const s
     const auto subgroups =
         physical.getProperties2<vk::PhysicalDeviceProperties2, vk::PhysicalDeviceSubgroupProperties>()
             .get<vk::PhysicalDeviceSubgroupProperties>();
-    for (std::string& reason : beyond_limits(properties.limits, subgroups))
+    for (std::string& reason : exceeds_limits(properties.limits, subgroups))
         info.rejections.push_back(std::move(reason));
     return info;
 }
 
-std::vector<std::string> beyond_limits(const vk::PhysicalDeviceLimits& limits,
-                                       const vk::PhysicalDeviceSubgroupProperties& subgroups) {
+std::vector<std::string> exceeds_limits(const vk::PhysicalDeviceLimits& limits,
+                                        const vk::PhysicalDeviceSubgroupProperties& subgroups) {
     std::vector<std::string> reasons;
-    // All stages see all of the one set; texel buffers count as storage images.
+    // Every stage sees the whole descriptor set; texel buffers count as storage images.
     constexpr std::uint32_t kSampled = shader::BIND_SCENE - shader::BIND_SHEETS;
     constexpr std::uint32_t kBlocks = shader::BIND_PICTURE - shader::BIND_SCENE;
     constexpr std::uint32_t kStored = shader::BIND_COUNT - kSampled - kBlocks;
@@ -238,7 +237,7 @@ Device::Device(const DeviceChoice& choice, const DeviceExtensions& extensions) {
     }
 
     profile_ = &profile_named(info_.profile);
-    // A picture of 8192 x 8192 pixels has so many.
+    // 8192 x 8192 pixels.
     constexpr std::uint32_t kTexels = 1U << 26U;
     loads_texels_ = profile_->texels && physical_.getProperties().limits.maxTexelBufferElements >= kTexels;
     queue_family_ = *find_queue_family(physical_);
@@ -326,7 +325,7 @@ std::uint64_t Device::largest_allocation() const {
 vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags wanted,
                                         vk::MemoryPropertyFlags needed, bool device_address, const char* name) const {
     const auto type = memory_type(requirements.memoryTypeBits, wanted, needed);
-    if (!type) fail("{}: the device {} has no memory of the kind it needs", name, info_.name);
+    if (!type) fail("{}: the device {} has no memory of the type needed", name, info_.name);
     const auto most = largest_allocation();
     if (requirements.size > most) {
         fail("{} needs {} MiB of device memory in one piece; {} allows {} MiB", name, requirements.size >> 20U,
@@ -340,13 +339,13 @@ vk::raii::DeviceMemory Device::allocate(const vk::MemoryRequirements& requiremen
     } catch (const vk::OutOfDeviceMemoryError&) {
         const std::uint32_t heap = memory_.memoryTypes[*type].heapIndex;
         fail(
-            "{} needs {:.1f} MiB of device memory, and {} has no more: {:.1f} MiB are in use here, {:.1f} MiB are free "
-            "by its own account, of a heap of {:.1f} MiB; --memory-budget MIB keeps pictures within less, or says what "
-            "would fit, such as a smaller --size",
+            "{} needs {:.1f} MiB of device memory, but {} has not enough: {:.1f} MiB are in use here, and {:.1f} MiB "
+            "of a heap of {:.1f} MiB should be free; --memory-budget MIB limits the memory of a picture, or suggests "
+            "settings that fit, such as a smaller --size",
             name, mebibytes(requirements.size), info_.name, mebibytes(allocated_bytes()), mebibytes(free_bytes(heap)),
             mebibytes(memory_.memoryHeaps[heap].size));
     } catch (const vk::OutOfHostMemoryError&) {
-        fail("{} needs {:.1f} MiB of memory; this machine has no more ({:.1f} MiB are in use here)", name,
+        fail("{} needs {:.1f} MiB of memory; this machine has not enough ({:.1f} MiB are in use here)", name,
              mebibytes(requirements.size), mebibytes(allocated_bytes()));
     }
 }

@@ -1,4 +1,4 @@
-// The Vulkan instance and device: choice with reasons, queue, memory types, validation messages counted.
+// The Vulkan instance and device: chooses a device (with reasons), allocates memory, counts validation messages.
 #pragma once
 
 #include <atomic>
@@ -15,24 +15,24 @@
 
 namespace edgesplat::gpu {
 
-/// What validation said so far. Lives at a fixed address, since the driver keeps a pointer to it.
+/// Counts and prints validation messages. Its address is fixed, since the driver keeps a pointer to it.
 struct ValidationLog {
     void add(const char* severity, const char* message);
     std::atomic<std::uint64_t> messages{0};
 };
 
-/// Device memory held under one name, by buffers and images.
+/// Device memory allocated under one name, by buffers and images.
 struct Allocation {
-    std::uint64_t bytes = 0;  ///< held now
-    std::uint64_t peak = 0;   ///< most that was held since Device::forget_peaks
+    std::uint64_t bytes = 0;  ///< allocated now
+    std::uint64_t peak = 0;   ///< maximum since Device::forget_peaks
 };
 
-/// An instance of Vulkan 1.3, with the Khronos validation layer and synchronization validation on request.
-/// Throws Error that says what to install where there is no loader, no driver, or no such layer.
+/// A Vulkan 1.3 instance; with `validation`, the Khronos layer and synchronization validation are enabled.
+/// Throws Error that names the package to install if the driver or the layer is missing.
 vk::raii::Instance create_instance(const vk::raii::Context& context, bool validation, ValidationLog* log,
                                    std::vector<const char*> extensions = {});
 
-/// Extensions that a window needs; pictures need none.
+/// Extensions that a window needs. Rendering needs none.
 struct DeviceExtensions {
     std::vector<const char*> instance, device;
 };
@@ -40,11 +40,11 @@ struct DeviceExtensions {
 /// Description of a physical device and every reason it cannot be used (empty: it can). `profile`: as in DeviceChoice.
 DeviceInfo describe(const vk::raii::PhysicalDevice& physical, int index, const std::string& profile);
 
-/// What of these limits is less than the one descriptor set and the shaders need, a reason each.
-std::vector<std::string> beyond_limits(const vk::PhysicalDeviceLimits& limits,
-                                       const vk::PhysicalDeviceSubgroupProperties& subgroups);
+/// One reason for each limit below what the descriptor set and the shaders need.
+std::vector<std::string> exceeds_limits(const vk::PhysicalDeviceLimits& limits,
+                                        const vk::PhysicalDeviceSubgroupProperties& subgroups);
 
-/// An opened device with one queue that does graphics, compute and transfer.
+/// An opened device with one queue for graphics, compute and transfer.
 class Device {
   public:
     explicit Device(const DeviceChoice& choice, const DeviceExtensions& extensions = {});
@@ -55,39 +55,38 @@ class Device {
     const vk::raii::PhysicalDevice& physical() const { return physical_; }
     const vk::raii::Queue& queue() const { return queue_; }
     std::uint32_t queue_family() const { return queue_family_; }
-    /// Nanoseconds per timestamp tick; 0 where the queue has no timestamps.
+    /// Nanoseconds per timestamp tick; 0 if the queue has no timestamps.
     double timestamp_period() const { return timestamp_period_; }
     const DeviceProfile& profile() const { return *profile_; }
-    /// Whether shaders load buffers as texels (DeviceProfile::texels): a picture has a texel a pixel, and lists more.
+    /// Whether shaders load buffers as texels (DeviceProfile::texels) and the device allows texel buffers large enough.
     bool loads_texels() const { return loads_texels_; }
     /// Whether draws can be counted: pipeline statistics and precise occlusion queries.
     bool counts_draws() const { return counts_draws_; }
-    /// Why it cannot draw into layers of a target; empty: it can.
+    /// Why the device cannot draw into layers of a target; empty if it can.
     const std::string& layers_obstacle() const { return layers_obstacle_; }
     std::uint64_t validation_messages() const { return log_->messages; }
-    /// Whether calls are checked and all memory can be mapped: then buffers have a guard behind them (Buffer).
+    /// Whether buffers end in guard bytes (see Buffer): validation is on and all memory types can be mapped.
     bool guards_buffers() const { return guards_buffers_; }
-    /// Prints it as validation prints its errors, and counts it among them.
+    /// Prints and counts the message like a validation error.
     void report(const std::string& message) const;
-    /// Bytes of device memory held now by buffers and images.
+    /// Bytes of device memory that buffers and images occupy now.
     std::uint64_t allocated_bytes() const { return allocations_->at(kTotal).bytes; }
-    /// The most that was held at once since forget_peaks.
+    /// Maximum of allocated_bytes() since forget_peaks.
     std::uint64_t peak_bytes() const { return allocations_->at(kTotal).peak; }
-    /// By the name that buffers and images were made with; the empty name holds the total.
+    /// Allocations by the name of the buffer or image; the empty name has the total.
     const std::map<std::string, Allocation>& allocations() const { return *allocations_; }
-    /// From now on peaks count anew, and names that hold nothing are gone.
+    /// Resets each peak to the present allocation and removes names without an allocation.
     void forget_peaks() const;
 
-    /// The memory heap that buffers mapped by the host come from, or those that are not and images.
+    /// The memory heap of host-mapped buffers (`host`), or of images and all other buffers.
     std::uint32_t heap_of(bool host) const;
-    /// What can still be allocated from a heap: what the driver says (VK_EXT_memory_budget), else the heap's size less
-    /// what is held here.
+    /// Free bytes of a heap: as the driver reports (VK_EXT_memory_budget), else heap size minus allocated_bytes().
     std::uint64_t free_bytes(std::uint32_t heap) const;
-    /// The most that one allocation may take.
+    /// Maximum size of one allocation, bytes.
     std::uint64_t largest_allocation() const;
 
-    /// Memory for `requirements` of the first type that has all of `wanted`, else all of `needed`.
-    /// Throws Error with the numbers when it is not to be had.
+    /// Allocates memory of the first type that has `wanted` and `needed`, else `needed` alone.
+    /// Throws Error with the sizes if that fails.
     vk::raii::DeviceMemory allocate(const vk::MemoryRequirements& requirements, vk::MemoryPropertyFlags wanted,
                                     vk::MemoryPropertyFlags needed, bool device_address, const char* name) const;
     void count_bytes(const std::string& name, std::int64_t change) const;
@@ -97,7 +96,7 @@ class Device {
                                              vk::MemoryPropertyFlags needed) const;
     std::unique_ptr<ValidationLog> log_ = std::make_unique<ValidationLog>();
     static constexpr const char* kTotal = "";
-    // At a fixed address, since buffers and images outlive moves of the device.
+    // A fixed address: buffers and images keep using it after the device is moved.
     std::unique_ptr<std::map<std::string, Allocation>> allocations_ =
         std::make_unique<std::map<std::string, Allocation>>(std::map<std::string, Allocation>{{kTotal, {}}});
     vk::raii::Context context_;

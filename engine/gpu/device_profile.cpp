@@ -9,7 +9,7 @@
 namespace edgesplat::gpu {
 namespace {
 
-// lavapipe's subgroups are 8 invocations, those of GPUs 32 or 64.
+// Subgroup sizes: lavapipe 8 invocations, GPUs 32 or 64.
 constexpr std::array kProfiles{
     DeviceProfile{.name = "lavapipe",
                   .rounds = true,
@@ -43,14 +43,14 @@ const DeviceProfile& profile_named(std::string_view name) {
 }
 
 ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const std::string& wanted) {
-    if (!wanted.empty()) return {&profile_named(wanted), "asked for by --device-profile"};
+    if (!wanted.empty()) return {&profile_named(wanted), "set by --device-profile"};
     const char* variable = std::getenv("EDGESPLAT_DEVICE_PROFILE");
-    if (variable != nullptr && *variable != '\0')
-        return {&profile_named(variable), "asked for by EDGESPLAT_DEVICE_PROFILE"};
+    if (variable != nullptr && *variable != '\0') return {&profile_named(variable), "set by EDGESPLAT_DEVICE_PROFILE"};
     if (is_processor(device)) return {&profile_named("lavapipe"), "the device is the processor"};
     if (device.deviceType == vk::PhysicalDeviceType::eDiscreteGpu)
-        return {&profile_named("discrete"), "the device is a GPU with memory of its own"};
-    return {&profile_named("generic"), "of a " + vk::to_string(device.deviceType) + " nothing more is known"};
+        return {&profile_named("discrete"), "the device is a GPU with its own memory"};
+    return {&profile_named("generic"),
+            "there is no special profile for device type " + vk::to_string(device.deviceType)};
 }
 
 ChosenProfile choose_profile(const std::string& wanted) {

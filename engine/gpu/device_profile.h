@@ -1,5 +1,5 @@
-// What is known of drivers and devices, and what follows from it for a frame. The one place that knows: all else asks
-// here what to do, never which device it is.
+// Device profiles: how a frame is drawn on each kind of device. Only this file knows drivers; all other code reads a
+// profile and never tests which device it has.
 #pragma once
 
 #include <cstdint>
@@ -10,68 +10,67 @@
 
 namespace edgesplat::gpu {
 
-/// How a frame is made on a kind of device. Pictures are the same with each but for rounding.
+/// How a frame is drawn on one kind of device. Pictures differ between profiles by rounding only.
 struct DeviceProfile {
     std::string_view name;
-    /// Lists of tiles are drawn so many entries at a time, and the host looks at them in between: where a driver ends
-    /// all loops of an invocation together after 65535 iterations (shaders/shared/limits.h).
+    /// Tile lists are drawn in rounds of a fixed number of entries; the host reads the lists between rounds. Needed if
+    /// a driver ends all loops of an invocation after 65535 iterations in total (shaders/shared/limits.h).
     bool rounds = false;
-    /// Whether pixels between those that are drawn may follow from these (PixelChoice::Refined): where there are more
-    /// invocations at work than pixels, what waits for another step takes longer than it spares.
+    /// Whether pixels may be interpolated between drawn ones (PixelChoice::Refined). If the device runs more
+    /// invocations than the picture has pixels, waiting for a further step costs more than it saves.
     bool refines = true;
-    /// Invocations of a workgroup for lists of pixels, which are of very different length: about a subgroup.
+    /// Invocations of a workgroup for lists of pixels: about a subgroup, since list lengths differ widely.
     std::uint32_t list_group = 64;
-    /// And for all pixels of a tile.
+    /// Invocations of a workgroup for all pixels of a tile.
     std::uint32_t tile_group = 128;
-    /// Pairs of a splat and a tile that a chunk of sheets may have, and for each tile. Small chunks close tiles early
-    /// for those behind; each costs some dispatches.
+    /// Limits of a chunk of sheets: (splat, tile) pairs in total, and per tile. With small chunks tiles saturate before
+    /// the chunks behind are drawn; each chunk costs some dispatches.
     std::uint64_t chunk_pairs = 262144, tile_pairs = 256;
-    /// Parts into which a tile's list is divided among the invocations that mark pixels; 1: none.
+    /// Parts into which a tile's list is divided among the invocations that mark pixels; 1: not divided.
     std::uint32_t list_parts = 8;
-    /// A frame is drawn in two parts where what is in front may hide bricks behind it. Waiting in between takes longer
-    /// than it spares where the device is not the processor itself.
+    /// Draws a frame in two parts if the front part may occlude bricks behind it. Only on software devices: elsewhere
+    /// waiting between the parts costs more than it saves.
     bool front_first = false;
-    /// Pairs of splats and what they are sorted to find their places side by side, each by looking at those before it;
-    /// else one after another, in columns.
+    /// Sorts run in parallel over (splat, sheet) and (splat, tile) pairs: each finds its rank among the pairs before
+    /// it. Otherwise each invocation processes the pairs of a column in order.
     bool side_by_side = true;
-    /// Columns of the tiles' histogram: of few, each has a share of a chunk for one invocation; of many, for a
-    /// workgroup.
+    /// Columns of the tiles' histogram. With few columns one invocation processes a column; with many, a workgroup.
     std::uint32_t tile_blocks = 512;
-    /// What both host and device use lies in the device's own memory, and is copied: each read of the host's would be
-    /// waited for.
+    /// Buffers that host and device share lie in device memory and are copied, since reads from host memory are slow.
     bool own_memory = false;
-    /// What few invocations need is entered by a loop, not by an if, whose sides a driver may run for all of them.
+    /// Rare branches are one-iteration loops instead of `if`, since a driver may run both sides of an `if` for all
+    /// invocations.
     bool loops = false;
-    /// Buffers are loaded as texels, not through their addresses, where the device has texels enough.
+    /// Buffers are loaded as texels, not through their addresses, if the device allows large enough texel buffers.
     bool texels = true;
-    /// Timestamps are written when the device next rasterises, which may be after what was recorded later: barriers
-    /// around them.
+    /// The device may write a timestamp after commands that were recorded later (when it next rasterises), so
+    /// timestamps have barriers around them.
     bool late_timestamps = false;
 };
 
-/// "lavapipe": devices that are the processor; "generic": what runs everywhere else; "discrete": GPUs with memory of
-/// their own. The first is that of forecasts without a device; no list_group is smaller than its own.
+/// "lavapipe": software devices, on the processor. "discrete": GPUs with their own memory. "generic": all others.
+/// Forecasts without a device use "lavapipe"; it has the smallest list_group.
 std::span<const DeviceProfile> device_profiles();
 
 /// Throws Error listing the names.
 const DeviceProfile& profile_named(std::string_view name);
 
-/// A device's profile and why it has it.
+/// A device's profile and the reason for the choice.
 struct ChosenProfile {
     const DeviceProfile* profile;
     std::string reason;
 };
 
-/// `wanted`: a name, which may be any device's; empty: what the environment variable EDGESPLAT_DEVICE_PROFILE says,
-/// else what the device is.
+/// `wanted`: a profile's name, valid for any device. Empty: the environment variable EDGESPLAT_DEVICE_PROFILE, else by
+/// the device's type.
 ChosenProfile choose_profile(const vk::PhysicalDeviceProperties& device, const std::string& wanted);
-/// The same of no device: else what the processor is.
+/// The same without a device: a software device is assumed.
 ChosenProfile choose_profile(const std::string& wanted);
 
-/// Whether the device is the processor itself, whatever its profile.
+/// Whether the device is the processor itself, independent of its profile.
 bool is_processor(const vk::PhysicalDeviceProperties& device);
 
-/// Devices in the order in which one is looked for: the lower the better, up to kWorstRank.
+/// Rank in the choice of a device: 0 (preferred) to kWorstRank.
 int rank_of(const vk::PhysicalDeviceProperties& device);
 inline constexpr int kWorstRank = 4;
 

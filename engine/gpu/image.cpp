@@ -29,7 +29,7 @@ std::uint64_t required_bytes(const Device& device, const ImageShape& shape) {
     return device.handle().getImageMemoryRequirements(vk::DeviceImageMemoryRequirements(&info)).memoryRequirements.size;
 }
 
-std::string beyond_limits(const Device& device, const ImageShape& shape) {
+std::string exceeds_limits(const Device& device, const ImageShape& shape) {
     const auto limits = device.physical().getProperties().limits;
     const auto longest = static_cast<std::uint32_t>(glm::max(shape.size.x, glm::max(shape.size.y, shape.size.z)));
     const std::uint32_t most = shape.volume ? limits.maxImageDimension3D : limits.maxImageDimension2D;
@@ -40,7 +40,7 @@ std::string beyond_limits(const Device& device, const ImageShape& shape) {
 }
 
 GpuImage::GpuImage(const Device& device, const ImageShape& shape, const char* name) : shape_(shape), name_(name) {
-    const std::string beyond = beyond_limits(device, shape);
+    const std::string beyond = exceeds_limits(device, shape);
     if (!beyond.empty()) fail("{}: {}", name, beyond);
     const auto layers = static_cast<std::uint32_t>(shape.layers);
     image_ = vk::raii::Image(device.handle(), create_info(shape));

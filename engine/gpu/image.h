@@ -17,16 +17,16 @@ struct ImageShape {
     vk::ImageUsageFlags usage;
 };
 
-/// What such an image takes of the device's memory. It must not be beyond_limits().
+/// Device memory of an image, bytes. Precondition: exceeds_limits() is empty.
 std::uint64_t required_bytes(const Device& device, const ImageShape& shape);
 
-/// Which of the device's limits the shape is beyond, with the numbers; empty: none.
-std::string beyond_limits(const Device& device, const ImageShape& shape);
+/// Error text with the numbers if the shape exceeds a limit of the device, else empty.
+std::string exceeds_limits(const Device& device, const ImageShape& shape);
 
 class GpuImage {
   public:
     GpuImage() = default;
-    /// Throws Error with the device's limit when the size or the memory is not to be had.
+    /// Throws Error with the device's limit if the image is too large or its memory cannot be allocated.
     GpuImage(const Device& device, const ImageShape& shape, const char* name);
     ~GpuImage() { release(); }
     GpuImage(GpuImage&& other) noexcept { *this = std::move(other); }

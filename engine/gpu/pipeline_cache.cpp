@@ -26,7 +26,7 @@ PipelineCache::PipelineCache(const Device& device, const fs::path& folder) {
 PipelineCache::~PipelineCache() {
     try {
         save();
-    } catch (...) {  // NOLINT(bugprone-empty-catch): what cannot be kept is compiled again
+    } catch (...) {  // NOLINT(bugprone-empty-catch): the next start compiles again
     }
 }
 

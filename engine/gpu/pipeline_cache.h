@@ -1,4 +1,4 @@
-// Compiled pipelines on disk, so that the next start need not compile them again.
+// Keeps compiled pipelines on disk, so that the next start does not compile them again.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace edgesplat::gpu {
 
-/// One file a device and driver, in the folder of footprint tables; no folder: nothing is kept. A damaged, truncated or
-/// foreign file counts as none.
+/// One file per device and driver in `folder`, which also has the footprint tables; an empty path: no file. A damaged,
+/// truncated or foreign file is ignored.
 class PipelineCache {
   public:
     PipelineCache(const Device& device, const std::filesystem::path& folder);
@@ -20,12 +20,12 @@ class PipelineCache {
     ~PipelineCache();
 
     const vk::raii::PipelineCache& handle() const { return cache_; }
-    /// Bytes that were read.
+    /// Bytes read from the file.
     std::size_t loaded_bytes() const { return loaded_; }
-    /// What is compiled from now on is worth writing.
-    void note_new() { changed_ = true; }
-    /// Writes beside the file and renames, if there is anything new; safe for several processes at once. Whether all is
-    /// well: a folder that cannot be written costs the next start its time, and this one nothing.
+    /// A pipeline was compiled: the next save() writes the file.
+    void mark_changed() { changed_ = true; }
+    /// Writes the file if pipelines were added: to a temporary file, then by renaming, which is safe with several
+    /// processes. Returns false if that fails; then only the next start is slower.
     bool save();
 
   private:

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Drivers check whose data they are given, not all of them whether it is whole.
+// Drivers check that cache data is their own, but not all check that it is undamaged: hence the checksum.
 struct Header {
     std::array<char, 8> magic = {'E', 'S', 'P', 'L', 'A', 'T', 'P', 'C'};
     std::uint64_t bytes = 0, checksum = 0;
@@ -35,7 +35,7 @@ Header header_of(const std::vector<std::uint8_t>& data) {
 
 std::vector<std::uint8_t> read_pipeline_cache_file(const fs::path& file) {
     std::error_code error;
-    if (!fs::is_regular_file(file, error)) return {};  // opening a FIFO would wait for ever
+    if (!fs::is_regular_file(file, error)) return {};  // opening a FIFO would block
     const auto size = fs::file_size(file, error);
     std::ifstream in(file, std::ios::binary);
     Header header;

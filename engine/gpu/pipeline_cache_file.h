@@ -1,4 +1,4 @@
-// The file of compiled pipelines: what the driver gave, behind a header that tells whether it is whole.
+// Reads and writes the pipeline cache file: the driver's data behind a header with length and checksum.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace edgesplat::gpu {
 
-/// What a driver gave, from the file; empty where there is none, where it is damaged, truncated or longer than its
-/// header says, or not an ordinary file. Takes no more memory than the file has bytes.
+/// The driver's data from the file. Empty if the file is missing, damaged, truncated, longer than its header states, or
+/// not a regular file. Allocates at most the file's size.
 std::vector<std::uint8_t> read_pipeline_cache_file(const std::filesystem::path& file);
 
-/// Writes beside the file and renames; makes the folder. Whether all is well.
+/// Writes a temporary file and renames it; creates the folder. Returns whether that succeeded.
 bool write_pipeline_cache_file(const std::filesystem::path& file, const std::vector<std::uint8_t>& data);
 
 }  // namespace edgesplat::gpu

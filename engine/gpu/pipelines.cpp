@@ -18,7 +18,7 @@ std::string key_of(const char* name, const Specialization& constants) {
     return key;
 }
 
-/// Specialization data laid out as pairs in memory; lives as long as the pipeline's creation.
+/// Specialization constants in Vulkan's layout; must live until the pipeline is created.
 struct SpecializationData {
     std::vector<std::uint32_t> values;
     std::vector<vk::SpecializationMapEntry> entries;
@@ -41,7 +41,7 @@ vk::PipelineColorBlendAttachmentState blend_state(DrawState::Blend blend) {
     state.colorWriteMask = Channel::eR | Channel::eG | Channel::eB | Channel::eA;
     if (blend == DrawState::Blend::None) return state;
     state.blendEnable = VK_TRUE;
-    // Under: what is new lies behind what is there, both premultiplied.
+    // Under: the new colour is behind the target's, both premultiplied.
     const auto source = blend == DrawState::Blend::Add ? Factor::eOne : Factor::eOneMinusDstAlpha;
     state.setSrcColorBlendFactor(source).setDstColorBlendFactor(Factor::eOne);
     state.setSrcAlphaBlendFactor(source).setDstAlphaBlendFactor(Factor::eOne);
@@ -92,7 +92,7 @@ void Pipelines::forget_used() {
 
 void Pipelines::count_creation(std::chrono::steady_clock::time_point start) {
     ++creation_.count;
-    cache_.note_new();
+    cache_.mark_changed();
     creation_.milliseconds +=
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }

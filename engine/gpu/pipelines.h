@@ -1,4 +1,4 @@
-// Pipelines by shader name and specialization constants, made on first use and kept.
+// Creates pipelines on first use and keeps them, by shader name and specialization constants.
 #pragma once
 
 #include <chrono>
@@ -13,10 +13,10 @@
 
 namespace edgesplat::gpu {
 
-/// (constant id, value) pairs: shaders/shared/limits.h names the ids.
+/// (constant id, value) pairs; shaders/shared/limits.h names the ids.
 using Specialization = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
-/// A draw into float targets.
+/// Everything that selects the pipeline of a draw into float targets.
 struct DrawState {
     const char* vertex;
     const char* fragment;
@@ -27,13 +27,13 @@ struct DrawState {
     enum class Depth { Write, TestLess } depth_use = Depth::Write;
 };
 
-/// A pipeline by what it is made of.
+/// Shaders and constants that identify a pipeline.
 struct PipelineVariant {
-    std::vector<const char*> shaders;  ///< names, one a stage
-    Specialization constants;          ///< of all of them
+    std::vector<const char*> shaders;  ///< names, one per stage
+    Specialization constants;          ///< the same for all stages
 };
 
-/// What making pipelines took so far.
+/// Number of pipelines created so far, and the time that took.
 struct PipelineCreation {
     std::uint64_t count = 0;
     double milliseconds = 0;
@@ -41,12 +41,12 @@ struct PipelineCreation {
 
 class Pipelines {
   public:
-    /// `cache_folder`: where compiled pipelines are kept for the next start; empty: nowhere.
+    /// `cache_folder`: folder of the pipeline cache file; empty: no cache.
     Pipelines(const Device& device, const std::filesystem::path& cache_folder);
 
     vk::Pipeline compute(const char* shader, const Specialization& constants);
     vk::Pipeline draw(const DrawState& state);
-    /// Every variant that was asked for since forget_used.
+    /// Every variant used since forget_used.
     std::vector<PipelineVariant> used() const;
     void forget_used();
     const PipelineCreation& creation() const { return creation_; }
@@ -57,7 +57,7 @@ class Pipelines {
 
   private:
     vk::raii::ShaderModule load(const char* shader) const;
-    /// And what the device's profile chooses.
+    /// Adds the constants that the device's profile sets.
     Specialization with_drivers(Specialization constants) const;
     const Device* device_;
     PipelineCache cache_;

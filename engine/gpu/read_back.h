@@ -1,4 +1,4 @@
-// What a buffer on the device holds. Waits.
+// Copies the contents of a device buffer to the host and waits.
 #pragma once
 
 #include <vector>

@@ -1,4 +1,4 @@
-// SPIR-V compiled at build time and embedded (cmake/CompileShaders.cmake).
+// Access to the SPIR-V that is compiled at build time and embedded (cmake/CompileShaders.cmake).
 #pragma once
 
 #include <cstdint>

@@ -23,7 +23,7 @@ std::string script_of(const Plot& figure, PlotFormat format) {
                              : "set terminal pngcairo size 900,600 enhanced font ',12'\n";
     script += fmt::format("set title '{}'\nset xlabel '{}'\nset ylabel '{}'\nset xrange [{}:{}]\n{}\n", figure.title,
                           figure.x_label, figure.y_label, figure.low, figure.high, figure.extra);
-    const int steps = svg ? 600 : 1200;  // each is text in an SVG
+    const int steps = svg ? 600 : 1200;  // every point is text in an SVG
     std::string plot = "plot ";
     for (std::size_t c = 0; c < figure.curves.size(); ++c) {
         const Curve& curve = figure.curves[c];
@@ -44,7 +44,7 @@ std::string script_of(const Plot& figure, PlotFormat format) {
 std::string run_gnuplot(const std::string& script) {
     const MemoryFile in, out;
     in.fill(script);
-    // No shell in between: nothing in a path can be mistaken for syntax.
+    // Starts gnuplot without a shell, so that paths need no quoting.
     std::string program = "gnuplot";
     char* arguments[] = {program.data(), nullptr};
     posix_spawn_file_actions_t files;

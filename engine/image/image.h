@@ -1,4 +1,4 @@
-// A picture in memory.
+// An image in memory.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace edgesplat {
 
-/// Rows from the top, channels interleaved, linear light, colour premultiplied by alpha.
+/// Float pixels, rows from the top, channels interleaved, linear light, colour premultiplied by alpha.
 struct Image {
     int width = 0;
     int height = 0;

@@ -16,7 +16,7 @@ void check_same_shape(const Image& a, const Image& b) {
         fail("the pictures differ in their number of channels: {} and {}", a.channels, b.channels);
 }
 
-/// Absolute difference; equal infinities and two NaN are no difference, one NaN is an infinite one.
+/// Absolute difference; 0 for equal infinities or two NaN, infinite if one value is NaN.
 double distance(float a, float b) {
     if (a == b || (std::isnan(a) && std::isnan(b))) return 0;
     const double d = std::abs(static_cast<double>(a) - static_cast<double>(b));

@@ -22,7 +22,7 @@ std::string lower_extension(const fs::path& path) {
     return extension;
 }
 
-/// Calls `step`, which writes `target`.
+/// Calls `step`, which writes `target`, and converts its errors.
 template <typename Step>
 auto writing(const fs::path& target, const Step& step) {
     try {
@@ -65,7 +65,7 @@ void check_image(const Image& image) {
                                           static_cast<std::size_t>(image.channels)
                                     : 0;
     if (!sized || image.pixels.size() != count)
-        fail("picture of {} x {} pixels and {} channels holds {} values", image.width, image.height, image.channels,
+        fail("picture of {} x {} pixels and {} channels has {} values", image.width, image.height, image.channels,
              image.pixels.size());
 }
 
@@ -133,7 +133,7 @@ LoadedImage read_image(const fs::path& path) {
     const auto reader = picture_library().open(path.string(), reason);
     if (!reader) fail("{}: cannot be read as a picture: {}", path.string(), reason);
     const PicturePage spec = reader->page();
-    // Before memory is taken for it: no compression of pictures is seen to do better.
+    // Checked before allocation: no image compression exceeds this ratio.
     constexpr std::size_t kBestRatio = std::size_t{1} << 16;
     const std::size_t stored = fs::file_size(path, ignored);
     const auto samples = static_cast<double>(spec.width) * spec.height * spec.channels;
@@ -146,7 +146,7 @@ LoadedImage read_image(const fs::path& path) {
         fail("{}: cannot be read: {}", path.string(), reader->take_error());
     if (spec.type == detail::SampleType::Float32 || spec.type == detail::SampleType::Float64) return loaded;
 
-    // Alpha is as it was stored; it is multiplied in here, in linear light.
+    // Alpha is as stored; colour is multiplied by it here, in linear light.
     const auto channels = static_cast<std::size_t>(spec.channels);
     const auto alpha_channel = static_cast<std::size_t>(spec.alpha_channel);
     for (std::size_t pixel = 0; pixel < loaded.image.pixels.size(); pixel += channels) {

@@ -12,7 +12,7 @@
 namespace edgesplat {
 namespace {
 
-/// 0..1 to 0..255, rounded; NaN and what lies below 0 become 0.
+/// 0..1 to 0..255, rounded; NaN and negative values become 0.
 std::uint8_t to_byte(float value) {
     return value > 0 ? static_cast<std::uint8_t>(std::lround(std::min(value, 1.0F) * 255.0F)) : std::uint8_t{0};
 }
@@ -21,7 +21,7 @@ bool is_ascii(const std::string& text) {
     return std::ranges::all_of(text, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
 }
 
-/// libpng's state; freed where its errors jump over whatever is on the stack.
+/// libpng's state, freed in the destructor, also after an error: libpng reports errors by longjmp.
 struct Writer {
     png_structp png = nullptr;
     png_infop info = nullptr;
@@ -43,7 +43,7 @@ struct Writer {
         static_cast<Writer*>(png_get_io_ptr(png))->bytes.append(reinterpret_cast<const char*>(data), size);
     }
 
-    /// Whether it went well. Nothing in here has a destructor.
+    /// Returns whether encoding succeeded. No local variable here may have a destructor.
     bool write(int width, int height, int color_type, std::vector<png_text>& texts, png_bytep* rows) {
         if (setjmp(png_jmpbuf(png)) != 0) return false;
         png_set_write_fn(png, this, &append, nullptr);
@@ -58,7 +58,7 @@ struct Writer {
     }
 };
 
-/// sRGB-encoded, colour divided by alpha.
+/// Bytes of a PNG: sRGB-encoded, colour divided by alpha.
 std::vector<std::uint8_t> bytes_of(const Image& image) {
     const bool has_alpha = image.channels == 2 || image.channels == 4;
     const auto channels = static_cast<std::size_t>(image.channels), colors = has_alpha ? channels - 1 : channels;
@@ -85,7 +85,7 @@ std::string encode_png(const Image& image, const ImageMetadata& metadata) {
     for (int y = 0; y < image.height; ++y)
         rows.push_back(bytes.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) *
                                           static_cast<std::size_t>(image.channels));
-    ImageMetadata strings = metadata;  // libpng takes them as not constant
+    ImageMetadata strings = metadata;  // libpng takes non-const strings
     std::vector<png_text> texts;
     for (auto& [name, text] : strings) {
         png_text chunk{};

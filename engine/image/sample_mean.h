@@ -1,4 +1,4 @@
-// Several samples a pixel: the mean of pictures whose rays lie between the pixels' centres.
+// Supersampling: the mean of several pictures with subpixel ray offsets.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,7 @@
 
 namespace edgesplat {
 
-/// Where the n x n samples of a pixel lie, from its centre, in pixels; row by row. One sample lies at the centre.
+/// Offsets of the n x n samples of a pixel from its centre, in pixels, row by row. n = 1: the centre.
 inline std::vector<glm::dvec2> sample_offsets(int n) {
     std::vector<glm::dvec2> offsets;
     for (int y = 0; y < n; ++y)
@@ -18,7 +18,7 @@ inline std::vector<glm::dvec2> sample_offsets(int n) {
     return offsets;
 }
 
-/// Sum of RGBA pictures of one size, in double.
+/// Accumulates RGBA pictures of one size in double.
 class SampleMean {
   public:
     explicit SampleMean(const glm::ivec2& size) : size_(size) {}
@@ -31,7 +31,7 @@ class SampleMean {
         ++count_;
     }
 
-    /// At least one picture was added.
+    /// The mean; needs at least one picture.
     Image image() const {
         Image mean(size_.x, size_.y, 4);
         for (std::size_t i = 0; i < sums_.size(); ++i)

@@ -1,4 +1,4 @@
-// The transfer curve of sRGB (IEC 61966-2-1), per channel, 0..1 both ways; beyond that it goes on.
+// The transfer curve of sRGB (IEC 61966-2-1), per channel, for 0..1; the same formulas apply beyond.
 #pragma once
 
 #include <cmath>

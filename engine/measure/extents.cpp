@@ -15,30 +15,30 @@
 namespace edgesplat::measure {
 namespace {
 
-constexpr int kLines = 2;       ///< along each side of a voxel
-constexpr int kAskedLines = 4;  ///< of so many lines along either side one tells how exact values are
-constexpr double kShift = 0.1;  ///< of the values' uncertainty, by which iso-values are moved to see what follows
+constexpr int kLines = 2;           ///< lines along each side of a voxel
+constexpr int kEstimateStride = 4;  ///< one in so many lines along either side estimates the uncertainty of values
+constexpr double kShift = 0.1;  ///< share of the values' uncertainty by which iso-values are shifted to find its effect
 
-/// What lines along an axis found of an iso-value.
+/// Sums over the lines of one axis, for one iso-value.
 struct Sums {
-    double above = 0;        ///< length from it up, voxels
-    double surface = 0;      ///< mm^2, as if it were as smooth as the slope over a voxel is
-    double rough = 0;        ///< mm^2, of the spline's contour itself
-    double uncertainty = 0;  ///< of values, weighted by surface
-    double asked = 0;        ///< surface where that was looked at
+    double above = 0;           ///< length with values from the iso-value up, voxels
+    double surface = 0;         ///< mm^2, area with the slope over a voxel
+    double rough = 0;           ///< mm^2, area of the spline's contour itself
+    double uncertainty = 0;     ///< uncertainty of values, weighted by area
+    double estimated_area = 0;  ///< area where the uncertainty was estimated
     void add(const Sums& other) {
         above += other.above;
         surface += other.surface;
         rough += other.rough;
         uncertainty += other.uncertainty;
-        asked += other.asked;
+        estimated_area += other.estimated_area;
     }
 };
 
-/// Of all lines: [iso-value][axis].
+/// Sums over all lines: [iso-value][axis].
 using AxisSums = std::vector<std::array<Sums, 3>>;
 
-/// Length of [first, last] that is kept.
+/// Kept length of [first, last].
 double kept_length(const std::array<KeptPiece, 2>& pieces, double first, double last) {
     double length = 0;
     for (const KeptPiece& piece : pieces)
@@ -57,12 +57,12 @@ class Measurement {
         cell_ = std::abs(glm::determinant(geometry_.index_to_world_axes)) / (kLines * kLines);
     }
 
-    /// `ask`: how exact values are, too.
-    AxisSums along_all_lines(const reference::Field& field, std::span<const double> iso_values, bool ask,
+    /// `estimate`: also estimates the uncertainty of values.
+    AxisSums along_all_lines(const reference::Field& field, std::span<const double> iso_values, bool estimate,
                              const std::function<void(double)>& progress) const {
         AxisSums sums(iso_values.size());
         for (int axis = 0; axis < 3; ++axis) {
-            // Lines beside each other along the faster of the other two axes share what the cache holds.
+            // Adjacent lines along the faster of the other two axes share cached samples.
             const int fast = axis == 0 ? 1 : 0, slow = axis == 2 ? 1 : 2;
             const int rows = geometry_.dims[slow] * kLines;
             std::vector<std::vector<Sums>> of_row(static_cast<std::size_t>(rows));
@@ -76,8 +76,8 @@ class Measurement {
                         start[fast] = (i + 0.5) / kLines - 0.5;
                         start[slow] = (row + 0.5) / kLines - 0.5;
                         line.move_to(start);
-                        const bool asked = ask && i % kAskedLines == 0 && row % kAskedLines == 0;
-                        add_line(line, iso_values, asked ? &samples : nullptr, found);
+                        const bool estimates = estimate && i % kEstimateStride == 0 && row % kEstimateStride == 0;
+                        add_line(line, iso_values, estimates ? &samples : nullptr, found);
                     }
                     of_row[static_cast<std::size_t>(row)] = std::move(found);
                 }
@@ -90,7 +90,7 @@ class Measurement {
         return sums;
     }
 
-    /// mm^3 from the iso-value up, and how far the axes' are apart.
+    /// Volume with values from the iso-value up, mm^3; the uncertainty is half the range of the three axes.
     Quantity above(const std::array<Sums, 3>& sums) const {
         const auto [least, most] = std::minmax({sums[0].above, sums[1].above, sums[2].above});
         return {cell_ * (sums[0].above + sums[1].above + sums[2].above) / 3, cell_ * (most - least) / 2};
@@ -134,13 +134,13 @@ class Measurement {
         sums.surface += area;
         if (line.follows_spline()) sums.rough += area_of_crossing(line.slope(t), line.axis());
         if (samples == nullptr) return;
-        sums.asked += area;
+        sums.estimated_area += area;
         sums.uncertainty += area * viewer::value_uncertainty(*samples, line.at(t));
     }
 
-    /// A surface with gradient g is met by |g_axis| / (|S^-T g| cell) lines along the axis per mm^2; each axis counts
-    /// for a share g_axis^2 / |g|^2 of it, so that no line counts for much where it grazes. How many lines meet it does
-    /// not tell steps from slopes: with the slope over a voxel the steps of yes-or-no data are no surface of their own.
+    /// A surface with gradient g is crossed by |g_axis| / (|S^-T g| cell) lines along the axis per mm^2. Each axis is
+    /// weighted by g_axis^2 / |g|^2, so that grazing lines have little weight. The number of crossings cannot
+    /// distinguish steps from slopes: the slope over a voxel ignores the voxel steps of binary data.
     double area_of_crossing(const glm::dvec3& g, int axis) const {
         const double square = glm::dot(g, g);
         return square > 0 ? cell_ * std::abs(g[axis]) * glm::length(to_world_normal_ * g) / square : 0;
@@ -151,7 +151,7 @@ class Measurement {
     reference::Field samples_;
     IndexClip clip_;
     glm::dmat3 to_world_normal_{1};
-    double cell_ = 1;  ///< mm^3 of a voxel's length of a line
+    double cell_ = 1;  ///< mm^3 per voxel length of a line
 };
 
 double surface_of(const std::array<Sums, 3>& sums) {
@@ -166,7 +166,7 @@ double roughness_of(const std::array<Sums, 3>& sums) {
 
 Extents measure_extents(const Volume& volume, std::span<const double> iso_values, const Clip& clip,
                         const reference::Progress& progress) {
-    need_samples(volume, "measuring volumes and surfaces");
+    require_samples(volume, "measuring volumes and surfaces");
     const std::vector<float> coefficients = bspline_coefficients(volume.values, volume.geometry.dims);
     const reference::Field linear{volume.geometry.dims, volume.values, {}};
     const reference::Field cubic{volume.geometry.dims, volume.values, coefficients};
@@ -184,14 +184,14 @@ Extents measure_extents(const Volume& volume, std::span<const double> iso_values
         Sums all;
         for (const Sums& sums : linear_sums[j])
             all.add(sums);
-        const double shift = all.asked > 0 ? kShift * all.uncertainty / all.asked : 0;
+        const double shift = all.estimated_area > 0 ? kShift * all.uncertainty / all.estimated_area : 0;
         shifted.insert(shifted.end(), {iso_values[j] - shift, iso_values[j] + shift});
     }
     const AxisSums shifted_sums = measurement.along_all_lines(linear, shifted, false, part(2.0 / 3));
 
     const double whole = measurement.kept_volume();
     Extents extents;
-    Quantity beyond{whole, 0};  // from the iso-value before up
+    Quantity beyond{whole, 0};  // volume from the previous iso-value up
     for (std::size_t j = 0; j < iso_values.size(); ++j) {
         const std::array<Sums, 3>&low = shifted_sums[2 * j], &high = shifted_sums[2 * j + 1];
         const double shift_volume = measurement.above(low).value - measurement.above(high).value;
@@ -210,7 +210,7 @@ Extents measure_extents(const Volume& volume, std::span<const double> iso_values
 }
 
 std::vector<LabelExtent> measure_labels(const Volume& volume) {
-    need_samples(volume, "measuring labels");
+    require_samples(volume, "measuring labels");
     const glm::ivec3 dims = volume.geometry.dims;
     const double voxel = std::abs(glm::determinant(volume.geometry.index_to_world_axes));
     struct Count {

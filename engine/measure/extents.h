@@ -1,4 +1,4 @@
-// How much of each material a volume holds, and how large the surfaces between them are.
+// Measures the volume of each material and the area of each iso-surface.
 #pragma once
 
 #include <cstddef>
@@ -11,35 +11,35 @@
 
 namespace edgesplat::measure {
 
-/// A measured number and how far from it the true one may lie, either way.
+/// A measured value and its uncertainty (+-).
 struct Quantity {
     double value = 0;
     double uncertainty = 0;
 };
 
 struct Extents {
-    std::vector<Quantity> volumes;   ///< mm^3, of each material: below the first iso-value, ..., from the last one up
-    std::vector<Quantity> surfaces;  ///< mm^2, of each iso-value; what clip planes or the volume's side cut is none
+    std::vector<Quantity> volumes;  ///< mm^3 per material: below the first iso-value, ..., from the last iso-value up
+    /// mm^2 per iso-value; cuts by clip planes and by the volume's border do not count
+    std::vector<Quantity> surfaces;
 };
 
-/// Materials are what faces show of them: divided where the cubic B-spline through the samples crosses an iso-value,
-/// within half a voxel around the outermost samples, and only where `clip` keeps them. Found along four lines a voxel
-/// and axis, on which each crossing is exact.
+/// Materials are bounded by the iso-surfaces of the cubic B-spline through the samples, by half a voxel around the
+/// outermost samples, and by `clip`. Lengths are measured along 2 x 2 lines per voxel and axis; each crossing is exact.
 ///
-/// The uncertainty is twice the difference from what trilinear interpolation has; and as much as all crossings moved
-/// the same way by what quantisation, and edges sharper than samples can show, leave open (value_uncertainty); and
-/// what lines along the three axes disagree. A surface has the slope over a voxel, and what the contour itself has more
-/// than that is uncertain, too. Noise makes surfaces larger than they are, of which samples do not tell.
+/// The uncertainty of a volume has three parts: twice the difference from trilinear interpolation; a common shift of
+/// all crossings by quantisation and by edges too sharp for the sampling (value_uncertainty); and the disagreement
+/// between the three axes. The area uses the slope over a voxel. The excess area of the spline's own contour counts as
+/// uncertainty, too. Noise enlarges areas, which samples cannot reveal.
 ///
 /// `iso_values` ascend. Throws Error for a volume that is not in memory, and Cancelled.
 Extents measure_extents(const Volume& volume, std::span<const double> iso_values, const Clip& clip = {},
                         const reference::Progress& progress = {});
 
-/// Things of a segmentation by their labels, ascending.
+/// One label of a segmentation; results ascend by label.
 struct LabelExtent {
     double label = 0;
     std::size_t voxels = 0;
-    Quantity volume;  ///< mm^3: of its voxels; half of those with another label beside them are uncertain
+    Quantity volume;  ///< mm^3; half of the voxels next to another label are uncertain
 };
 
 /// Throws Error for a volume that is not in memory.

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kHalvings = 40;
 
-/// Samples, or the spline's coefficients, beside a place on an axis: how many of the four count.
+/// Indices and weights of samples or spline coefficients around a position on an axis; `count` of the four are used.
 struct Taps {
     SplineTaps beside;
     std::size_t count = 4;
@@ -24,12 +24,12 @@ Taps taps(double place, int size, bool cubic) {
     return {{.weights = {1 - t, t}, .slopes = {}, .places = {cell, std::min(cell + 1, size - 1)}}, 2};
 }
 
-/// The spline at the second of three coefficients.
+/// The spline's value at the second of three coefficients.
 double at_knot(const double* v) {
     return (v[0] + 4 * v[1] + v[2]) / 6;
 }
 
-/// The spline over a cell, t in [0, 1], from the four coefficients around it.
+/// The spline in a cell, t in [0, 1], from the four coefficients around it.
 struct Cubic {
     double a, b, c, d;  ///< a + b t + c t^2 + d t^3
     explicit Cubic(const double* v)
@@ -38,7 +38,7 @@ struct Cubic {
           c((v[0] - 2 * v[1] + v[2]) / 2),
           d((v[3] - v[0] + 3 * (v[1] - v[2])) / 6) {}
     double operator()(double t) const { return a + t * (b + t * (c + t * d)); }
-    /// Ends of the pieces on which it rises or falls only: 0, the turns within, 1.
+    /// Ends of the monotonic pieces: 0, interior extrema, 1.
     int monotonous(std::array<double, 4>& ends) const {
         int count = 0;
         ends[count++] = 0;
@@ -98,7 +98,7 @@ glm::dvec3 FieldLine::at(double t) const {
 glm::dvec3 FieldLine::slope(double t) const {
     const glm::dvec3 x = at(t);
     glm::dvec3 g = reference::spline_gradient(field_, x);
-    // Beyond the outermost samples the field does not change along that axis.
+    // Beyond the outermost samples the field is constant along that axis.
     for (int a = 0; a < 3; ++a)
         if (x[a] < 0 || x[a] > field_.dims[a] - 1) g[a] = 0;
     return g;
@@ -116,7 +116,7 @@ void FieldLine::for_crossings(double iso, const std::function<void(double)>& cro
             if ((v[0] >= iso) != (v[1] >= iso)) crossing(cell + (iso - v[0]) / (v[1] - v[0]));
             continue;
         }
-        // The spline stays within its coefficients.
+        // The spline is bounded by its coefficients.
         const auto [least, most] = std::minmax({v[0], v[1], v[2], v[3]});
         if (least >= iso || most < iso) continue;
         const Cubic f(v);
@@ -125,8 +125,7 @@ void FieldLine::for_crossings(double iso, const std::function<void(double)>& cro
         for (std::size_t i = 0; i + 1 < static_cast<std::size_t>(count); ++i) {
             double low = ends[i], high = ends[i + 1];
             const bool from = f(low) >= iso;
-            // The next cell begins with what this one ends with: compared by its own polynomial, none is lost or
-            // doubled.
+            // Evaluates the knot exactly as the next cell does, so that no crossing is lost or doubled.
             const bool to = (high == 1 ? at_knot(v + 1) : f(high)) >= iso;
             if (from == to) continue;
             for (int k = 0; k < kHalvings; ++k) {

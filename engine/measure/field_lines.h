@@ -1,4 +1,4 @@
-// A line along an axis of the volume: the field on it is a polynomial from sample to sample.
+// The field along a line parallel to a volume axis: a polynomial between neighbouring samples.
 #pragma once
 
 #include <array>
@@ -9,24 +9,24 @@
 
 namespace edgesplat::measure {
 
-/// Positions are in index space, voxels; the line reaches half a voxel beyond the outermost samples, and the field
-/// there is that of the nearest place between them.
+/// Positions are in index space, voxels. The line extends half a voxel beyond the outermost samples; there the field
+/// has the value of the nearest position between the samples.
 class FieldLine {
   public:
-    /// Through the field's spline if it has coefficients, else between its samples.
+    /// Uses the field's spline if it has coefficients, else linear interpolation of its samples.
     FieldLine(const reference::Field& field, int axis);
 
-    /// To the line along the axis through `across`, of which the axis' own coordinate does not matter.
+    /// Moves to the line along the axis through `across`; its coordinate along the axis is ignored.
     void move_to(const glm::dvec3& across);
 
     int axis() const { return axis_; }
     glm::dvec3 at(double t) const;
     bool follows_spline() const { return cubic_; }
-    glm::dvec3 slope(double t) const;  ///< of the spline, per voxel along each axis
+    glm::dvec3 slope(double t) const;  ///< gradient of the spline, per voxel along each axis
 
-    /// Whether it begins at values from `iso` up.
+    /// Whether the value at the line's beginning is >= `iso`.
     bool starts_from(double iso) const { return value_at_first() >= iso; }
-    /// Where the values change from below `iso` to `iso` or above, or back, in ascending order.
+    /// Calls `crossing` with each position where the field crosses `iso` in either direction, ascending.
     void for_crossings(double iso, const std::function<void(double)>& crossing) const;
 
   private:
@@ -36,7 +36,7 @@ class FieldLine {
     int axis_;
     bool cubic_;
     glm::dvec3 across_{0};
-    std::vector<double> nodes_;  ///< the spline's coefficients along the line and one beyond either end, or values
+    std::vector<double> nodes_;  ///< spline coefficients along the line plus one beyond either end, or samples
 };
 
 }  // namespace edgesplat::measure

@@ -10,7 +10,7 @@
 namespace edgesplat::measure {
 namespace {
 
-/// The line through a place along the gradient there; none where there is no gradient.
+/// The line through a point along the gradient; none if the gradient is 0.
 std::optional<viewer::IndexRay> steepest_line(const VolumeGeometry& geometry, const viewer::Samples& samples,
                                               const glm::dvec3& voxel) {
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
@@ -36,7 +36,7 @@ std::optional<Place> nearest_surface(const Volume& volume, std::span<const doubl
         glm::dvec3 voxel = geometry.to_index(world);
         std::optional<viewer::IndexRay> line;
         std::optional<double> t;
-        // The gradient at the surface leads back to the place more straightly than that of the place leads to it.
+        // The gradient at the surface gives a straighter line to the point than the gradient at the point.
         for (int round = 0; round < 2; ++round) {
             line = steepest_line(geometry, samples, voxel);
             if (!line) break;
@@ -60,9 +60,10 @@ Quantity distance(const Place& a, const Place& b) {
 Quantity angle(const Place& a, const Place& corner, const Place& b) {
     const glm::dvec3 to_a = a.world - corner.world, to_b = b.world - corner.world;
     const double la = glm::length(to_a), lb = glm::length(to_b);
-    if (!(la > 0) || !(lb > 0)) fail("angle: two of its three places are the same");
+    if (!(la > 0) || !(lb > 0)) fail("angle: two of its three points are equal");
     const double radians = std::atan2(glm::length(glm::cross(to_a, to_b)), glm::dot(to_a, to_b));
-    // Across its way, an end turns it by its share of the length; the corner turns both.
+    // Errors of an end perpendicular to its direction turn the angle by error / length; an error of the corner turns
+    // both directions.
     const double turn = std::hypot(a.uncertainty / la, b.uncertainty / lb,
                                    corner.uncertainty * glm::length(to_a / (la * la) - to_b / (lb * lb)));
     return {glm::degrees(radians), glm::degrees(std::min(turn, std::numbers::pi))};

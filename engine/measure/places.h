@@ -1,4 +1,4 @@
-// Places on surfaces, the distances and angles between them, and how well each is known.
+// Points on surfaces, distances and angles between them, and their uncertainties.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,24 +11,24 @@
 
 namespace edgesplat::measure {
 
-/// Somewhere in the world.
+/// A point in the world.
 struct Place {
     glm::dvec3 world{0};          ///< mm
-    double uncertainty = 0;       ///< mm; 0 for a place that is no surface's
-    std::optional<double> iso{};  ///< of the surface that it lies on
+    double uncertainty = 0;       ///< mm; 0 for a point that lies on no surface
+    std::optional<double> iso{};  ///< iso-value of its surface
 };
 
 Place place_of(const viewer::Pick& pick);
 
-/// The nearest place on a surface within `viewer::kCrossingReach` voxels of `world`, along the gradient; none where
-/// there is none. `iso_values` ascend.
+/// The nearest point on a surface along the gradient, within `viewer::kCrossingReach` voxels of `world`; none if there
+/// is none. `iso_values` ascend.
 std::optional<Place> nearest_surface(const Volume& volume, std::span<const double> iso_values, const glm::dvec3& world);
 
-/// mm; uncertain as both ends independently are.
+/// Distance in mm; the uncertainties of both ends are independent.
 Quantity distance(const Place& a, const Place& b);
 
-/// At `corner`, between the ways to a and b, degrees; as uncertain as all three places independently make it. Throws
-/// Error where one of the ways has no length.
+/// Angle at `corner` between the directions to a and b, degrees; the uncertainties of the three points are independent.
+/// Throws Error if a or b coincides with `corner`.
 Quantity angle(const Place& a, const Place& corner, const Place& b);
 
 }  // namespace edgesplat::measure

@@ -12,14 +12,14 @@ namespace {
 
 constexpr float kRimOpacity = 0.85F;
 
-/// By its path: which names OpenImageIO finds, and in which folders, changes with its version. Where distributions do
-/// not put it, it may still know better.
+/// Uses the font's path, because the names and folders that OpenImageIO searches depend on its version. If no path is
+/// known, OpenImageIO searches by name.
 const char* font() {
     static const std::string file = font_file().value_or("DejaVuSans");
     return file.c_str();
 }
 
-/// What there is of a text where there is a font for it.
+/// The result of a text function; throws Error if the font is missing.
 template <typename Found>
 Found found(std::optional<Found> of_text) {
     if (!of_text)
@@ -82,11 +82,11 @@ void Canvas::text(std::string_view text, const glm::dvec2& center, int height, c
             cover(corner.x + x, corner.y + y, static_cast<double>(mask.coverage[pixel++]), color);
 }
 
-void Canvas::lay_over(Image& image) const {
+void Canvas::blend_into(Image& image) const {
     const auto at = [&](int x, int y) {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(x);
     };
-    std::vector<float> rim(pixels_.size(), 0);  // the most that is covered within reach
+    std::vector<float> rim(pixels_.size(), 0);  // maximum coverage within reach
     for (int y = 0; y < height_; ++y) {
         for (int x = 0; x < width_; ++x) {
             const float covered = pixels_[at(x, y)].a;

@@ -1,4 +1,4 @@
-// A transparent sheet to draw signs on, laid over a picture with a dark rim so that they can be read over anything.
+// A transparent canvas for overlays, blended over a picture with a dark rim for contrast.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -15,21 +15,22 @@ struct PixelBox {
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
 };
 
-/// Positions are in pixels of the picture, (0, 0) at the upper left corner of the first one; colours in linear light.
+/// Positions are in pixels of the picture; (0, 0) is the upper left corner of the first pixel. Colours are in linear
+/// light.
 class Canvas {
   public:
-    /// `rim` pixels around everything drawn are darkened; `box` has room for it.
+    /// Darkens `rim` pixels around everything drawn; `box` must include them.
     Canvas(const PixelBox& box, int rim);
 
-    /// A line with round ends, antialiased by its distance to the pixels' centres.
+    /// Draws a line with round ends, antialiased by the distance to the pixel centres.
     void line(const glm::dvec2& from, const glm::dvec2& to, double width, const glm::dvec3& color);
-    /// A rectangle between two corners; partly covered pixels take their share.
+    /// Draws a rectangle; partly covered pixels are blended by coverage.
     void rectangle(const glm::dvec2& low, const glm::dvec2& high, const glm::dvec3& color);
-    /// A line of text, its box (text_size) centred at `center`. Throws Error when the font is missing.
+    /// Draws a line of text with its box (text_size) centred at `center`. Throws Error if the font is missing.
     void text(std::string_view text, const glm::dvec2& center, int height, const glm::dvec3& color);
 
-    /// Blends everything into an RGB or RGBA picture; outside the box nothing changes.
-    void lay_over(Image& image) const;
+    /// Blends the canvas into an RGB or RGBA picture; pixels outside the box do not change.
+    void blend_into(Image& image) const;
 
     const PixelBox& box() const { return box_; }
 
@@ -41,7 +42,7 @@ class Canvas {
     std::vector<glm::vec4> pixels_;  ///< (height, width), premultiplied
 };
 
-/// Width and height of a line of text in pixels, for letters of this height.
+/// Width and height of a line of text in pixels, for this letter height.
 glm::ivec2 text_size(std::string_view text, int height);
 
 }  // namespace edgesplat

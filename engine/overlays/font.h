@@ -6,7 +6,7 @@
 
 namespace edgesplat {
 
-/// Path of DejaVu Sans; none where it is in no folder that distributions put it into.
+/// Path of DejaVu Sans; none if it is in no folder that distributions use for it.
 std::optional<std::string> font_file();
 
 }  // namespace edgesplat

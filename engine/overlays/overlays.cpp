@@ -13,7 +13,7 @@ namespace {
 const glm::dvec3 kInk(0.95);
 const std::array<glm::dvec3, 3> kAxisColors{{{1, 0.16, 0.12}, {0.2, 0.85, 0.2}, {0.25, 0.5, 1}}};
 
-/// Lengths in pixels that everything is made of.
+/// Sizes of all overlay elements, in pixels.
 struct Measures {
     int letters;  ///< height of the text
     int margin, rim;
@@ -41,11 +41,11 @@ void draw_marker(Canvas& canvas, const glm::dvec2& center, double radius, const 
     }
     std::sort(ends.begin(), ends.end(), [](const End& a, const End& b) { return a.towards_eye < b.towards_eye; });
     for (const End& end : ends) {
-        const double faded = 0.65 + 0.35 * end.towards_eye;  // what points away is darker
+        const double faded = 0.65 + 0.35 * end.towards_eye;  // ends that point away are darker
         canvas.line(center, center + radius * end.along, (end.positive ? 1.0 : 0.5) * size.stroke, end.color * faded);
     }
     for (const End& end : ends) {
-        // Letters of ends that are seen end on would hide each other: only the nearer one is written.
+        // The letters of an axis seen end-on would overlap: only the nearer one is drawn.
         const double length = glm::length(end.along);
         if (end.letter->empty() || (length < 0.3 && end.towards_eye < 0)) continue;
         const glm::dvec2 outwards = length > 1e-9 ? end.along / length : glm::dvec2(0);
@@ -89,7 +89,7 @@ Canvas material_legend(const Scene& scene, const Measures& size) {
     return canvas;
 }
 
-/// Extinction over value in the transfer function's own colours, with ticks at round values.
+/// Plots extinction over value in the transfer function's colours, with ticks at round values.
 Canvas transfer_legend(const Scene& scene, const Measures& size) {
     const std::vector<TransferPoint>& points = scene.transfer;
     const double first = points.front().value, last = points.back().value, range = std::max(last - first, 1e-300);
@@ -156,7 +156,7 @@ std::optional<ScaleBar> scale_bar(double mm_per_pixel, double most) {
     const double power = std::pow(10.0, std::floor(std::log10(longest)));
     for (const double factor : {5.0, 2.0, 1.0})
         if (factor * power <= longest) return ScaleBar{factor * power, factor * power * pixels_per_mm};
-    return ScaleBar{power / 2, power / 2 * pixels_per_mm};  // where the logarithm was rounded up
+    return ScaleBar{power / 2, power / 2 * pixels_per_mm};  // if the logarithm was rounded up
 }
 
 std::vector<PixelBox> draw_overlays(Image& image, const Volume& volume, const Scene& scene, const Camera& camera) {
@@ -164,7 +164,7 @@ std::vector<PixelBox> draw_overlays(Image& image, const Volume& volume, const Sc
     const Measures size(image);
     std::vector<PixelBox> boxes;
     const auto lay = [&](const Canvas& canvas) {
-        canvas.lay_over(image);
+        canvas.blend_into(image);
         const PixelBox& b = canvas.box();
         boxes.push_back(
             {std::max(b.x0, 0), std::max(b.y0, 0), std::min(b.x1, image.width), std::min(b.y1, image.height)});

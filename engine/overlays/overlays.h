@@ -1,4 +1,4 @@
-// Signs drawn over a finished picture: which way the volume lies, how large it is, what the colours mean.
+// Draws overlays over a finished picture: orientation marker, scale bar, legend.
 #pragma once
 
 #include <array>
@@ -14,31 +14,30 @@
 
 namespace edgesplat {
 
-/// An axis of the orientation marker as the camera sees it from afar (orthographic).
+/// An axis of the orientation marker in orthographic projection.
 struct MarkerAxis {
-    glm::dvec2 along{
-        0};  ///< its unit vector on the screen, x to the right, y down; shorter the more it is foreshortened
+    glm::dvec2 along{0};             ///< projection of its unit vector to the screen, x to the right, y down
     double towards_eye = 0;          ///< component towards the eye, -1..1
-    std::string positive, negative;  ///< letters of its two ends; `negative` may be empty
+    std::string positive, negative;  ///< labels of its two ends; `negative` may be empty
 };
 
-/// Volumes in patient coordinates: the patient's axes L/R, P/A, H/F; others: the volume's own, X, Y and Z.
+/// The patient axes L/R, P/A, H/F for volumes in patient coordinates, else the volume's axes X, Y, Z.
 std::array<MarkerAxis, 3> marker_axes(const Volume& volume, const Camera& camera);
 
-/// A round length and what it measures in the picture.
+/// A round length in mm and its length in the picture.
 struct ScaleBar {
     double millimetres = 0;  ///< 1, 2 or 5 times a power of ten
-    double pixels = 0;       ///< its length across the view axis at the depth of the volume's centre
+    double pixels = 0;  ///< its length in pixels at the depth of the volume's centre, perpendicular to the view axis
 };
 
-/// The longest one of at most `most` pixels; none where the volume's centre is not in front of the eye.
+/// The longest bar of at most `most` pixels; none if the volume's centre is not in front of the eye.
 std::optional<ScaleBar> scale_bar(const Volume& volume, const Camera& camera, int height, double most);
-/// The same for a pixel's side in mm; none unless that is above 0 and finite.
+/// The longest bar for a given pixel size; none unless that is above 0 and finite.
 std::optional<ScaleBar> scale_bar(double mm_per_pixel, double most);
 
-/// Draws what scene.effects.overlays asks for over a picture in linear light (RGB, or RGBA with the background blended
-/// in): the marker in the lower left corner, the bar in the lower right, the legend in the upper left. Sizes go with
-/// the picture's height. Returns the boxes outside which nothing has changed. Throws Error when there is no font.
+/// Draws the overlays of scene.effects.overlays over a picture in linear light (RGB, or RGBA with blended background):
+/// the marker in the lower left corner, the bar in the lower right, the legend in the upper left. Sizes scale with the
+/// picture's height. Returns boxes that contain all changed pixels. Throws Error if there is no font.
 std::vector<PixelBox> draw_overlays(Image& image, const Volume& volume, const Scene& scene, const Camera& camera);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// Volume -> edge field: distance and direction of the nearest edge of every voxel that can be seen.
+// Volume -> edge field: distance and direction of the nearest edge of every visible voxel.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -7,16 +7,16 @@
 
 namespace edgesplat::passes {
 
-/// Marks voxels that opaque ones hide from every side (three line sweeps). What `clip` cuts away is not opaque.
+/// Marks voxels that opaque voxels occlude from every side (three line sweeps). Clipped voxels are not opaque.
 void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t iso_count, const ClipCount& clip);
 
-/// Specialization of 1a_mark_buried.comp, which walks along one axis.
+/// Specialization of 1a_mark_buried.comp for a sweep along one axis.
 gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, const ClipCount& clip);
 
-/// The voxels of an image whose edges are wanted, along each axis.
+/// The part of an image whose edges are estimated, voxels.
 struct EdgeRegion {
-    glm::ivec3 dims{0};                    ///< of the image
-    glm::ivec3 core_low{0}, core_size{0};  ///< as in SceneParams; the whole image where there is no border
+    glm::ivec3 dims{0};                    ///< size of the image
+    glm::ivec3 core_low{0}, core_size{0};  ///< as in SceneParams; the whole image if it has no border
 };
 
 struct EstimateEdges {
@@ -29,8 +29,8 @@ struct EstimateEdges {
 gpu::Specialization estimate_constants(const EstimateEdges& in);
 
 /// Reads the volume (and, for `cubic`, its coefficients) and SceneParams at `scene`; writes the edge field, one texel
-/// per voxel of the core and ESTIMATE_MARGIN around it. With EdgeEstimator::Off only normals for light
-/// are written.
+/// per voxel of the core and of ESTIMATE_MARGIN voxels around it. With EdgeEstimator::Off it writes only normals, for
+/// lighting.
 void estimate_edges(gpu::Commands& commands, const EdgeRegion& region, const EstimateEdges& in);
 
 }  // namespace edgesplat::passes

@@ -1,4 +1,4 @@
-// Edge field -> compact list of the voxels that can be seen.
+// Edge field -> compact list of visible voxels as splats.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -12,9 +12,9 @@ struct CollectSplats {
     std::uint32_t iso_count = 1;
     bool edges = true;                               ///< the edge field exists
     bool buried = true;                              ///< the buried mask exists: `mark_buried` has run
-    EdgeEstimator estimator = EdgeEstimator::Cubic;  ///< whose field has the gradients
-    bool faces = false;                              ///< splats get the faces that fit the surface around them
-    ClipCount clip{};                                ///< voxels whose kernels are cut away whole are dropped
+    EdgeEstimator estimator = EdgeEstimator::Cubic;  ///< selects the field that gradients are taken from
+    bool faces = false;                              ///< faces are fitted to the surface around each splat
+    ClipCount clip{};                                ///< voxels whose kernels are clipped completely are culled
     bool transfer = false;                           ///< splats are classified by a transfer function
 };
 
@@ -22,14 +22,15 @@ struct CollectSplats {
 gpu::Specialization collect_constants(const CollectSplats& in);
 gpu::Specialization finish_constants(const CollectSplats& in);
 
-/// Invocations of the counting and of the writing dispatch, one per slice of a brick (engine/culling/brick_runs.h).
+/// Number of runs: invocations of the counting and the writing dispatch, one per slice of a brick
+/// (engine/culling/brick_runs.h).
 std::uint64_t collect_runs(const glm::ivec3& core_size);
 
-/// Writes how many splats each run holds to SceneParams::run_offsets.
+/// Writes the number of splats of each run to SceneParams::run_offsets.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
-/// With run_offsets turned into an exclusive prefix sum: writes the records, brick by brick, and where there is an
-/// edge field finishes the `count` that SceneParams says.
+/// Writes the records, brick by brick; then, with an edge field, finishes `count` splats. Precondition: run_offsets
+/// is an exclusive prefix sum.
 void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
 
 }  // namespace edgesplat::passes

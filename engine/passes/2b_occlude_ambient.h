@@ -1,4 +1,4 @@
-// Splat list and volume -> how much of the ambient light reaches each splat.
+// Splat list and volume -> share of the ambient light that reaches each splat.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -11,7 +11,7 @@ struct OccludeAmbient {
     std::uint64_t splat_count = 0;
     std::uint32_t iso_count = 1;
     ClipCount clip{};
-    bool transfer = false;  ///< extinction by SceneParams::transfer
+    bool transfer = false;  ///< extinction is from SceneParams::transfer
 };
 
 /// Specialization of 2b_occlude_ambient.comp.

@@ -1,5 +1,5 @@
-// Splat records -> which of them are in the picture, in which sheet, by which layers of the table of footprints, turned
-// how, and the pixels that each sheet group touches.
+// Splat records -> for each splat: whether it is in the picture, its sheet, its layers of the footprint table and their
+// rotation; for each sheet group: the pixels that it touches.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -10,9 +10,9 @@ namespace edgesplat::passes {
 /// Specialization of 3_select_footprints.comp.
 gpu::Specialization select_constants(const DrawVariant& variant);
 
-/// FrameParams at `frame`: reads `splats`, writes `sheets` and, with a table, `footprints`, grows the `rect` of
-/// `groups` (which must start out empty). Sliced, a splat belongs to every sheet that its support touches. What clip
-/// planes cut away whole is not drawn.
+/// FrameParams at `frame`: reads `splats`; writes `sheets` and, with a table, `footprints`; grows each `rect` of
+/// `groups`, which must be empty before. In sliced views a splat belongs to every sheet that its support touches.
+/// Splats that are clipped completely are culled.
 void select_footprints(gpu::Commands& commands, std::uint64_t slots, const DrawVariant& variant);
 
 }  // namespace edgesplat::passes

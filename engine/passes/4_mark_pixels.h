@@ -1,14 +1,14 @@
-// Lists by tile -> which pixels of its tile each entry is for.
+// Tile lists -> marks: which pixels of the tile each entry reaches.
 #pragma once
 
 #include "engine/passes/5_draw_tiles.h"
 
 namespace edgesplat::passes {
 
-/// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats; writes `tile_marks`, for each
-/// pixel of a tile, of refined ones 4 x 2 of them, which entries of `round` reach it. `tiles`: with rounds the first so
-/// many of `tile_order`, else all. Tiles that are closed get no marks. Of refined pixels what is marked already stays,
-/// which is where words are not all ones, and `tile_finest` is found.
+/// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats; writes to `tile_marks` which
+/// entries of `round` reach each pixel of a tile (each 4 x 2 pixels in refined pictures). `tiles`: with rounds the
+/// first tiles of `tile_order`, else all tiles. Saturated tiles get no marks. In refined pictures, words that are not
+/// all ones are marked already and stay; `tile_finest` is written, too.
 void mark_pixels(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
                  std::uint32_t round);
 

@@ -25,7 +25,7 @@ std::uint32_t prepared_stride(const DrawVariant& variant) {
 }
 
 glm::ivec2 prepared_size(const DrawVariant& variant, std::uint32_t slots) {
-    // Whether there are creases is known only when splats are: there is room for them wherever there are faces.
+    // Whether splats have creases is known only after collection, so records with faces always have room for them.
     DrawVariant roomy = variant;
     roomy.creases = cuts_at_faces(variant);
     const std::uint32_t rows = (slots * prepared_stride(roomy) + shader::PREPARED_ROW - 1) / shader::PREPARED_ROW;
@@ -33,7 +33,7 @@ glm::ivec2 prepared_size(const DrawVariant& variant, std::uint32_t slots) {
 }
 
 std::uint32_t prepared_slots(std::uint64_t entries) {
-    // A chunk seldom has more than a fourth of them; 4096 take less than half a megabyte.
+    // A chunk rarely has more than a fourth of the entries; 4096 records take less than half a megabyte.
     const std::uint64_t wanted = std::max<std::uint64_t>(entries / 4, std::min<std::uint64_t>(entries, 4096));
     return static_cast<std::uint32_t>(std::bit_ceil(std::clamp<std::uint64_t>(wanted, 1, shader::PREPARED_ENTRIES)));
 }

@@ -1,5 +1,5 @@
-// Sheets of the splats -> splat numbers ordered by sheet, and where each sheet begins, or one draw call per sheet
-// group. A stable counting sort.
+// Sheets of the splats -> splat numbers ordered by sheet, with the start of each sheet (tiles) or one draw call per
+// sheet group (layers). A stable counting sort.
 #pragma once
 
 #include <vector>
@@ -13,13 +13,13 @@ struct SortStep {
     gpu::Specialization constants;
 };
 
-/// What it runs, in this order. Slots find their places side by side only where sheets are summed tile by tile.
+/// The shaders of the sort, in order. The parallel sort (DeviceProfile::side_by_side) is used only for tiled pictures.
 std::vector<SortStep> sort_sheets_steps(const DrawVariant& variant, const gpu::DeviceProfile& profile);
 
 /// FrameParams: reads `sheets`, uses `counters` (which must be zero), writes `order` and, with tiles, `sheet_starts`,
 /// else `groups` and `draws`.
-/// `segments`: into which blocks of slots are divided, each of FrameParams::sort_segment, where slots are not sorted
-/// side by side.
+/// `segments`: number of segments of a block of slots, each of FrameParams::sort_segment slots; not used by the
+/// parallel sort.
 void sort_sheets(gpu::Commands& commands, const DrawVariant& variant, const shader::FrameParams& params,
                  std::uint32_t segments);
 

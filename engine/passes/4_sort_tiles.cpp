@@ -5,7 +5,7 @@
 namespace edgesplat::passes {
 namespace {
 
-// In the order in which they run; the first where the device plans the chunks.
+// In the order in which they run. The first of kSideBySide runs only if the device plans the chunks.
 constexpr std::array kSideBySide{"4d_plan_chunks.comp", "4d_count_pairs.comp", "4e_sum_tiles.comp",
                                  "4e_place_lists.comp", "4f_scatter_pairs.comp"};
 constexpr std::array kInColumns{"4d_count_tiles.comp", "4e_scan_tiles.comp", "4f_scatter_tiles.comp"};
@@ -28,13 +28,13 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
         dispatch(kSideBySide[4], {params.tile_blocks});
         return;
     }
-    const auto go_through = [&](const char* shader) {
+    const auto run_steps = [&](const char* shader) {
         for (std::uint32_t step = 0; step < steps; ++step)
             dispatch(shader, gpu::groups_for(params.tile_blocks, 16));
     };
-    go_through(kInColumns[0]);
+    run_steps(kInColumns[0]);
     dispatch(kInColumns[1], {1});
-    go_through(kInColumns[2]);
+    run_steps(kInColumns[2]);
 }
 
 void plan_chunks(gpu::Commands& commands) {

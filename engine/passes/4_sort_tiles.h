@@ -1,4 +1,4 @@
-// Sorted splats -> lists by tile: the splats of a chunk of sheets that touch each tile, sheet by sheet. A stable
+// Sorted splats -> tile lists: for each tile the splats of a chunk of sheets that touch it, sheet by sheet. A stable
 // counting sort.
 #pragma once
 
@@ -9,17 +9,18 @@
 
 namespace edgesplat::passes {
 
-/// FrameParams: reads part `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`,
-/// which are `counters`; writes `tile_ranges` and `tile_entries`. Tiles that are closed get nothing. `steps`:
-/// dispatches of PAIR_STEPS pairs that the fullest of the columns takes, where pairs are not sorted side by side.
+/// FrameParams: reads chunk `chunk` of `order`, `tile_rects`, `sheet_starts` and `tile_closed`; uses `tile_counters`
+/// (the buffer `counters`); writes `tile_ranges` and `tile_entries`. Saturated tiles get no list. `steps`: number of
+/// dispatches of PAIR_STEPS pairs for the fullest column; not used by the parallel sort.
 void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shader::FrameParams& params,
                 std::uint32_t chunk, std::uint32_t steps);
 
-/// Reads `sheet_pairs` and `sheet_starts`, writes `chunk_slots` parts into `chunks`: those of plan_chunks() in the
-/// first ones; one of more than `chunk_pairs`, or of more splats than are prepared at once, is left empty.
+/// Plans the chunks on the device: reads `sheet_pairs` and `sheet_starts`, writes `chunk_slots` ranges into `chunks`.
+/// They are those of edgesplat::plan_chunks(), then empty ones. A chunk with more than `chunk_pairs` pairs, or more
+/// splats than are prepared at once, is left empty.
 void plan_chunks(gpu::Commands& commands);
 
-/// The shaders of both; of a picture that is refined its chunks are planned by the host.
+/// The shaders of both functions. In refined pictures the host plans the chunks.
 std::span<const char* const> sort_tiles_shaders(const gpu::DeviceProfile& profile, bool refined);
 
 }  // namespace edgesplat::passes

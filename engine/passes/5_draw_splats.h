@@ -12,27 +12,27 @@ namespace edgesplat::passes {
 struct DrawVariant {
     FootprintMode footprints;
     WarpFamily warp;
-    bool narrow = false;        ///< kernels are the narrow ones
-    std::uint32_t lights = 0;   ///< how many
+    bool narrow = false;        ///< narrow kernels
+    std::uint32_t lights = 0;   ///< number of lights
     std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
     bool sliced = false;        ///< kernels are cut at the sheets' planes
-    bool occlusion = false;     ///< ambient light is what 2b_occlude_ambient left of it
-    std::uint32_t shadows = 0;  ///< lights with shadows
-    std::uint32_t nodes = 5;    ///< quadrature nodes of a piece of a footprint: 4, 5 or 10
-    bool transfer = false;      ///< colour and extinction by a transfer function
-    bool response = false;      ///< materials answer to light each in its own way
-    bool gloss = false;         ///< some have highlights
-    bool lit_edges = false;     ///< splats without an edge count as without normal
+    bool occlusion = false;     ///< ambient light is reduced by 2b_occlude_ambient
+    std::uint32_t shadows = 0;  ///< number of lights with shadows
+    std::uint32_t nodes = 5;    ///< quadrature nodes per piece of a footprint: 4, 5 or 10
+    bool transfer = false;      ///< colour and extinction are from a transfer function
+    bool response = false;      ///< materials have their own light responses
+    bool gloss = false;         ///< some materials have highlights
+    bool lit_edges = false;     ///< splats without an edge are shaded as if without a normal
     bool silhouette = false;
     bool fog = false;
-    ClipCount clip{};        ///< kernels are cut at planes
-    bool opaque = false;     ///< of a ray's two pieces in a cut kernel the longer counts
-    bool creases = false;    ///< planes beside faces cut kernels, too
-    bool traced = false;     ///< where no quadric fits, rays find the faces
-    bool antialias = false;  ///< no footprint is narrower than a pixel
-    bool outlines = false;   ///< pixels keep where outlines pass them
+    ClipCount clip{};        ///< kernels are cut at clip planes
+    bool opaque = false;     ///< only the longer of a ray's two pieces in a cut kernel counts
+    bool creases = false;    ///< kernels are also cut at creases: planes beside faces
+    bool traced = false;     ///< rays find the faces of flagged splats, whose quadric does not fit
+    bool antialias = false;  ///< footprints are at least a pixel wide
+    bool outlines = false;   ///< stores where outlines cross each pixel
     bool tiles = false;      ///< sheets are summed tile by tile, not in layers
-    bool culled = false;     ///< splats are gone through in batches, those of bricks in view
+    bool culled = false;     ///< splats are processed in batches of bricks in view
 };
 
 /// Specialization of 5b_draw_splats.vert and .frag, and of 5_draw_tiles.comp.
@@ -41,16 +41,16 @@ gpu::Specialization draw_constants(const DrawVariant& variant);
 struct DrawSplats {
     DrawVariant variant;
     const gpu::GpuImage& sheets;  ///< (sheets_per_group, height, width) colour layers
-    const gpu::GpuImage& depth;   ///< likewise, D16: 0 closes a pixel that is opaque already
+    const gpu::GpuImage& depth;   ///< same size, D16: 0 rejects fragments of saturated pixels
     const gpu::Buffer& indices;   ///< quad_indices()
-    const gpu::Buffer& draws;     ///< DrawCommand per group
+    const gpu::Buffer& draws;     ///< a DrawCommand per group
 };
 
 /// Index list of shader::QUADS_PER_INSTANCE quads, two triangles each.
 std::vector<std::uint32_t> quad_indices();
 inline constexpr std::uint32_t kQuadIndices = 6 * shader::QUADS_PER_INSTANCE;
 
-/// Clears the group's pixels, closes the opaque ones, then adds the group's splats.
+/// Clears the group's pixels, masks the saturated ones, then adds the group's splats.
 void draw_splats(gpu::Commands& commands, const DrawSplats& in, std::uint32_t group);
 
 }  // namespace edgesplat::passes

@@ -1,4 +1,4 @@
-// Lists by tile -> picture: passes 5 and 6 in one, each pixel's sums in registers.
+// Tile lists -> picture: passes 5 and 6 in one, with each pixel's sums in registers.
 #pragma once
 
 #include "engine/passes/5_draw_splats.h"
@@ -6,42 +6,41 @@
 
 namespace edgesplat::passes {
 
-/// How tiles are drawn. None of it changes the picture.
+/// How tiles are drawn. Does not change the picture.
 struct TileDraw {
-    /// With its rounds only entries [round_begin(round), round_begin(round + 1)) of each list are drawn.
+    /// If it has rounds, only entries [round_begin(round), round_begin(round + 1)) of each list are drawn.
     const gpu::DeviceProfile* profile = &gpu::device_profiles().front();
-    bool count = false;    ///< FrameParams::drawn counts footprints
-    bool prepared = true;  ///< the chunk's splats are in `prepared_splats`
-    bool part = false;     ///< some of the sheets: the picture is not finished with them
-    bool planned = false;  ///< by the device: the host does not know its chunks, but that they fit
-    bool refined = false;  ///< only the pixels of `tile_pixels`, or every REFINE_STEP-th
-    bool wide_marks =
-        false;  ///< entries are marked for 4 x 2 pixels at once; of refined pixels, which lie apart, always
+    bool count = false;       ///< FrameParams::drawn counts footprints
+    bool prepared = true;     ///< the chunk's splats are in `prepared_splats`
+    bool part = false;        ///< only some sheets are drawn: the resolve pass is skipped
+    bool planned = false;     ///< the device plans the chunks; the host knows only that each can be prepared
+    bool refined = false;     ///< draws only the pixels in `tile_pixels`, or those at multiples of REFINE_STEP
+    bool wide_marks = false;  ///< a mark covers 4 x 2 pixels; always so with `refined`, whose pixels lie apart
 };
 
-/// Invocations of a workgroup, a pixel each. Lists of pixels are of very different length.
+/// Invocations per workgroup, one per pixel; fewer for lists of pixels, since their lengths differ widely.
 std::uint32_t tile_group(TileDraw how);
 
 constexpr std::uint32_t round_begin(std::uint32_t round) {
     return round == 0 ? 0 : shader::TILE_FIRST_ROUND + (round - 1) * shader::TILE_ROUND;
 }
 
-/// What one of these dispatches draws.
+/// The work of one dispatch.
 struct TileRound {
-    std::uint64_t groups = 0;       ///< workgroups: with rounds of `tile_order`, else `tile_groups` of every tile
-    std::uint32_t round = 0;        ///< of the lists of entries
-    std::uint32_t tile_groups = 1;  ///< of a tile: groups are numbered tile * tile_groups + group of the tile
-    bool first_pixels = false;      ///< of refined ones: every REFINE_STEP-th, not those that are listed
+    std::uint64_t groups = 0;  ///< workgroups: with rounds the first of `tile_order`, else all tiles' `tile_groups`
+    std::uint32_t round = 0;   ///< round of the lists of entries
+    std::uint32_t tile_groups = 1;  ///< groups per tile; group number = tile * tile_groups + group of the tile
+    bool first_pixels = false;      ///< refined: draws pixels at multiples of REFINE_STEP, not the listed ones
 };
 
-/// FrameParams: where the rays of the round's pixels meet the surface, for entries in `traced_entries`, into
-/// `traced_rays`. Reads the field's coefficients.
+/// FrameParams: writes to `traced_rays` where the rays of the round's pixels meet the surface, for entries in
+/// `traced_entries`. Reads the field's coefficients.
 void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
                  const TileRound& round);
 
-/// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats, puts the chunk's sheets behind
-/// what `output_pixels` holds (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum), and counts closed
-/// pixels in `tile_closed`. `tile_sheets` holds what a round leaves unfinished.
+/// FrameParams: reads `tile_ranges`, `tile_entries` and `prepared_splats` or the splats; composites the chunk's sheets
+/// behind `output_pixels` (premultiplied colour and opacity; with PAYLOAD_TAU a plain sum); counts saturated pixels in
+/// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished.
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
 /// Specialization of 5_trace_faces.comp, and of 5_draw_tiles.comp.

@@ -1,12 +1,12 @@
-// How many clip planes a pass looks at.
+// The number of clip planes that a pass tests.
 #pragma once
 
 #include <cstdint>
 
 namespace edgesplat::passes {
 
-/// Planes that SceneParams and FrameParams hold, each a specialization constant of the passes that look at them.
-/// Without planes nothing of the clip is left in a shader.
+/// Numbers of clip planes in SceneParams and FrameParams. They are specialization constants of the passes that test
+/// planes; with 0 planes a shader has no clipping code.
 struct ClipCount {
     std::uint32_t keep = 0, remove = 0;
     bool any() const { return keep + remove > 0; }

@@ -1,4 +1,4 @@
-// Rays through the volume, in place of splats: what splatting is compared with.
+// Ray casting of the volume, the reference that splatting is compared with.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -13,16 +13,16 @@ glm::ivec3 brick_count(const glm::ivec3& dims);
 struct RaycastVariant {
     std::uint32_t light = 1;  ///< light_code()
     std::uint32_t iso_count = 1;
-    bool skip_empty = true;    ///< transparent bricks are leapt over
+    bool skip_empty = true;    ///< transparent bricks are skipped
     std::uint32_t filter = 0;  ///< RaycastFilter
-    bool transfer = false;     ///< colour and extinction by a transfer function, else by material
+    bool transfer = false;     ///< colour and extinction are from a transfer function, else from the material
 };
 
-/// Volume -> distance of every brick to the nearest one that is not transparent in the variant's field. `block` is a
-/// RaycastBlock; the ray caster's descriptor set is bound.
+/// Volume -> distance of every brick to the nearest one that is not transparent in the variant's field. The ray
+/// caster's descriptor set must be bound.
 void classify_bricks(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec3& dims);
 
-/// Writes FrameParams::output_pixels of the block, (height, width) vec4, linear light.
+/// Writes the pixels at FrameParams::output_pixels of the ray caster's block: (height, width) vec4, linear light.
 void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm::ivec2& size);
 
 }  // namespace edgesplat::passes

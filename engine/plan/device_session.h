@@ -1,4 +1,4 @@
-// The device, and what lives as long as it does.
+// Owns the device and all objects with the same lifetime: pipelines, bindings, commands.
 #pragma once
 
 #include "engine/gpu/commands.h"
@@ -8,8 +8,8 @@ namespace edgesplat {
 
 class DeviceSession {
   public:
-    /// Throws Error; vk::SystemError where the driver fails. `messages_before`: validation's, of devices that were
-    /// lost.
+    /// Throws Error; vk::SystemError if the driver fails. `messages_before`: number of validation messages of earlier,
+    /// lost devices.
     explicit DeviceSession(const DeviceChoice& choice, std::uint64_t messages_before = 0);
     DeviceSession(const DeviceSession&) = delete;
     DeviceSession& operator=(const DeviceSession&) = delete;
@@ -19,7 +19,7 @@ class DeviceSession {
     const gpu::DeviceProfile& profile() const { return device_.profile(); }
     gpu::Pipelines& pipelines() { return pipelines_; }
     gpu::Commands& commands() { return commands_; }
-    /// What the passes find from the next run on.
+    /// The passes' resource bindings; changes apply from the next run on.
     Bindings& bindings() { return bindings_; }
     std::uint64_t validation_messages() const { return messages_before_ + device_.validation_messages(); }
 

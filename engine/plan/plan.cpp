@@ -17,20 +17,20 @@ namespace edgesplat {
 
 namespace {
 
-// An interval as opaque as this a voxel hides what lies a few voxels behind its surface.
+// Extinction per voxel from which an interval counts as opaque: it occludes everything a few voxels behind its surface.
 constexpr double kOpaquePerVoxel = 0.75;
-// Memory of the sheet group. More layers mean fewer passes, but pixels close only between groups: measured best at 4
-// to 8.
+// Memory of the sheet group, bytes. More layers mean fewer passes, but saturation is tested only between groups: 4 to
+// 8 layers measured fastest.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
 constexpr std::uint32_t kMaxSheetsPerGroup = 8;
-// Each invocation of 4b_scan_sheets goes through four counters a sheet.
+// Each invocation of 4b_scan_sheets iterates over four counters per sheet.
 constexpr double kMaxSheets = shader::MOST_ITERATIONS / 4.0;
-// Slices as thin as this need 4 quadrature nodes for 0.003 % of a footprint's peak.
+// Slices up to this thickness (voxels) need 4 quadrature nodes for an error of 0.003 % of a footprint's peak.
 constexpr double kThinSlice = 0.3;
 constexpr int kSliceNodes = 4;
 constexpr double kFarthestPointLight = 1e12;  // mm
 
-/// Millimetres per voxel along the axis of shortest step.
+/// Shortest voxel spacing, mm.
 double shortest_step(const VolumeGeometry& geometry) {
     const auto spacing = geometry.spacing();
     return std::min({spacing.x, spacing.y, spacing.z});
@@ -40,15 +40,15 @@ bool is_opaque(double extinction, const VolumeGeometry& geometry) {
     return extinction * shortest_step(geometry) >= kOpaquePerVoxel;
 }
 
-/// What the device is given: so much that nothing is seen behind a voxel of it, and so little that the sums and means
-/// over a picture's splats stay within a float.
+/// The extinction for the device, limited to 1e20 per voxel: opaque within a voxel, but sums and means over a
+/// picture's splats stay in the range of a float.
 double bounded(double extinction, const VolumeGeometry& geometry) {
     constexpr double kMostAVoxel = 1e20;
     const glm::dvec3 s = geometry.spacing();
     return std::min(extinction, kMostAVoxel / std::max({s.x, s.y, s.z}));
 }
 
-/// Mean of extinction times (colour, 1) between two points, of which both are linear: by Simpson's rule.
+/// Mean of extinction * (colour, 1) between two points; extinction and colour are linear, so Simpson's rule is exact.
 glm::dvec4 mean_matter(const TransferPoint& a, const TransferPoint& b) {
     const auto at = [&](double t) {
         const double extinction = std::lerp(a.extinction, b.extinction, t);
@@ -71,7 +71,7 @@ std::vector<shader::TransferRow> transfer_rows(const Scene& scene, const Volume&
     return rows;
 }
 
-/// Voxels behind a surface of this extinction per voxel where 1/256 of the light is left, beyond the kernel's radius.
+/// Voxels behind a surface at which 1/256 of the light remains, plus the kernel's radius.
 int bury_distance(double extinction_per_voxel, double radius) {
     return static_cast<int>(std::ceil(radius + std::log(256.0) / extinction_per_voxel));
 }
@@ -80,7 +80,7 @@ glm::vec3 to_float(const glm::dvec3& v) {
     return {v};
 }
 
-/// As FrameParams::light_at.
+/// A light's FrameParams::light_at.
 glm::vec4 place_of(const Light& light, const glm::dvec3& eye) {
     switch (light.kind) {
         case Light::Kind::Headlight:
@@ -89,7 +89,7 @@ glm::vec4 place_of(const Light& light, const glm::dvec3& eye) {
             return {to_float(unit(light.direction)), 0};
         case Light::Kind::Point: {
             const glm::dvec3 place = light.position - eye;
-            // From further away its rays are parallel, and float32 holds no squares of such lengths.
+            // From this distance on rays count as parallel: float32 cannot represent the squares of such lengths.
             const bool far = !(glm::length(place) < kFarthestPointLight);
             return far ? glm::vec4(to_float(unit(place)), 0) : glm::vec4(to_float(place), 1);
         }
@@ -105,13 +105,13 @@ std::uint32_t shadow_channels(const Scene& scene) {
     return channels;
 }
 
-bool answers_in_its_own_way(const Material& material) {
+bool has_own_response(const Material& material) {
     const LightResponse usual;
     const LightResponse& r = material.response;
     return r.ambient != usual.ambient || r.diffuse != usual.diffuse || r.specular != usual.specular;
 }
 
-/// What the picture's colours take beside those of the materials.
+/// Fills in the shading parameters: lights, material responses, effects.
 void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3& eye, FramePlan& plan) {
     auto& variant = plan.variant;
     auto& p = plan.params;
@@ -127,7 +127,7 @@ void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3
         const LightResponse& r = material.response;
         p.responses[m] = glm::dvec4(r.ambient, r.diffuse, r.specular, r.shininess);
         if (scene.lights.empty() || !(extinctions_of(scene, m).most > 0)) continue;
-        variant.response = variant.response || answers_in_its_own_way(material);
+        variant.response = variant.response || has_own_response(material);
         variant.gloss = variant.gloss || r.specular > 0;
     }
     if (const auto& silhouette = scene.effects.silhouette) {
@@ -146,7 +146,7 @@ void plan_shading(const Scene& scene, const Settings& settings, const glm::dvec3
     }
     variant.shadows = static_cast<std::uint32_t>(shadow_lights(scene).size());
     p.shadow_channels = shadow_channels(scene);
-    variant.lit_edges = wants_normals(scene) && only_edges_lit(scene, draws_warped(settings));
+    variant.lit_edges = needs_normals(scene) && lights_edges_only(scene, draws_warped(settings));
 }
 
 void copy_planes(const std::vector<IndexPlane>& planes, glm::vec4 (&params)[shader::MAX_CLIP_PLANES]) {
@@ -178,7 +178,7 @@ std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
 }
 
-bool wants_normals(const Scene& scene) {
+bool needs_normals(const Scene& scene) {
     return !scene.lights.empty() || scene.effects.silhouette;
 }
 
@@ -189,8 +189,8 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
            faces == other.faces && std::ranges::equal(transfer, other.transfer) && a.estimate_mask == b.estimate_mask &&
            a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
-           a.seen_through == b.seen_through && a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance &&
-           a.band == b.band && a.reach == b.reach && clip == other.clip &&
+           a.translucent_mask == b.translucent_mask && a.opaque_mask == b.opaque_mask &&
+           a.bury_distance == b.bury_distance && a.band == b.band && a.reach == b.reach && clip == other.clip &&
            std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
@@ -198,7 +198,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     CollectionPlan plan;
     plan.dims = volume.geometry.dims;
     plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
-    plan.edge_field = plan.estimator != EdgeEstimator::Off || wants_normals(scene);
+    plan.edge_field = plan.estimator != EdgeEstimator::Off || needs_normals(scene);
 
     auto& params = plan.params;
     params.dims = plan.dims;
@@ -227,8 +227,8 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
     params.reach = static_cast<float>(kernel_reach(settings));
-    params.seen_through = materials_carried_beside(settings, scene, volume.geometry);
-    // Faces are of both sides of a surface, drawn or not.
+    params.translucent_mask = materials_carried_beside(settings, scene, volume.geometry);
+    // A face is fitted to both sides of a surface, also to a side that is not drawn.
     params.estimate_mask = plan.faces ? ~0U : params.visible_mask;
     return plan;
 }
@@ -253,7 +253,7 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 
 namespace {
 
-/// The values of a material's interval as the device has them, half open.
+/// A material's value interval, half open, scaled like the device's samples.
 glm::vec2 scaled_interval(const Volume& volume, const Scene& scene, std::size_t material) {
     const auto end = [&](std::size_t j, float none) {
         return j < scene.iso_values.size() ? static_cast<float>(scaled_iso_value(volume, scene.iso_values[j])) : none;
@@ -276,9 +276,9 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double thickness = sheet_thickness(geometry, camera, settings);
 
     FramePlan plan;
-    // Several samples are of the picture alone; a light's picture is the scene without effects.
+    // Only colour pictures have several samples; a light's picture has no effects.
     const int samples = payload == shader::PAYLOAD_COLOR ? scene.effects.samples : 1;
-    // Optical depth is a plain sum: sheets would change nothing.
+    // Optical depth is a plain sum, so slicing does not change it.
     const bool sliced = settings.sheets == SheetCut::Sliced && payload != shader::PAYLOAD_TAU;
     plan.variant = {.footprints = settings.footprints,
                     .warp = settings.warp,
@@ -334,11 +334,11 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     }
 
     p.band = static_cast<float>(edge_reach(settings));
-    p.seen_through = materials_carried_beside(settings, scene, geometry);
+    p.translucent_mask = materials_carried_beside(settings, scene, geometry);
     p.table_depth = static_cast<float>(table_depth(scene, geometry));
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
-    plan.variant.opaque = payload != shader::PAYLOAD_TAU && one_piece_is_enough(settings, scene, geometry);
+    plan.variant.opaque = payload != shader::PAYLOAD_TAU && has_single_piece(settings, scene, geometry);
     const auto traced = traced_material(settings, scene, geometry);
     plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && traced;
     if (plan.variant.traced) p.traced_interval = scaled_interval(volume, scene, *traced);
@@ -362,8 +362,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const double sheets = std::max(std::floor(farthest / thickness) - base + 1.0, 1.0);
     if (!(sheets <= kMaxSheets) || !(base < 2e9)) {
         fail(
-            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; {:.0f} are possible: choose a larger "
-            "--sheet-spacing",
+            "the view needs {:.0f} sheets of {:.4g} mm, starting at sheet {:.0f}; at most {:.0f} are possible: choose "
+            "a larger --sheet-spacing",
             sheets, thickness, base, kMaxSheets);
     }
     const std::uint64_t layer_bytes = 16 * static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
@@ -378,14 +378,14 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     draw_first(plan, static_cast<std::uint32_t>(splats.count));
     plan.reach = farthest_reach;
     p.size = size;
-    // Optical depth is wanted whole, and what accumulates then is no opacity.
+    // Optical depth never saturates: the sum is no opacity.
     p.saturation =
         payload == shader::PAYLOAD_TAU || settings.saturation >= 1 ? 3e38F : static_cast<float>(settings.saturation);
     return plan;
 }
 
 void shift_rays(FramePlan& plan, const glm::dvec2& offset) {
-    // A sheared view: slopes as drawn are those of the rays less those of the offset.
+    // A sheared view: drawn slopes = ray slopes - slopes of the offset.
     auto& p = plan.params;
     const glm::vec2 slopes = glm::vec2(offset) * 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(p.size);
     p.view_x -= slopes.x * p.view_z;

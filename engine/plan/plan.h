@@ -1,4 +1,4 @@
-// From scene, camera and settings to what must run: the numbers every pass is given.
+// Plans of passes: scene, camera and settings -> pipeline variants and parameters.
 #pragma once
 
 #include "engine/culling/bricks.h"
@@ -12,89 +12,88 @@
 
 namespace edgesplat {
 
-/// Whether splats need normals, whatever becomes of edges.
-bool wants_normals(const Scene& scene);
+/// Whether splats need normals even without edges.
+bool needs_normals(const Scene& scene);
 
-/// The one light that the ray casters know: 0 without light, else 1 + Light::Kind.
+/// The ray casters' light, the scene's first: 0 without lights, else 1 + Light::Kind.
 std::uint32_t light_code(const Scene& scene);
 
-/// Passes 1 and 2 for one volume, scene and set of edge settings.
+/// Plan of passes 1 and 2 for one volume, scene and set of edge settings.
 struct CollectionPlan {
     glm::ivec3 dims{0};
     EdgeEstimator estimator = EdgeEstimator::Cubic;
-    bool blocks = false;     ///< the device holds a block of the volume at a time (engine/store/blocks.h)
-    bool edge_field = true;  ///< edges are preserved, or a light wants normals
-    bool buried = true;      ///< some material is opaque enough to hide what lies behind it
-    /// Buried voxels need no edge. With one opaque material they have none in reach either; with several, a visible
-    /// voxel's face may be fitted to what two of them share.
+    bool blocks = false;     ///< one block of the volume is on the device at a time (engine/store/blocks.h)
+    bool edge_field = true;  ///< edges are preserved, or lighting needs normals
+    bool buried = true;      ///< some material is opaque enough to occlude: buried voxels are culled
+    /// Skips edges of buried voxels. Only with one opaque material: then no buried voxel has an edge in reach of a
+    /// visible one. With several, a visible voxel's face may be fitted to an edge between two buried ones.
     bool skip_buried = true;
-    bool faces = false;  ///< edges are faces, found on both sides, and splats carry their second derivatives
-    /// Whether edges are found with the spline through the samples.
+    bool faces = false;  ///< edges are faces: estimated on both sides, with second derivatives stored per splat
+    /// Whether edges are estimated on the B-spline through the samples.
     bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }
-    /// Where something is buried, what is cut away hides nothing and is dropped. Elsewhere the splat list does not
-    /// depend on the planes: they move without a new collection.
+    /// Clip planes; none unless `buried`. With `buried`, clipped voxels occlude nothing and are culled. Otherwise the
+    /// splat list does not depend on the planes: they move without a new collection.
     passes::ClipCount clip{};
     std::vector<shader::TransferRow> transfer;  ///< TRANSFER_ROWS + 1; empty without a transfer function
-    shader::SceneParams params{};               ///< without addresses
+    shader::SceneParams params{};               ///< addresses unset
 
-    /// Whether the same splats come out of it.
+    /// Whether both plans produce the same splats.
     bool operator==(const CollectionPlan& other) const;
 };
 
-/// `keep_buried`: nothing may be dropped (optical depth is asked for, or the eye is inside opaque matter).
+/// `keep_buried`: buried voxels stay (the output is optical depth, or the eye is inside opaque matter).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
-/// Whether the voxel nearest to the eye belongs to an opaque material and the eye is not in what is cut away: what is
-/// buried from outside is in front of it.
+/// Whether the voxel nearest to the eye is of an opaque material and not clipped. Buried voxels are then visible.
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
 
-/// Of a picture's sheets along the view, mm.
+/// Thickness of a picture's sheets along the view direction, mm.
 double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, const Settings& settings);
 
-/// Passes 3 to 7 for one picture.
+/// Plan of passes 3 to 7 for one picture.
 struct FramePlan {
     passes::DrawVariant variant{};
-    bool gradient = false;               ///< colour over a background of two colours
-    bool wide_marks = false;             ///< of tiles' entries, for 4 x 2 pixels at once (4_mark_pixels)
-    bool refined = false;                ///< some pixels are drawn, others follow (5_refine_pixels)
-    bool may_refine = false;             ///< `refined` before the splats' sizes were known
-    std::uint32_t sheets_per_splat = 1;  ///< at most: entries of the sorted order
-    std::uint32_t sort_segments = 1;     ///< into which the sort's blocks are divided
-    double reach = 0;                    ///< no kernel reaches further, voxels
-    std::vector<std::uint32_t> bricks;   ///< numbers of those in view, where bricks are culled
-    std::vector<glm::uvec2> batches;     ///< FrameParams::batches, likewise
-    std::uint64_t looked_at = 0;         ///< splats that were gone through, and are
-    shader::FrameParams params{};        ///< without addresses
+    bool gradient = false;               ///< the background has two colours
+    bool wide_marks = false;             ///< a mark covers 4 x 2 pixels (4_mark_pixels)
+    bool refined = false;                ///< some pixels are drawn, others interpolated (5_refine_pixels)
+    bool may_refine = false;             ///< `refined` before the splats' sizes are known
+    std::uint32_t sheets_per_splat = 1;  ///< upper bound of a splat's entries in the sorted order
+    std::uint32_t sort_segments = 1;     ///< number of segments of each of the sort's blocks
+    double reach = 0;                    ///< farthest reach of any kernel, voxels
+    std::vector<std::uint32_t> bricks;   ///< numbers of the bricks in view; empty without culling
+    std::vector<glm::uvec2> batches;     ///< FrameParams::batches; empty without culling
+    std::uint64_t splats_examined = 0;   ///< splats examined
+    shader::FrameParams params{};        ///< addresses unset
 };
 
-/// The picture is then of the first `splats` of the list alone, none of its bricks being culled.
+/// Restricts the picture to the first `splats` of the list and turns brick culling off.
 void draw_first(FramePlan& plan, std::uint32_t splats);
 
-/// Leaves out what no brick in view holds, if that is something and sheets are summed tile by tile.
+/// Culls the splats of bricks out of view; no-op unless sheets are summed tile by tile.
 void cull_bricks(FramePlan& plan, const SplatBricks& bricks, const ViewVolume& view);
 
-/// The picture is then of the splats of these bricks, which ascend, if those are fewer than all.
+/// Restricts the picture to the splats of these bricks (ascending numbers), unless their batches cover the whole list.
 void draw_bricks(FramePlan& plan, const SplatBricks& bricks, std::span<const std::uint32_t> numbers);
 
-/// The splats of a list.
+/// Number, bounding box and kinds of a list's splats.
 struct SplatExtent {
     std::uint64_t count = 0;
-    glm::ivec3 low{0}, high{0};  ///< inclusive box of voxels that holds them
-    bool creases = true;         ///< some may have a plane beside their face
-    bool traced = true;          ///< of some rays may have to find it
+    glm::ivec3 low{0}, high{0};  ///< inclusive bounding box of their voxels
+    bool creases = true;         ///< some may have a crease: a plane beside their face
+    bool traced = true;          ///< some may have a face that rays must find
 };
 
-/// Throws Error when the scene has more sheets than the sort can hold. No kernel reaches further than `farthest_reach`
-/// voxels. `refines`: whether the device may draw some pixels first.
+/// Throws Error if the view has more sheets than the sort allows. `farthest_reach`: upper bound of the kernels' reach,
+/// voxels. `refines`: whether pixels may be interpolated on this device.
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
                      const glm::ivec2& size, std::uint32_t payload, const SplatExtent& splats,
                      double farthest_reach = 0, bool refines = true);
 
-/// Writes a scene's planes, counted from the index-space point `origin`, as the shaders have them.
+/// Writes a scene's clip planes in the shaders' form, relative to the index-space point `origin`.
 passes::ClipCount place_clip(const Clip& clip, const VolumeGeometry& geometry, const glm::dvec3& origin,
                              glm::vec4 (&keep)[shader::MAX_CLIP_PLANES], glm::vec4 (&remove)[shader::MAX_CLIP_PLANES]);
 
-/// Moves the rays of a plan: pixel (x, y) is then of the ray through (x + offset.x, y + offset.y), in pixels.
+/// Shifts the rays of a plan: pixel (x, y) gets the ray through (x + offset.x, y + offset.y), in pixels.
 void shift_rays(FramePlan& plan, const glm::dvec2& offset);
 
 }  // namespace edgesplat

@@ -44,7 +44,7 @@ std::uint64_t sheets(const FramePlan& plan) {
 std::uint64_t pixels(const FramePlan& plan) {
     return picture_bytes(plan) / sizeof(glm::vec4);
 }
-/// So many of each tile; none in pictures whose sheets are layers.
+/// `bytes` per tile; 0 if sheets are layers.
 std::uint64_t of_tiles(const FramePlan& plan, std::uint64_t bytes) {
     return plan.variant.tiles ? tile_count(plan) * bytes : 0;
 }
@@ -54,7 +54,7 @@ std::uint64_t if_tiles(const FramePlan& plan, std::uint64_t bytes) {
 std::uint64_t of_refined_tiles(const FramePlan& plan, std::uint64_t bytes) {
     return plan.may_refine ? of_tiles(plan, bytes) : 0;
 }
-/// So many of each group of sheets that are layers.
+/// `bytes` per sheet group; 0 if sheets are summed tile by tile.
 std::uint64_t of_groups(const FramePlan& plan, std::uint64_t bytes) {
     return plan.variant.tiles ? 0 : plan.params.group_count * bytes;
 }
@@ -99,7 +99,7 @@ const std::array kFieldImages{
 const std::array kCollectionBuffers{
     row<CollectionBufferRow>(text("scene parameters", "(1) SceneParams", "host", "1, 2"), &L::scene,
                              [](const CollectionPlan&, const glm::ivec3&) { return std::uint64_t{sizeof(S)}; }),
-    // Behind the runs' counts how many splats have an edge, a crease, a face that rays are to find.
+    // The three elements behind the runs' counts: number of splats with an edge, a crease, a face that rays must find.
     row<CollectionBufferRow>(
         text("run offsets", "(runs + 3) uint", "2, host", "2, host"), &L::run_offsets,
         [](const CollectionPlan&, const glm::ivec3& core) { return (passes::collect_runs(core) + 3) * kWord; }),
@@ -135,7 +135,7 @@ const std::array kTargetImages{
                         shader::BIND_SHEETS, Sampling::Nearest,
                         layers_of(kSums, Usage::eColorAttachment | Usage::eSampled | Usage::eTransferSrc),
                         [](const FramePlan& p) { return layers(p, p.params.sheets_per_group); }),
-    row<TargetImageRow>(text("sheet depth", "(sheets at once, y, x) 0 where a pixel is opaque", "5", "5"), &T::depth,
+    row<TargetImageRow>(text("sheet depth", "(sheets at once, y, x) 0 if the pixel is saturated", "5", "5"), &T::depth,
                         kUnbound, Sampling::None, layers_of(vk::Format::eD16Unorm, Usage::eDepthStencilAttachment),
                         [](const FramePlan& p) { return layers(p, p.params.sheets_per_group); }),
     row<TargetImageRow>(
@@ -190,7 +190,7 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(text("draw commands", "(groups) DrawCommand", "4", "5"), &T::draws, &F::draws, Place::Device,
                          kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return of_groups(p, sizeof(shader::DrawCommand)); }),
-    // Sheets that are summed tile by tile. The host sees which tiles a round is for.
+    // Tiled pictures. The host reads which tiles a round draws.
     row<TargetBufferRow>(text("tiles of splats", "(splats) uvec2", "3", "4"), &T::tile_rects, &F::tile_rects,
                          Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return if_tiles(p, splats(p) * kPair); }),
@@ -224,7 +224,7 @@ const std::array kTargetBuffers{
                          [](const FramePlan& p, const Profile& profile) {
                              return if_tiles(p, tile_mark_words(p, chunk_pairs(p.params.tiles, profile)) * kWord);
                          }),
-    row<TargetBufferRow>(text("closed pixels of tiles", "(tiles) uint", "5", "4"), &T::tile_closed, &F::tile_closed,
+    row<TargetBufferRow>(text("saturated pixels of tiles", "(tiles) uint", "5", "4"), &T::tile_closed, &F::tile_closed,
                          Place::Device, kWords, shader::BIND_TILE_CLOSED,
                          [](const FramePlan& p, const Profile&) { return of_tiles(p, kWord); }),
     row<TargetBufferRow>(text("pixels to draw of tiles", "(tiles) uint", "host, 5", "4, 5, host"), &T::tile_todo,
@@ -237,14 +237,14 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(text("finest splats of tiles", "(tiles) uint", "5", "5"), &T::tile_finest, &F::tile_finest,
                          Place::Device, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return of_refined_tiles(p, kWord); }),
-    row<TargetBufferRow>(text("closed pixels, seen", "(tiles) uint", "5", "host"), &T::tiles_seen, nullptr, Place::Host,
-                         kNoTexels, kUnbound,
+    row<TargetBufferRow>(text("saturated pixels, host", "(tiles) uint", "5", "host"), &T::tile_closed_on_host, nullptr,
+                         Place::Host, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return of_refined_tiles(p, kWord); }),
     row<TargetBufferRow>(text("unfinished sheets", "(y, x) vec4", "5", "5"), &T::tile_sheets, &F::tile_sheets,
                          Place::Device, kSums, shader::BIND_TILE_SHEETS,
                          [](const FramePlan& p, const Profile&) { return if_tiles(p, picture_bytes(p)); }),
     row<TargetBufferRow>(
-        text("outlines", "(y, x) where one passes the pixel", "5", "7"), &T::outlines, &F::outlines, Place::Device,
+        text("outlines", "(y, x) where one crosses the pixel", "5", "7"), &T::outlines, &F::outlines, Place::Device,
         kWords, shader::BIND_OUTLINES,
         [](const FramePlan& p, const Profile&) { return if_tiles(p, p.variant.outlines ? pixels(p) * kWord : 0); }),
     row<TargetBufferRow>(

@@ -1,4 +1,5 @@
-// Every image and buffer of a renderer, a row each: what allocates, binds, forecasts and describes them reads it there.
+// The table of a renderer's images and buffers, one row each. Allocation, binding, memory forecast and description all
+// read it.
 #pragma once
 
 #include <optional>
@@ -10,32 +11,32 @@
 
 namespace edgesplat {
 
-/// For those who read what a frame takes.
+/// Description of a resource for readers.
 struct ResourceText {
-    const char* name = "";           ///< as it is allocated
+    const char* name = "";           ///< also the name of its allocation
     std::string_view contents;       ///< "(splats) uint"
     std::string_view written, read;  ///< stems of passes, or "host"
 };
 
-/// Of what passes have by its address alone.
+/// Binding of resources that passes access by address only.
 inline constexpr std::uint32_t kUnbound = ~0U;
 
-/// A voxel's texel each: as large as the volume, or as the largest of its blocks.
+/// An image with one texel per voxel: as large as the volume, or as its largest block.
 template <typename Owner>
 struct VolumeImageRow {
     ResourceText text;
     gpu::GpuImage Owner::*image;
     std::uint32_t binding;
-    gpu::ImageShape kind;                 ///< without size
-    bool (*held)(const CollectionPlan&);  ///< whether there is one
+    gpu::ImageShape kind;                 ///< shape without size
+    bool (*held)(const CollectionPlan&);  ///< whether the plan needs it
     gpu::ImageShape shape(const glm::ivec3& size) const;
 };
 std::span<const VolumeImageRow<VolumeImages>> volume_image_rows();
 const VolumeImageRow<VolumeImages>& row_of(gpu::GpuImage VolumeImages::*image);
-/// What is known of each voxel before it becomes a splat.
+/// Fields over the voxels that pass 2 reads: edges and buried voxels.
 std::span<const VolumeImageRow<SplatLists>> field_image_rows();
 
-/// Mapped, of a plan and the voxels that become splats at once.
+/// A buffer of passes 1 and 2, mapped; its size depends on the plan and on the voxels collected at once.
 struct CollectionBufferRow {
     ResourceText text;
     gpu::Buffer SplatLists::*buffer;
@@ -43,17 +44,17 @@ struct CollectionBufferRow {
 };
 std::span<const CollectionBufferRow> collection_buffer_rows();
 
-/// A list with an element for each splat.
+/// A list with one element per splat.
 struct SplatListRow {
     ResourceText text;
     gpu::Buffer SplatLists::*list;
-    shader::Address shader::SceneParams::*collected;  ///< where pass 2 finds it
-    shader::Address shader::FrameParams::*drawn;      ///< where the passes of a picture do
-    std::uint64_t (*bytes)(const CollectionPlan&);    ///< of an element; 0: none
+    shader::Address shader::SceneParams::*collected;  ///< its address for pass 2
+    shader::Address shader::FrameParams::*drawn;      ///< its address for a picture's passes
+    std::uint64_t (*bytes)(const CollectionPlan&);    ///< size of an element; 0: no list
 };
 std::span<const SplatListRow> splat_list_rows();
 
-/// What of the light reaches the splats, 4 bytes each: there where a scene calls for it.
+/// A list of the light that reaches each splat, 4 bytes per splat; exists if the scene needs it.
 struct LightListRow {
     ResourceText text;
     gpu::Buffer SplatLists::*list;
@@ -63,38 +64,39 @@ inline constexpr std::uint64_t kLightBytes = 4;
 std::span<const LightListRow> light_list_rows();
 const LightListRow& row_of(gpu::Buffer SplatLists::*list);
 
-/// How shaders read an image that they do not load.
+/// Filter of a sampled image; None: a storage image or attachment.
 enum class Sampling { None, Nearest, Linear };
 
-/// Of a picture.
+/// An image of a picture.
 struct TargetImageRow {
     ResourceText text;
     gpu::GpuImage TargetResources::*image;
     std::uint32_t binding;
     Sampling sampling;
-    gpu::ImageShape kind;  ///< without size
-    /// Width, height, layers; nothing: pictures of that plan have none.
+    gpu::ImageShape kind;  ///< shape without size
+    /// Width, height, layers; nullopt: the plan does not need it.
     std::optional<glm::ivec3> (*size)(const FramePlan&);
-    bool higher_serves = false;  ///< one of more rows does as well
+    bool taller_is_reusable = false;  ///< an image with more rows can be reused
     gpu::ImageShape shape(const glm::ivec3& size_and_layers) const;
 };
 std::span<const TargetImageRow> target_image_rows();
 
+/// A buffer of a picture.
 struct TargetBufferRow {
     ResourceText text;
     gpu::Buffer TargetResources::*buffer;
-    shader::Address shader::FrameParams::*address;  ///< null: none of the picture's passes asks for it
+    shader::Address shader::FrameParams::*address;  ///< its address for the passes; null: they do not use one
     gpu::Buffer::Place place;
-    vk::Format texels;      ///< that shaders have it as, too
-    std::uint32_t binding;  ///< then
-    /// 0: pictures of that plan have none.
+    vk::Format texels;      ///< format if shaders also load it as texels, else undefined
+    std::uint32_t binding;  ///< binding of the texels
+    /// Size in bytes; 0: the plan does not need it.
     std::uint64_t (*bytes)(const FramePlan&, const gpu::DeviceProfile&);
-    bool always = false;  ///< every renderer has it, from the beginning
+    bool always = false;  ///< allocated with the renderer and never freed
 };
 std::span<const TargetBufferRow> target_buffer_rows();
 const TargetBufferRow& row_of(gpu::Buffer TargetResources::*buffer);
 
-/// What stands in bindings that a frame does not use.
+/// Placeholders for unused bindings.
 inline constexpr ResourceText kPlaceholder{"placeholder", "1 texel", "-", "-"};
 inline constexpr ResourceText kPlaceholderTexels{"placeholder texels", "zeros", "-", "-"};
 inline constexpr ResourceText kPlaceholderBlock{"placeholder block", "zeros", "-", "-"};
@@ -102,7 +104,7 @@ inline constexpr std::uint64_t kPlaceholderBytes = 16;
 std::span<const gpu::ImageShape> placeholder_images();
 std::span<const vk::Format> placeholder_texels();
 
-/// What is held for a moment.
+/// Temporary resources.
 inline constexpr ResourceText kStagingBuffer{"staging buffer", "(rows) texels", "host", "copies"};
 inline constexpr ResourceText kOcclusionBlock{"occlusion parameters", "(1) OcclusionParams", "host", "2b"};
 inline constexpr ResourceText kLightLayers{"light layers", "(layers, y, x) optical depth from the light", "2c", "2d"};

@@ -27,12 +27,12 @@ void Bindings::prepare(gpu::Commands& commands) const {
 
 void Bindings::put_image(std::uint32_t binding, const gpu::GpuImage& image, const gpu::ImageShape& kind,
                          vk::Sampler sampler) {
-    const auto stands_in = std::ranges::find_if(no_images_, [&](const gpu::GpuImage& other) {
+    const auto placeholder = std::ranges::find_if(no_images_, [&](const gpu::GpuImage& other) {
         const gpu::ImageShape& shape = other.shape();
         return shape.volume == kind.volume && shape.array == kind.array &&
                (sampler ? bool(shape.usage & vk::ImageUsageFlagBits::eSampled) : shape.format == kind.format);
     });
-    set_.put_image(binding, image ? image : *stands_in, sampler);
+    set_.put_image(binding, image ? image : *placeholder, sampler);
 }
 
 void Bindings::write_volume(const VolumeImages& images) {
@@ -59,9 +59,9 @@ void Bindings::write_targets(const TargetResources& targets) {
     for (const TargetBufferRow& row : target_buffer_rows()) {
         if (row.binding == kUnbound) continue;
         const gpu::Buffer& buffer = targets.*row.buffer;
-        const auto otherwise = std::ranges::find(placeholder_texels(), row.texels) - placeholder_texels().begin();
+        const auto placeholder = std::ranges::find(placeholder_texels(), row.texels) - placeholder_texels().begin();
         set_.put_texels(row.binding,
-                        buffer && buffer.texels() ? buffer : no_texels_[static_cast<std::size_t>(otherwise)]);
+                        buffer && buffer.texels() ? buffer : no_texels_[static_cast<std::size_t>(placeholder)]);
     }
     set_.put_block(shader::BIND_FRAME, targets.frame ? targets.frame : no_block_);
 }
@@ -70,8 +70,7 @@ namespace {
 
 constexpr std::size_t kStagingBytes = std::size_t{64} << 20U;
 
-/// Rows and slices that go up at once. A slice may be larger than the staging buffer should be; then it goes up in
-/// bands of rows.
+/// Rows and slices of one upload. A slice larger than the staging buffer is uploaded in bands of rows.
 struct Band {
     std::size_t row = 0;  ///< bytes
     std::size_t rows = 0, slices = 0;

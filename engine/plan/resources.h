@@ -1,4 +1,4 @@
-// What a renderer holds on the device, the descriptor set over it, and how images are filled.
+// A renderer's resources on the device, the descriptor set that binds them, and uploads into images.
 #pragma once
 
 #include <array>
@@ -13,49 +13,50 @@
 
 namespace edgesplat {
 
-/// What stands until the volume or its resolution changes. What each holds, and when there is one, its row says
-/// (resource_table.h).
+/// Resources that last until the volume or its resolution changes. The row of each (resource_table.h) tells its
+/// contents and when it exists.
 struct VolumeImages {
     gpu::GpuImage volume, coefficients;
 };
 
-/// What stands until the scene's materials or the edge settings change, too; likewise.
+/// Resources that last until the volume, the scene's materials or the edge settings change; rows likewise.
 struct SplatLists {
     gpu::GpuImage edges, buried;
     gpu::Buffer scene, run_offsets, transfer;
     gpu::Buffer splats, traits, values, occlusion, shadows;
     std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0, traced_splat_count = 0;
-    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive box of voxels that holds all splats
-    SplatBricks bricks;                  ///< of the list
+    glm::ivec3 box_low{0}, box_high{0};  ///< inclusive bounding box of the splats' voxels
+    SplatBricks bricks;                  ///< the list's bricks
     SplatExtent extent() const {
         return {splat_count, box_low, box_high, crease_splat_count > 0, traced_splat_count > 0};
     }
 };
 
-/// What stands until the picture's size, the number of sheets or of splats changes; likewise.
+/// Resources that last until the picture's size or the number of sheets or splats changes; rows likewise.
 struct TargetResources {
     gpu::Buffer frame, drawn, indices;
     gpu::Buffer batches, sheet_of, order, counters, output;
     gpu::GpuImage footprint_table;
     gpu::Buffer footprints;
-    // Of a picture whose sheets are layers.
+    // Pictures whose sheets are layers.
     gpu::GpuImage sheets, depth, accumulated;
     gpu::Buffer groups, draws;
-    // Of one that is summed tile by tile.
+    // Tiled pictures.
     gpu::GpuImage prepared;
     gpu::Buffer tile_rects, sheet_pairs, sheet_starts, chunks, tile_counters, tile_ranges, tile_order, tile_entries;
-    gpu::Buffer tile_marks, tile_closed, tile_todo, tiles_seen, tile_finest, tile_pixels, tile_sheets, outlines;
+    gpu::Buffer tile_marks, tile_closed, tile_todo, tile_closed_on_host, tile_finest, tile_pixels, tile_sheets,
+        outlines;
     gpu::Buffer traced_rays, traced_entries;
 };
 
-/// The one descriptor set (shaders/shared/bindings.h). Bindings that a frame does not use hold a 1-texel image or
-/// zeros, since not every driver allows holes.
+/// The one descriptor set (shaders/shared/bindings.h). Unused bindings get a placeholder, a 1-texel image or zeros,
+/// since not every driver allows empty bindings.
 class Bindings {
   public:
     Bindings(const gpu::Device& device, const gpu::Pipelines& pipelines);
     gpu::DescriptorSet& set() { return set_; }
     const gpu::DescriptorSet& set() const { return set_; }
-    /// Moves the placeholders into layout GENERAL; once, while recording.
+    /// Records the placeholders' transition to layout GENERAL; call once.
     void prepare(gpu::Commands& commands) const;
     void write_volume(const VolumeImages& images);
     void write_splats(const SplatLists& lists);
@@ -63,7 +64,7 @@ class Bindings {
 
   private:
     gpu::DescriptorSet set_;
-    /// `image`, or a placeholder of its kind.
+    /// Binds `image`, or a placeholder of its kind if there is none.
     void put_image(std::uint32_t binding, const gpu::GpuImage& image, const gpu::ImageShape& kind,
                    vk::Sampler sampler = {});
     vk::raii::Sampler nearest_ = nullptr, linear_ = nullptr;
@@ -75,14 +76,14 @@ class Bindings {
 /// Size of the staging buffer that upload_image uses for such an image.
 std::uint64_t staging_bytes(const gpu::ImageShape& shape, std::size_t texel_bytes);
 
-/// Copies `bytes` from the host into an image, whole layers or slices at a time, through a staging buffer of at most
-/// 64 MiB. `texel_bytes` is the size of one texel.
+/// Copies `bytes` from the host into an image through a staging buffer of at most 64 MiB (or one row).
+/// `texel_bytes`: size of one texel.
 void upload_image(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const void* bytes,
                   std::size_t texel_bytes);
-/// The same for the first `size` texels of a volume along each axis; what the others hold is lost.
+/// The same for the first `size` texels of a volume along each axis; the other texels become undefined.
 void upload_block(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image,
                   const glm::ivec3& size, const void* bytes, std::size_t texel_bytes);
-/// The same from texel `low` on; what the others hold stays.
+/// The same from texel `low` on; the other texels keep their values.
 void upload_box(gpu::Commands& commands, const gpu::Device& device, const gpu::GpuImage& image, const glm::ivec3& low,
                 const glm::ivec3& size, const void* bytes, std::size_t texel_bytes);
 

@@ -5,7 +5,7 @@
 namespace edgesplat {
 namespace {
 
-// Of pictures of more tiles, whose lists begin in very many places, fewer pairs are sorted at once.
+// Above this number of tiles fewer pairs are sorted at once, since the histogram has a row per tile.
 constexpr std::uint64_t kManyTiles = std::uint64_t{1} << 17U;
 
 }  // namespace
@@ -45,7 +45,7 @@ std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles) {
 std::uint64_t tile_order_items(const FramePlan& plan) {
     const std::uint64_t items =
         tile_count(plan) * tile_groups({.profile = &gpu::device_profiles().front(), .refined = plan.refined}, 1);
-    return tile_count(plan) + items + items / 65535 + 1;  // groups_for() may make so many groups too many
+    return tile_count(plan) + items + items / 65535 + 1;  // groups_for() may add up to items / 65535 + 1 groups
 }
 
 std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& profile) {
@@ -53,7 +53,7 @@ std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& 
 }
 
 std::uint64_t tile_mark_words(const FramePlan& plan, std::uint64_t pairs) {
-    // A picture that is planned to be refined may be drawn whole; then fewer lists are kept.
+    // A picture planned as refined may be drawn without refinement; then its marks need more words per entry.
     const std::uint64_t cells = plan.wide_marks ? shader::TILE * shader::TILE / 8 : shader::TILE * shader::TILE;
     return padded_pairs(pairs, plan.params.tiles) *
            std::max(cells / shader::MARKED_AT_ONCE, std::uint64_t{plan.refined ? 2U : 1U});

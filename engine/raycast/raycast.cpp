@@ -106,7 +106,7 @@ bool RaycastResources::classify(const gpu::Device& device, gpu::Commands& comman
         commands.prepare({&scratch, &image});
         commands.span("raycast_bricks", [&] { passes::classify_bricks(commands, plan.variant, scene.dims); });
     });
-    // The slot must not be left with an image that is gone.
+    // The slot must not keep a freed image.
     bindings_.set().put_image(shader::BIND_BRICK_SCRATCH, bricks);
     made_for = scene;
     made_for_transfer = plan.transfer;

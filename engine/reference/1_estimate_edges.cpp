@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// The normal of a voxel without an edge.
+/// The edge of a voxel without a surface in reach: only the normal -g / |g|, unless |g| is too small.
 VoxelEdge normal_only(const glm::dvec3& g) {
     VoxelEdge edge;
     const double length = glm::length(g);
@@ -26,7 +26,7 @@ VoxelEdge normal_only(const glm::dvec3& g) {
     return edge;
 }
 
-/// `taylor`: one step from the voxel's own value and gradient.
+/// `taylor`: first-order distance from the voxel's own value and gradient.
 VoxelEdge one_step(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i) {
     const glm::dvec3 g = voxel_gradient(field, i);
     VoxelEdge edge = normal_only(g);
@@ -70,7 +70,7 @@ glm::dvec3 through_octahedron(const glm::dvec3& n) {
     return glm::normalize(r);
 }
 
-/// Beside matter, out of its reach.
+/// Sentinel for a voxel outside translucent matter, out of reach of its face: this splat is not drawn.
 VoxelEdge carries_nothing() {
     VoxelEdge edge;
     edge.n = {0, 0, 1};
@@ -114,15 +114,16 @@ std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& sce
 
 VoxelEdge finished_face(const Field& field, const ScaledScene& scene, const Settings& settings,
                         const std::vector<VoxelEdge>& edges, const glm::ivec3& i, int m) {
-    const bool through = scene.seen_through[static_cast<std::size_t>(m)];
+    const bool is_translucent = scene.is_translucent[static_cast<std::size_t>(m)];
     VoxelEdge face = fit_face(field, scene, edges, i, m);
-    face.deepest = through ? 0 : kFaceDepth;
+    face.deepest = is_translucent ? 0 : kFaceDepth;
     const bool near = face.has_edge && std::abs(face.D) <= edge_reach(settings);
-    if (near && (!through || std::abs(face.D) < kKernelRadius)) return face;
+    if (near && (!is_translucent || std::abs(face.D) < kKernelRadius)) return face;
     if (scene.material(field.at(i)) != m) return carries_nothing();
     VoxelEdge plain = normal_only(field_gradient(field, i));
     if (!near) return plain;
-    // What a face but for the reach would cut is lit as under it.
+    // The face is beyond the kernel's radius and does not cut it, but its normal at the voxel, n - D H n, still lights
+    // it. `steep` blends that with the field's own normal.
     const glm::dvec3 under = face.n - face.D * (face.bending * face.n);
     const glm::dvec3 outward = (face.upper ? -1.0 : 1.0) * under / std::max(glm::length(under), 1e-6);
     const glm::dvec3 lit = glm::mix(outward, plain.n, plain.has_normal ? face.steep : 0);
@@ -147,7 +148,7 @@ std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& sc
         const auto [least, most] = values_around(field, i);
         const int own = scene.material(field.at(i)), last = scene.material(most);
         for (int m = scene.material(least); m <= last; ++m)
-            if (m != own && scene.seen_through[static_cast<std::size_t>(m)]) carried.push_back({at, m, {}});
+            if (m != own && scene.is_translucent[static_cast<std::size_t>(m)]) carried.push_back({at, m, {}});
     }
     return carried;
 }

@@ -1,4 +1,4 @@
-// Pass 1: where the surface next to every voxel is (method.md, 1_estimate_edges), and what pass 2 makes of it.
+// Pass 1: finds the surface next to each voxel (docs/method/1_estimate_edges.md), and fits the face that pass 2 stores.
 #pragma once
 
 #include <limits>
@@ -13,63 +13,64 @@ namespace edgesplat::reference {
 
 constexpr double kSmallestGradient = 1e-3;  ///< G_MIN, of the value range per voxel
 
-/// What a voxel knows about its nearest edge. Lengths in voxels, index space.
+/// A voxel's nearest edge. Lengths in voxels, index space.
 struct VoxelEdge {
-    glm::dvec3 n{0};  ///< unit, from the voxel's own side across the edge; without an edge along -gradient
+    glm::dvec3 n{0};  ///< unit, from the voxel's own side across the edge; along -gradient if there is no edge
     double D = 0;     ///< distance to the edge along n
-    double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to the second edge
-    /// Another plane that ends the matter: n . x = D, n away from the matter.
+    double D2 = std::numeric_limits<double>::infinity();  ///< distance along -n to a wall's second face
+    /// A further plane that bounds the matter: n . x = D, n out of the matter. D is infinite if there is none.
     struct Crease {
         glm::dvec3 n{0};
         double D = std::numeric_limits<double>::infinity();
     };
-    Crease crease;  ///< of a face
-    Crease corner;  ///< of a crease: a third plane, square to both
-    /// Values that are matter, half open.
+    Crease crease;  ///< second plane of a face
+    Crease corner;  ///< third plane at a corner, perpendicular to both
+    /// Values inside the material: [low, high).
     struct Interval {
         double low = 0, high = 0;
         bool holds(double value) const { return value >= low && value < high; }
     };
-    std::optional<Interval> traced;  ///< no quadric fits: rays find the surface of this
-    glm::dmat3 bending{0};           ///< of a face: second derivatives of its quadric, 1/voxel, symmetric
+    std::optional<Interval> traced;  ///< set if no quadric fits: rays find this interval's surface
+    glm::dmat3 bending{0};           ///< H of the face's quadric: second derivatives, 1/voxel, symmetric
     bool has_normal = false;
     bool has_edge = false;
-    bool border = false;          ///< of a point of the surface: the volume ends there
-    double deepest = kFaceDepth;  ///< no deeper under its face its kernel is sampled
-    double steep = 0;             ///< of a face: how much of the field's direction at the voxel is believed, 0 to 1
-    bool mixed = false;           ///< of a face: what faces the other way is the other end of the interval
+    bool border = false;          ///< this surface point lies on the volume's border
+    double deepest = kFaceDepth;  ///< upper bound of FaceCut::depth, voxels
+    double steep = 0;             ///< of a face: weight of the field's own direction at the voxel, 0 to 1
+    bool mixed = false;           ///< of a face: the opposite face is the other end of the interval
     bool upper = false;           ///< the edge is the upper end of the voxel's interval
 };
 
-/// What a voxel beside matter of another material carries of that, where one sees through it.
+/// The edge of a splat that a voxel emits for translucent matter beside it. The voxel itself lies outside that matter.
 struct CarriedEdge {
     std::size_t voxel = 0;  ///< linear index, x fastest
     int material = 0;
     VoxelEdge edge;
-    double value = 0;  ///< with a transfer function: what it is classified by
+    double value = 0;  ///< with a transfer function: the value that classifies the splat
 };
 
-/// Those voxels and materials, without their edges: as far as samples around a voxel have materials on its far side.
+/// For each voxel, the translucent materials other than its own within the range of the samples around it
+/// (values_around). Edges are not set.
 std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& scene);
 
-/// What each voxel finds by itself, (dims.z, dims.y, dims.x) edges in double: a plane by `taylor`, else the point of
-/// the surface that it sees at right angles. With `quantised`, they go through `quantise`, as on the GPU.
+/// One edge per voxel, (dims.z, dims.y, dims.x), double. `taylor` finds a plane; the others find the surface point
+/// whose normal passes through the voxel. `quantised` rounds them by `quantise`, as on the GPU.
 std::vector<VoxelEdge> estimate_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                       bool quantised = false);
 
-/// The face that cuts what voxel i has of material m, or what that is lit by without one; D = CARRIES_NOTHING
-/// (limits.h) where it lies beside the matter and has nothing of it.
+/// The face that cuts voxel i's kernel of material m. Without a face: the normal that lights the kernel. D =
+/// CARRIES_NOTHING (limits.h) if the voxel lies outside the matter and its kernel does not reach it.
 VoxelEdge finished_face(const Field& field, const ScaledScene& scene, const Settings& settings,
                         const std::vector<VoxelEdge>& edges, const glm::ivec3& i, int m);
 
-/// What splats are drawn with: faces fitted to those, or with `paper` the same.
+/// The edges that splats are drawn with: faces fitted to `edges`, or `edges` unchanged with `paper`.
 std::vector<VoxelEdge> finish_edges(const Field& field, const ScaledScene& scene, const Settings& settings,
                                     const std::vector<VoxelEdge>& edges);
-/// The same for voxels beside matter.
+/// The same for voxels beside translucent matter.
 void finish_carried(const Field& field, const ScaledScene& scene, const Settings& settings,
                     const std::vector<VoxelEdge>& edges, std::vector<CarriedEdge>& carried);
 
-/// The edge after its way through the 64 stored bits.
+/// The edge rounded to the bits that the GPU stores.
 VoxelEdge quantise(const VoxelEdge& edge);
 
 }  // namespace edgesplat::reference

@@ -18,7 +18,7 @@ double shortest_step(const VolumeGeometry& geometry) {
     return std::min({spacing.x, spacing.y, spacing.z});
 }
 
-/// 1 where every voxel of the cube [-r, r]^3 lies in the volume and is opaque. Run lengths along one axis at a time.
+/// 1 if every voxel of the cube [-r, r]^3 lies in the volume and is opaque, else 0. Computed one axis at a time.
 std::vector<char> buried_voxels(const Field& field, const std::vector<char>& opaque, int r) {
     std::vector<char> all = opaque;
     for (int axis = 0; axis < 3; ++axis) {
@@ -60,7 +60,7 @@ std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geom
 double border_weight(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i,
                      int m) {
     double weight = 1;
-    if (!draws_faces(settings) || !scene.seen_through[static_cast<std::size_t>(m)]) return weight;
+    if (!draws_faces(settings) || !scene.is_translucent[static_cast<std::size_t>(m)]) return weight;
     for (int axis = 0; axis < 3; ++axis)
         if (field.dims[axis] > 1 && (i[axis] == 0 || i[axis] == field.dims[axis] - 1))
             weight *= static_cast<double>(shader::BORDER_WEIGHT);
@@ -108,7 +108,8 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
             const bool there = clip.empty() || !clip.cuts_away(glm::dvec3(field.voxel(at)));
             opaque[at] = there && rule->opaque[static_cast<std::size_t>(m)] ? 1 : 0;
         }
-        // From inside opaque matter, what is buried is what is seen. Far outside, rounding would overflow an int.
+        // An eye inside opaque matter sees buried voxels, so none is culled. The test uses doubles, since the voxel of
+        // a far eye overflows an int.
         const glm::dvec3 nearest = glm::round(geometry.to_index(eye));
         const bool inside = glm::all(glm::greaterThanEqual(nearest, glm::dvec3(0))) &&
                             glm::all(glm::lessThan(nearest, glm::dvec3(field.dims)));

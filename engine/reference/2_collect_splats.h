@@ -1,4 +1,4 @@
-// Pass 2: the list of voxels that can be seen (method.md, 2_collect_splats).
+// Pass 2: collects the visible voxels into the splat list (docs/method/2_collect_splats.md).
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct SplatRecord {
     std::uint32_t material = 0;  ///< index into Scene::materials
     VoxelEdge edge;
     std::optional<TransferPoint>
-        classified{};   ///< with a transfer function: what it has there, in place of the material
-    double weight = 1;  ///< of its kernel: more beside the volume's border, beyond which no voxel carries matter
+        classified{};   ///< with a transfer function: replaces the material's colour and extinction
+    double weight = 1;  ///< factor on the kernel: above 1 next to the volume's border, beyond which there are no voxels
     double extinction(const Scene& scene) const {
         return weight * (classified ? classified->extinction : scene.materials[material].extinction);
     }
@@ -25,31 +25,31 @@ struct SplatRecord {
     }
 };
 
-/// How far around a voxel everything must be opaque for it to be buried, per scene and grid; nothing where no voxel
-/// can be buried. Depends on Settings::cull_buried and the materials; the eye is judged by `collect_splats`.
+/// Rule that decides which voxels of a scene and grid are buried: all voxels within `distance` are opaque. nullopt if
+/// no voxel can be buried. Depends on Settings::cull_buried and the materials; `collect_splats` tests the eye.
 struct BuryRule {
     int distance = 0;          ///< r, voxels, 1..10
     std::vector<bool> opaque;  ///< per material
 };
 std::optional<BuryRule> bury_rule(const Scene& scene, const VolumeGeometry& geometry, const Settings& settings);
 
-/// SplatRecord::weight of voxel i.
+/// SplatRecord::weight of voxel i for material m.
 double border_weight(const Field& field, const ScaledScene& scene, const Settings& settings, const glm::ivec3& i,
                      int m);
 
-/// What each voxel is classified by (two-sided classification): its sample, or where an edge is nearer than a voxel the
-/// value a voxel further on its own side. Edges as estimated.
+/// The value that classifies each voxel (two-sided classification): its sample, or, if an edge is nearer than one
+/// voxel, the value at least one voxel from the edge on the voxel's own side. `edges` are as estimated, not fitted.
 std::vector<double> classified_values(const Field& field, const ScaledScene& scaled,
                                       const std::vector<VoxelEdge>& edges);
-/// Of what a voxel beside matter carries: the value a voxel behind the edge, or the middle of the material's interval;
-/// of an outermost one the outermost sample around.
+/// The value that classifies the splat of matter beside a voxel: the value one voxel behind the edge, else the middle
+/// of the material's interval. For the lowest and highest material: the smallest or largest sample around.
 double carried_value(const Field& field, const ScaledScene& scaled, const std::vector<VoxelEdge>& edges,
                      const CarriedEdge& carried);
 
-/// The visible voxels, and those beside them, in ascending linear order, each one's materials likewise. `edges` has one
-/// entry per voxel, `values` likewise with a transfer function (classified_values), `carried` what voxels beside matter
-/// have of it; `eye` is in world mm; with `for_tau` nothing is buried. What the scene's clip planes cut away hides
-/// nothing; where something may be buried, it is left out.
+/// The splats in ascending order of voxel index, and of material within a voxel. `edges` has one entry per voxel; so
+/// has `values` with a transfer function (classified_values). `carried`: splats of translucent matter at voxels outside
+/// it. `eye`: world mm. `for_tau`: nothing is buried. Voxels that clip planes cut away are not opaque. If voxels can be
+/// buried, splats that are cut away whole are not collected.
 std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& scaled,
                                         const std::vector<VoxelEdge>& edges, const Scene& scene,
                                         const VolumeGeometry& geometry, const Settings& settings, const glm::dvec3& eye,

@@ -1,4 +1,4 @@
-// Pass 2b: how much of the ambient light reaches a splat (method.md, 2b_occlude_ambient).
+// Pass 2b: finds the share of the ambient light that reaches a splat (docs/method/light.md, 2b_occlude_ambient).
 #pragma once
 
 #include "engine/reference/surface_point.h"
@@ -7,8 +7,8 @@ namespace edgesplat::reference {
 
 constexpr int kOcclusionRays = 48, kOcclusionSteps = 256;
 
-/// Share [0, 1] of the light from everywhere that reaches the record's splat within `radius` mm; `turned`: the other
-/// face of a wall. `rays` other than what the device casts are for measuring its error.
+/// Share [0, 1] of the ambient light that reaches the splat; occluders further away than `radius` mm do not count.
+/// `turned`: the other face of a wall. The device casts kOcclusionRays rays; other numbers serve to measure its error.
 double ambient_reach(const SplatRecord& record, const Field& field, const ScaledScene& scaled, const Scene& scene,
                      const VolumeGeometry& geometry, double band, double radius, bool turned = false,
                      int rays = kOcclusionRays);

@@ -1,5 +1,5 @@
-// Passes 2c and 2d without their pictures: the optical depth between a light and the place where its light arrives at a
-// splat, kernel by kernel (method.md, 2d_shadow_splats).
+// Passes 2c and 2d, kernel by kernel instead of with pictures from the light: the optical depth from a light to the
+// place where its light arrives at a splat (docs/method/light.md, 2d_shadow_splats).
 #pragma once
 
 #include <span>
@@ -9,8 +9,8 @@
 
 namespace edgesplat::reference {
 
-/// Where light from `to_light` (world, unit) arrives at the record's splat, index space. `pixel` is a pixel of the
-/// light's picture there, mm. `clip`: the scene's, index space.
+/// Where light from direction `to_light` (world, unit) arrives at the splat, index space. `pixel`: size of a pixel of
+/// the light's picture there, mm. `clip`: the scene's clip planes, index space.
 glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
                      const glm::dvec3& to_light, double pixel, const IndexClip& clip = {});
 

@@ -37,7 +37,7 @@ glm::dvec2 View::pixel_of(const glm::dvec3& index) const {
 
 namespace {
 
-/// mm along the view axis of a unit step in index space, where that is longest.
+/// Largest depth of a unit step in index space, mm along the view axis.
 double depth_of_unit(const View& view) {
     return glm::length(glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward);
 }
@@ -70,7 +70,7 @@ PixelBox screen_box(const View& view, const SplatSupport& support) {
     const auto [y_low, y_high] = range(y, e.y);
     const double half_y = view.frame.tan_half_y;
     const double half_x = half_y * view.width / view.height;
-    // First pixel whose centre is at or after the left tangent, and one past the last before the right one.
+    // The first pixel whose centre is at or after the left tangent; one past the last pixel before the right tangent.
     const auto pixel = [](double at, int size) {
         return static_cast<int>(std::ceil(std::clamp(at - 0.5, -1.0, size + 1.0)));
     };
@@ -127,9 +127,9 @@ std::vector<Selected> select_footprints(std::span<const SplatRecord> records, co
         const double middle = view.depth(s.support.center);
         const double extent = s.support.radius * depth_of_unit(view);
         const bool sliced = settings.sheets == SheetCut::Sliced;
-        // What a voxel beside matter has of it lies behind the face, and matter that one sees through a sheet before
-        // what its face leads to: neither another material's splats are to come between, nor is what hides it to be in
-        // one sheet with it.
+        // A voxel outside its matter (D < 0) is sorted by its foot point, since its matter lies behind the face. A
+        // translucent splat is sorted one sheet before the matter beyond its face. So no splat of another material
+        // comes between the two, and the splat shares no sheet with matter that occludes it.
         const VoxelEdge& edge = records[i].edge;
         const bool face = settings.warp == WarpFamily::Face && edge.has_edge;
         const double beside = face ? std::min(edge.D, 0.0) : 0;

@@ -1,4 +1,4 @@
-// Pass 3: which splats the camera sees, and which sheet each belongs to (method.md, 3_select_footprints).
+// Pass 3: culls splats and finds the sheet of each remaining one (docs/method/3_select_footprints.md).
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@
 
 namespace edgesplat::reference {
 
-/// A camera looking at a grid through a picture.
+/// A camera, the grid that it shows and the picture's size.
 struct View {
     CameraFrame frame;
     VolumeGeometry geometry;
@@ -21,16 +21,16 @@ struct View {
     glm::dmat3 world_to_index{1};   ///< S^-1
     glm::dvec3 eye_index{0};        ///< the eye in index space
     double mm_per_voxel_along = 1;  ///< l_view
-    glm::dvec2 offset{0};           ///< of a pixel's ray from its centre, pixels
-    double low_pass = 0;            ///< no footprint is narrower than so many pixels
+    glm::dvec2 offset{0};           ///< from a pixel's centre to its ray, pixels
+    double low_pass = 0;            ///< smallest width of a footprint, pixels
 
     View(const Camera& camera, const VolumeGeometry& geometry, int width, int height);
-    /// Unit direction, index space, of the ray of pixel (x, y), through its centre moved by `offset`; y counts from the
+    /// Unit direction, index space, of the ray through the centre of pixel (x, y) moved by `offset`; y counts from the
     /// top.
     glm::dvec3 ray(int x, int y) const;
     /// z of an index-space point: mm along the view axis from the eye.
     double depth(const glm::dvec3& index) const;
-    /// Where an index-space point in front of the eye is seen, pixels from the picture's upper left corner.
+    /// Where an index-space point in front of the eye appears, pixels from the picture's upper left corner.
     glm::dvec2 pixel_of(const glm::dvec3& index) const;
 };
 
@@ -46,30 +46,30 @@ struct SplatSupport {
     double radius = 0;
 };
 
-/// Pixels whose centres a sphere in index space can cover, clipped to the picture; exact while the sphere lies in front
-/// of the eye plane, the whole picture while it touches that plane, empty behind it.
+/// Box, clipped to the picture, of the pixels whose centres a sphere in index space can cover. Exact for a sphere in
+/// front of the eye plane; the whole picture if the sphere touches that plane; empty if it lies behind.
 PixelBox screen_box(const View& view, const SplatSupport& support);
 
 struct Selected {
     bool kept = false;
-    int sheet = 0;       ///< from the first sheet that can occur
-    int last_sheet = 0;  ///< the same as `sheet` where kernels lie in sheets whole
-    double z = 0;        ///< depth that it is sorted by, mm: of the voxel's centre, or of the face before it
+    int sheet = 0;       ///< counted from the first sheet that can occur
+    int last_sheet = 0;  ///< equal to `sheet` unless kernels are sliced
+    double z = 0;        ///< sort depth, mm: of the voxel's centre, or of its face
     SplatSupport support;
     PixelFilter filter;
     PixelBox box;
-    FootprintLayer layer;  ///< of the table, where footprints come from there, and how it is turned
+    FootprintLayer layer;  ///< of the footprint table, if it is used; `axis` is the layer's x axis
     glm::dvec3 axis{0};
 };
 
 /// Thickness of a sheet, mm along the view axis.
 double sheet_thickness(const View& view, const Settings& settings);
 
-/// The sheets' number 0, from the eye.
+/// Number of sheet 0 of the picture, counted from the eye.
 int first_sheet(std::span<const SplatRecord> records, const Field& field, const View& view, const Settings& settings,
                 const Footprints& footprints);
 
-/// One entry per record. What `clip` (index space) cuts away whole is not kept.
+/// One entry per record. Splats that `clip` (index space) cuts away whole are culled.
 std::vector<Selected> select_footprints(std::span<const SplatRecord> records, const Field& field, const View& view,
                                         const Settings& settings, const Footprints& footprints,
                                         const IndexClip& clip = {});

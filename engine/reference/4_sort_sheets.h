@@ -1,4 +1,4 @@
-// Pass 4: front to back (method.md, 4_sort_sheets).
+// Pass 4: sorts splats into sheets, front to back (docs/method/4_sort_sheets.md).
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,9 @@
 
 namespace edgesplat::reference {
 
-/// Kept splats ordered by sheet; within a sheet as in the list.
+/// Kept splats ordered by sheet; within a sheet in list order.
 struct SortedSheets {
-    std::vector<std::uint32_t> order;  ///< indices into the records, kept ones only
+    std::vector<std::uint32_t> order;  ///< indices of the kept records
     std::vector<std::uint32_t> begin;  ///< sheet s is order[begin[s] .. begin[s + 1]); sheets + 1 entries
     std::size_t sheets() const { return begin.size() - 1; }
     std::span<const std::uint32_t> sheet(std::size_t s) const {

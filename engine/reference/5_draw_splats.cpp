@@ -30,9 +30,9 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
                       const Reach& reach) {
     const VoxelEdge& edge = record.edge;
     const glm::dvec3 x(field.voxel(record.voxel));
-    // A surface faces its lower values, whichever side of it the splat is on.
+    // A surface's normal points to its lower values, on whichever side the splat is.
     glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
-    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    // A wall's kernel reaches both faces; the visible one is turned to the eye.
     const bool wall = edge.has_edge && edge.D2 < edge_reach(settings);
     if (wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0) {
         n = -n;
@@ -42,7 +42,7 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     switch (payload) {
         case Payload::Color: {
             const Material& material = scene.materials[record.material];
-            const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
+            const bool unlit = lights_edges_only(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
             return shade(scene,
                          {.color = record.color(scene),
                           .response = material.response,
@@ -87,18 +87,18 @@ glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::d
 
 namespace {
 
-/// A splat as a ray p + z u sees it.
+/// A splat along the ray p + z u.
 struct SeenSplat {
     const SplatRecord& record;
     const Scene& scene;
     const View& view;
     const Settings& settings;
     glm::dvec3 center, p, u;
-    FaceSight sight;  ///< of what is cut at a face
+    FaceSight sight;  ///< set if `cut`
     bool cut = false;
 
-    /// What it shows at an end of the ray's way through its matter: `border`: the volume's normal where that ends
-    /// there, else 0.
+    /// The payload at one end of the ray's path through the splat's matter. `border`: the volume's outward normal if
+    /// the path ends at the border, else 0.
     glm::dvec3 at(const FaceEnd& end, const glm::dvec3& border, Payload payload) const {
         const VoxelEdge& edge = record.edge;
         glm::dvec3 outward = edge.has_normal ? edge.n : glm::dvec3(0);
@@ -106,7 +106,7 @@ struct SeenSplat {
         if (cut) {
             outward = sight.outward(end.z, end.behind);
             if (end.plane > 0) outward = (end.plane == 1 ? edge.crease : edge.corner).n;
-            // Both faces of a layer between two iso-values face the lower values.
+            // In a layer between two iso-values both normals point to the lower values.
             const glm::dvec3 a = glm::abs(edge.n);
             const int axis = a.x >= a.y && a.x >= a.z ? 0 : (a.y >= a.z ? 1 : 2);
             upper = upper != (edge.mixed && outward[axis] * edge.n[axis] < 0);
@@ -115,14 +115,14 @@ struct SeenSplat {
             outward = border;
             upper = false;
         }
-        // What the eye is in is seen right before it.
+        // If the eye is inside the matter, light falls just in front of it.
         const double eye = glm::dot(view.eye_index - center - p, u);
         const glm::dvec3 at = center + p + std::max(end.z, eye + 1e-4) * u;
         const bool faceless = glm::length(outward) == 0;
         const glm::dvec3 normal = faceless ? glm::dvec3(0) : world_normal(view.geometry, upper ? -outward : outward);
         if (payload == Payload::Depth) return {view.depth(at), 0, 0};
         if (payload == Payload::Normal) return normal;
-        const bool unlit = only_edges_lit(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
+        const bool unlit = lights_edges_only(scene, settings.edges != EdgeEstimator::Off) && !edge.has_edge;
         return shade(scene,
                      {.color = record.color(scene),
                       .response = scene.materials[record.material].response,
@@ -133,7 +133,7 @@ struct SeenSplat {
     }
 };
 
-/// Where a ray meets both faces of a layer, if near by.
+/// Where a ray meets both faces of a layer, if both lie within LIT_FACES of p.
 std::optional<glm::dvec2> faces_near(const Quadratic& phi) {
     const double root2 = phi.b * phi.b - 4 * phi.a * phi.c;
     if (!(root2 > 0) || phi.a == 0) return std::nullopt;
@@ -158,7 +158,7 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const double eye = glm::dot(view.eye_index - seen.center - p, u);
     const VolumePiece inside = piece_in_volume(view.geometry.dims, view.eye_index, u).seen_from(eye);
     if (plain) {
-        // A widened kernel is entered as its voxel's centre would be.
+        // A widened kernel is lit where the ray through its voxel's centre enters the face.
         const FaceSight centre = face_sight(drawn_edge(edge, settings), glm::dvec3(0), u);
         const double value = centre.ray.phi.c, along = centre.ray.phi.b;
         const double begin = std::max(along < 0 ? -value / along : -radius, -radius);
@@ -170,7 +170,8 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const glm::dvec3 normal = at_border ? inside.normal : glm::dvec3(0);
     if (at_border) f.entry.z = inside.low;
     if (payload != Payload::Color || !footprints.lit_in_depth(edge)) return seen.at(f.entry, normal, payload);
-    // The nearer half of the way is lit as where it begins, the farther as where it ends, of what holds most of it.
+    // Light falls on both ends of the path, within the part of the chord that has most of the kernel. `share`: weight
+    // of the far end, which is the farther half's share of the absorption.
     const double half_chord =
         static_cast<double>(shader::LIT_WITHIN) * std::sqrt(std::max(radius * radius - glm::dot(p, p), 0.0));
     const bool to_border = inside.high < f.leave.z;
@@ -179,7 +180,8 @@ glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Sce
     const double tau =
         record.extinction(scene) * glm::length(view.geometry.index_to_world_axes * u) * (f.leave.z - f.entry.z);
     const double share = 1 / (1 + std::exp(0.5 * tau));
-    // Between the faces of a layer the field goes one way; the quadric of which both are levels turns.
+    // Between the faces of a layer the field is monotone, but the quadric that has both as levels is not. So light
+    // falls on the faces themselves.
     const auto faces = edge.mixed ? faces_near(seen.sight.ray.phi) : std::nullopt;
     if (faces && !at_border) f.entry.z = std::min(f.entry.z, faces->x);
     if (faces && !to_border) f.leave.z = std::max(f.leave.z, faces->y);
@@ -208,7 +210,7 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
 
 SplatDrawer::MetSplat SplatDrawer::met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const {
     SplatRecord record = records_[splat];
-    // What is widened to a pixel is cut no more.
+    // A kernel that is fully widened to a pixel is not cut.
     if (!record.edge.traced || selected_[splat].filter.share == 1) return {record, true};
     const double ahead = glm::dot(glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index, u);
     const MetEdge edge = met_edge(record.edge, field_, view_.eye_index, u, p, ahead);
@@ -232,13 +234,13 @@ double SplatDrawer::footprint(std::uint32_t splat, const VoxelEdge& edge, int x,
     }
     const double reach = footprints_.reach(edge), half = std::sqrt(std::max(reach * reach - glm::dot(p, p), 0.0));
     if (filter.share < 1 && footprints_.tabulated(edge) && piece.low <= -half && piece.high >= half)
-        own = half > 0 ? footprints_.looked_up(selected_[splat].layer, selected_[splat].axis, p) : 0;
+        own = half > 0 ? footprints_.table_value(selected_[splat].layer, selected_[splat].axis, p) : 0;
     else if (filter.share < 1 && (slice || footprints_.cuts(edge)))
         own = footprints_.along_slice(edge, p, u, piece);
     else if (filter.share < 1)
         own = footprints_.along_ray(edge, p, u);
     if (filter.share == 0) return own;
-    // The pixel's filter lies across the view, and so its kernels keep their depths.
+    // The pixel filter widens kernels across the view only; along z they keep their depth.
     const double rho2 = filter.rho2(glm::dot(p, p), glm::dvec2(x, y) + 0.5 + view_.offset);
     const Kernel& kernel = footprints_.kernel();
     double wide = kernel_footprint(rho2, kernel);
@@ -297,7 +299,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
     if (!here.matter) return glm::dvec4(0);
     const SplatRecord& record = here.record;
     const bool faces = draws_faces(settings_);
-    const bool plain = selected_[splat].filter.share == 1;  // widened, it is cut no more
+    const bool plain = selected_[splat].filter.share == 1;  // fully widened kernels are not cut
     const auto quantity_of = [&](const Slice& slice) {
         return face_payload(record, field_, scene_, view_, settings_, payload, footprints_, p, u, slice, plain);
     };
@@ -332,7 +334,7 @@ void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, s
     for (const std::uint32_t i : splats) {
         quantities.push_back(payload_of(records_[i], field_, scene_, view_, settings_, payload, cut));
     }
-    // Rows in parallel: every pixel adds its splats in the list's order, however the rows are shared out.
+    // Rows run in parallel. Every pixel adds its splats in list order, so the sum does not depend on the threads.
     parallel_for(view_.height, [&](int begin, int end) {
         for (std::size_t k = 0; k < splats.size(); ++k) {
             const PixelBox& box = selected_[splats[k]].box;

@@ -1,4 +1,4 @@
-// Pass 5: the splats of one sheet, added up (method.md, 5_draw_splats).
+// Pass 5: adds up the splats of one sheet (docs/method/5_draw.md).
 #pragma once
 
 #include <optional>
@@ -13,47 +13,47 @@
 
 namespace edgesplat::reference {
 
-/// What stands in the place of colour.
+/// The quantity that splats carry.
 enum class Payload { Color, Depth, Distance, Normal };
 
-/// What stands in the place of a splat of material `number` where a ray enters its matter at `entry` (index space) by a
-/// clip plane: colour lit by the cut's normal, depth of the entry, the cut's normal. `face` is that normal in index
-/// space, `own` payload_of the splat.
+/// The payload where a ray enters the matter of a splat of material `number` through a clip plane at `entry` (index
+/// space): colour lit by the plane's normal, depth of the entry, or the plane's normal. Distance is that of the splat.
+/// `face`: the plane's normal, index space; `own`: payload_of the splat.
 glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
                        const Scene& scene, const View& view, Payload payload);
 
-/// Depths, mm along the view axis from the eye, that a kernel is cut to.
+/// Depth range that a kernel is cut to, mm along the view axis from the eye.
 struct DepthRange {
     double near = 0;
     double far = 0;
 };
 
-/// The quantity a splat carries: lit colour (linear), z in mm (first component), signed distance to the edge in voxels
-/// (first component, negative inside) or unit world normal. Depths are moved into `cut`.
+/// The payload of a splat at its voxel's centre: lit colour (linear), z in mm (first component), signed distance to the
+/// edge in voxels (first component, negative inside) or unit world normal. Depth is clamped to `cut`.
 glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                       const Settings& settings, Payload payload, const std::optional<DepthRange>& cut = {},
                       const Reach& reach = {});
 
-/// The same where a ray p + z u (index space; p relative to the voxel centre) meets the face that cuts the kernel, or
-/// of a plain kernel (also one that is `plain` for being widened, whose normal is still the face's) where it passes the
-/// voxel: light falls on the surface there.
+/// The payload where a ray p + z u (index space; p relative to the voxel centre) meets the face that cuts the kernel;
+/// where it passes the voxel, if no face cuts it. `plain`: the kernel is widened and not cut, but keeps its face's
+/// normal.
 glm::dvec3 face_payload(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
                         const Settings& settings, Payload payload, const Footprints& footprints, const glm::dvec3& p,
                         const glm::dvec3& u, const Slice& slice = {}, bool plain = false);
 
-/// Everything the sheets of a frame have in common. Referenced objects must outlive it.
+/// Draws the sheets of one frame. Referenced objects must outlive it.
 class SplatDrawer {
   public:
     SplatDrawer(std::span<const SplatRecord> records, std::span<const Selected> selected, const Field& field,
                 const Scene& scene, const View& view, const Settings& settings, const Footprints& footprints);
 
-    /// Adds the splats (indices into the records) to `sheet`, one (sum of tau * quantity, sum of tau) per pixel.
-    /// Pixels of `closed` that are non-zero are skipped; empty: none is. With `cut`, only what lies between.
+    /// Adds the splats (indices into the records) to `sheet`: (sum of tau * quantity, sum of tau) per pixel. Skips
+    /// saturated pixels, whose `closed` is not 0; an empty `closed` skips none. `cut`: only this depth range counts.
     void draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,
               std::span<glm::dvec4> sheet, const std::optional<DepthRange>& cut = {}) const;
 
-    /// Where the splats' outlines pass pixels that are open enough in `frame`: of each the outermost. `cut` as in
-    /// draw().
+    /// Finds where the splats' outlines pass pixels whose opacity in `frame` is below OUTLINE_OPEN, and keeps the
+    /// outermost outline of each pixel. `cut` as in draw().
     void outline(std::span<const std::uint32_t> splats, std::span<const glm::dvec4> frame,
                  std::span<std::optional<Outline>> outlines, const std::optional<DepthRange>& cut = {}) const;
 
@@ -62,24 +62,24 @@ class SplatDrawer {
 
   private:
     const glm::dvec4& ray_of(int x, int y) const;
-    /// A splat as a ray meets it.
+    /// A splat as a ray meets it: its traced face is found.
     struct MetSplat {
         SplatRecord record;
-        bool matter = true;  ///< some of it is on the ray
+        bool matter = true;  ///< the ray passes through some of its matter
     };
     MetSplat met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const;
-    /// tau(), of what the ray of pixel (x, y) meets.
+    /// tau() of the splat as the ray of pixel (x, y) meets it.
     double tau(const MetSplat& met, std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const;
-    /// The splat's kernel along the ray of pixel (x, y), or along a piece of it, as wide as the pixel asks for; `edge`
-    /// as the ray meets it.
+    /// Integral of the splat's kernel along the ray of pixel (x, y), or along `slice` of it, widened to the pixel.
+    /// `edge`: as the ray meets it.
     double footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                      const std::optional<Slice>& slice) const;
-    /// Where the ray passes the voxel's depth, voxels from p.
+    /// Where the ray reaches the voxel's depth, voxels from p.
     double depth_on_ray(const glm::dvec3& p, const glm::dvec3& u) const;
-    /// Whether the ray is in the splat's matter at z.
+    /// Whether the ray's point z lies in the splat's matter.
     bool in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                    double z) const;
-    /// tau times the quantity, and tau; `own` is the splat's quantity where no cut shows.
+    /// (tau * quantity, tau) of the splat at pixel (x, y). `own`: its quantity if no cut shows.
     glm::dvec4 contribution(std::uint32_t splat, int x, int y, const glm::dvec3& own, Payload payload,
                             const std::optional<DepthRange>& cut) const;
 

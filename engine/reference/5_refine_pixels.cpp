@@ -10,7 +10,7 @@
 namespace edgesplat::reference {
 namespace {
 
-using Cell = std::array<std::array<glm::dvec4, 4>, 4>;  ///< [y][x], the cell's corners in the middle
+using Cell = std::array<std::array<glm::dvec4, 4>, 4>;  ///< [y][x]; the inner four are the cell's corners
 
 glm::dvec4 pixel(const Image& image, int x, int y) {
     glm::dvec4 v;
@@ -28,7 +28,7 @@ glm::dvec4 between(const glm::dvec4& a, const glm::dvec4& b, const glm::dvec4& c
     return (9.0 * (b + c) - (a + d)) / 16.0;
 }
 
-/// The largest second difference of any channel along rows, columns and across cells.
+/// The largest absolute second difference of any channel: along rows, along columns, and mixed.
 double bend(const Cell& cell) {
     Cell seen;
     for (std::size_t y = 0; y < 4; ++y)

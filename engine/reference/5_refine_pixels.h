@@ -1,4 +1,4 @@
-// Pass 5, refined pixels: which pixels of a picture are drawn, and what the others become.
+// Pass 5, refined pixels: selects the pixels to draw and interpolates the others.
 #pragma once
 
 #include <cstddef>
@@ -8,12 +8,12 @@
 namespace edgesplat::reference {
 
 struct RefinedPicture {
-    Image picture;          ///< premultiplied colour and opacity, as it would be if `drawn` pixels alone were known
-    std::size_t drawn = 0;  ///< pixels that had to be
+    Image picture;          ///< premultiplied colour and opacity, drawn or interpolated
+    std::size_t drawn = 0;  ///< number of pixels drawn
 };
 
-/// `every`: (height, width, 4) premultiplied colour and opacity, all pixels drawn, of splats whose voxels are all wider
-/// than REFINE_STEP pixels. docs/method.md, 5_refine_pixels.
+/// `every`: (height, width, 4) premultiplied colour and opacity, with all pixels drawn. All voxels must be wider than
+/// REFINE_STEP pixels. docs/method/tiles.md, 5_refine_pixels.
 RefinedPicture refine_pixels(const Image& every);
 
 }  // namespace edgesplat::reference

@@ -1,4 +1,4 @@
-// Pass 6: one sheet behind what is already there (method.md, 6_composite_sheet).
+// Pass 6: composites one sheet behind the frame so far (docs/method/6_composite_7_resolve.md).
 #pragma once
 
 #include <glm/glm.hpp>
@@ -6,8 +6,8 @@
 
 namespace edgesplat::reference {
 
-/// `frame` and `sheet` have one entry per pixel. frame: premultiplied quantity (3) and opacity A; sheet: sum of
-/// tau * quantity (3) and sum of tau. `closed` pixels (non-zero) take nothing; empty: all are open.
+/// `frame` and `sheet` have one entry per pixel. frame: premultiplied quantity (3) and opacity A; sheet: sum of tau *
+/// quantity (3) and sum of tau. Saturated pixels, whose `closed` is not 0, are skipped; an empty `closed` skips none.
 void composite_sheet(std::span<glm::dvec4> frame, std::span<const glm::dvec4> sheet, std::span<const char> closed = {});
 
 }  // namespace edgesplat::reference

@@ -32,11 +32,12 @@ class Fit {
     Fit(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp)
         : surfels_(surfels), nearest_(nearest), sharp_(sharp) {}
 
-    /// The normal that is least like that of the nearest.
+    /// The normal least like the nearest surfel's; 0 if all are too similar.
     dvec3 most_different() const {
         return least_like(sharp_ ? kRounded : kTurned, [this](const dvec3& n) { return glm::dot(n, nearest_.n); });
     }
-    /// Least like both. What only rounds the way between two planes is of neither.
+    /// The normal least like a and b; 0 if all are too similar. With `sharp_`, normals between kRounded and kAlike are
+    /// excluded: they only round the transition between two planes.
     dvec3 most_different(const dvec3& a, const dvec3& b) const {
         return least_like(kTurned, [&](const dvec3& n) {
             const double seen = glm::dot(n, nearest_.n);
@@ -61,7 +62,7 @@ class Fit {
             }
             if (!(sum > 0.05)) return {};
             fit.place = places / sum;
-            // Where the spline rounds, its normals are tilted beside creases, and places say more.
+            // Where the spline rounds a crease, normals beside it are tilted; positions are more reliable.
             const glm::dmat3 about = spread / sum - glm::outerProduct(fit.place, fit.place) + glm::dmat3(kSpread);
             fit.plane.n = glm::normalize(sharp_ ? glm::inverse(about) * normals : normals);
         }
@@ -76,7 +77,7 @@ class Fit {
         dvec3 best(0);
         for (const Surfel& s : surfels_) {
             const double like = like_of(s.n);
-            // Of what differs as much the first is taken, whichever way numbers are rounded.
+            // Among equals take the first, whatever the rounding.
             if (!(weight(s) > 0.02) || !(like < least - 1e-4)) continue;
             least = like;
             best = s.n;
@@ -119,8 +120,8 @@ CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& neares
         fits.at(count) = fit.plane(seed);
         if (!fits.at(count++).found) return {};
     }
-    // Matter lies inside of all of them: where a crease is hollow, a plane cuts what is there. Planes that face away
-    // from each other are a wall's.
+    // Matter must lie inside all planes: at a hollow crease a plane would cut matter away. Planes that face away from
+    // each other belong to a wall.
     for (std::size_t k = 0; k < count; ++k)
         for (std::size_t l = 0; l < count; ++l) {
             if (k == l) continue;

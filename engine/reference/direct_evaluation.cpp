@@ -15,9 +15,9 @@ namespace edgesplat::reference {
 
 namespace {
 
-constexpr double kPanel = 0.5;  ///< voxels: the coarsest panels, and how far splats are gathered at a time
+constexpr double kPanel = 0.5;  ///< voxels: the coarsest panels, and the segments whose splats are gathered at once
 
-/// Integrates one ray after the other; one per row.
+/// Integrates rays one after another. Each row of pixels has its own walker.
 class RayWalker {
   public:
     RayWalker(const SplatCloud& cloud, const Footprints& footprints, const PreparedVolume& prepared, const View& view,
@@ -31,7 +31,7 @@ class RayWalker {
           tolerance_(tolerance),
           tau_only_(tau_only) {}
 
-    /// `mm_per_voxel` along the unit direction u; both in index space.
+    /// u: unit direction; `mm_per_voxel`: mm per voxel along u. Both in index space.
     RaySum walk(const glm::dvec3& eye, const glm::dvec3& u, double mm_per_voxel) {
         RaySum sum;
         met_.clear();
@@ -44,7 +44,7 @@ class RayWalker {
             end = std::min(end, inside.high);
             if (!(begin < end)) return sum;
         }
-        // Counted from where the ray enters, t stays small, however far away the eye is.
+        // t counts from where the ray enters: it stays small even for a far eye.
         const glm::dvec3 origin = eye + begin * u;
         const double length = end - begin;
         const double cut = tolerance_ / 10;
@@ -66,10 +66,10 @@ class RayWalker {
         PanelIntegrator integrator(density, accuracy, sum);
         for (const KeptPiece& piece : clip_.kept_along(origin, u)) {
             const double last = std::min(piece.last, length);
-            // A cut is seen from outside only.
+            // A cut shows only if it lies in front of the eye.
             const bool cut_seen = piece.face && piece.first > -begin;
             for (double t = std::max(piece.first, 0.0); t < last && (tau_only_ || sum.transmittance >= cut);) {
-                const double empty = cloud_.empty_around(origin + t * u);
+                const double empty = cloud_.empty_distance(origin + t * u);
                 if (empty > 0) {
                     t += std::max(empty, 1e-3);
                     continue;
@@ -82,7 +82,7 @@ class RayWalker {
                 t += kPanel;
             }
         }
-        if (!tau_only_ && sum.transmittance < cut) sum.error += sum.transmittance;  // whatever stands behind
+        if (!tau_only_ && sum.transmittance < cut) sum.error += sum.transmittance;  // bound on what lies behind
         if (tau_only_) {
             sum.error /= std::max(sum.tau, 1.0);
             sum.color = glm::dvec3(0);
@@ -91,7 +91,7 @@ class RayWalker {
     }
 
   private:
-    /// Puts splats as this ray meets them in the place of those that are traced.
+    /// Replaces traced splats by their form on this ray, and removes those without matter on it.
     void meet(const glm::dvec3& eye, const glm::dvec3& u) {
         std::erase_if(active_, [&](const ModelSplat*& splat) {
             if (tau_only_ || !splat->edge->traced) return false;
@@ -112,7 +112,8 @@ class RayWalker {
         });
     }
 
-    /// From `begin` to `end`, in pieces that end where a face begins, ends or changes how a kernel is moved.
+    /// Integrates from `begin` to `end`, in panels that end where a face's piece begins, ends or changes how a kernel
+    /// is moved.
     template <typename Integrator>
     void add_pieces(Integrator& integrator, const glm::dvec3& origin, const glm::dvec3& u, double begin, double end) {
         breaks_.assign({begin, end});
@@ -133,7 +134,8 @@ class RayWalker {
             if (breaks_[i] - breaks_[i - 1] > 1e-9) integrator.add(breaks_[i - 1], breaks_[i] - breaks_[i - 1]);
     }
 
-    /// What the gathered splats are and emit along the ray through `entry`, where it begins in a cut, if any.
+    /// Sets paths and emission of the gathered splats along the ray through `entry`. `face`: the normal if the ray
+    /// begins there in a cut.
     void light(const std::optional<glm::dvec3>& face, const glm::dvec3& entry, const glm::dvec3& u) {
         emission_.clear();
         paths_.clear();
@@ -151,7 +153,7 @@ class RayWalker {
         }
     }
 
-    /// Faces are lit where the ray meets them, from whichever point of it that is seen.
+    /// A face is lit where the ray meets it. So all points of the ray have the same light.
     glm::dvec3 own_light(const ModelSplat& splat, const glm::dvec3& p, const glm::dvec3& u) const {
         if (tau_only_ || !draws_faces(prepared_.settings())) return splat.emission / splat.extinction;
         return face_payload(splat.record, prepared_.field(), scene_, view_, prepared_.settings(), Payload::Color,
@@ -167,17 +169,17 @@ class RayWalker {
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
-    std::map<const ModelSplat*, std::optional<ModelSplat>> met_;  ///< traced ones; nothing: without matter on the ray
-    std::vector<glm::dvec3> emission_;                            ///< of each active splat
+    std::map<const ModelSplat*, std::optional<ModelSplat>> met_;  ///< traced splats; nullopt: no matter on the ray
+    std::vector<glm::dvec3> emission_;                            ///< per active splat
     std::vector<double> breaks_;
-    std::vector<std::optional<FacePath>> paths_;  ///< of each whose kernel a face cuts
+    std::vector<std::optional<FacePath>> paths_;  ///< per active splat: set if a face cuts its kernel
 };
 
 }  // namespace
 
 void check_options(const DirectOptions& options) {
     if (!(options.tolerance > 0 && options.tolerance <= 0.1)) {
-        fail("tolerance: {} is not above 0 and at most 0.1", options.tolerance);
+        fail("tolerance: {} is out of range, expected above 0 and at most 0.1", options.tolerance);
     }
 }
 
@@ -209,7 +211,7 @@ DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& cam
                                Output output, const DirectOptions& options) {
     check_picture_size(width, height);
     check_options(options);
-    if (output != Output::Color && output != Output::Tau) fail("direct evaluation gives colour or tau only");
+    if (output != Output::Color && output != Output::Tau) fail("direct evaluation renders only colour or tau");
     const VolumeGeometry& geometry = prepared.volume().geometry;
     const Footprints& footprints = prepared.footprints();
     const bool tau = output == Output::Tau;

@@ -1,5 +1,5 @@
-// The model itself: rays through the sum of all kernels, without splats, sheets or tables, to a tolerance (method.md,
-// Reference). Every approximation is measured against this.
+// Evaluates the converged model: integrates the sum of all kernels along rays to a tolerance, without splats, sheets or
+// tables (docs/method/reference.md). All approximations are measured against it.
 #pragma once
 
 #include <cstdint>
@@ -10,28 +10,29 @@
 namespace edgesplat::reference {
 
 struct DirectOptions {
-    /// Largest error aimed at, per pixel and channel, of full scale (1); of tau where tau is above 1. (0, 0.1]
+    /// Upper bound of the error per pixel and channel, relative to full scale (1); relative to tau where tau > 1. (0,
+    /// 0.1]
     double tolerance = 1e-4;
-    Progress progress;  ///< called now and then from the calling thread; returning false throws Cancelled
+    Progress progress;  ///< called repeatedly from the calling thread; returning false throws Cancelled
 };
 
 struct DirectResult {
     Image image;
-    double error_estimate = 0;  ///< largest over pixels; of tau where that is above 1
+    double error_estimate = 0;  ///< largest over all pixels; relative to tau where tau > 1
     std::uint64_t samples = 0;  ///< points at which the model was evaluated
 };
 
-/// The mean of the pictures of n x n rays a pixel, each of `draw` for a view whose rays are moved; progress is of all.
+/// The mean of n x n pictures, each with one ray a pixel at another offset, drawn by `draw`. Progress covers all of
+/// them.
 DirectResult mean_of_samples(View view, int n, const DirectOptions& options,
                              const std::function<DirectResult(const View&, const DirectOptions&)>& draw);
 
 /// Throws Error unless the tolerance is in range.
 void check_options(const DirectOptions& options);
 
-/// sum_i tau_i h_i(x) along the ray of every pixel, from the eye on (what a kernel has behind the eye does not count).
-/// Color (4 channels) or Tau (1); other outputs throw Error, as do a picture without pixels and invalid options.
-/// Colour is the mean of as many rays a pixel as the scene asks for. Depends on no other camera's pictures: nothing is
-/// buried, nothing culled.
+/// Integrates the sum of all kernels, sum_i sigma_i h_i(x), along the ray of every pixel, in front of the eye only.
+/// Output: Color (4 channels) or Tau (1). Throws Error for other outputs, pictures without pixels and invalid options.
+/// Colour is the mean over the scene's number of rays a pixel. No voxel is buried or culled, whatever the camera.
 DirectResult direct_evaluation(const PreparedVolume& prepared, const Camera& camera, int width, int height,
                                Output output = Output::Color, const DirectOptions& options = {});
 

@@ -1,4 +1,4 @@
-// What drawing makes of a face: how it is stored, cuts a kernel and is seen from a ray.
+// Faces when splats are drawn: how they are stored, cut a kernel and appear along a ray.
 #include <algorithm>
 #include <cmath>
 #include <limits>

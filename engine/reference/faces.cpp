@@ -18,7 +18,7 @@ namespace {
 using glm::dmat3;
 using glm::dvec3;
 
-// The shaders' numbers.
+// Constants shared with the shaders.
 constexpr auto kFitRadius = static_cast<double>(shader::FIT_RADIUS);
 constexpr auto kFaceSearch = static_cast<double>(shader::FACE_SEARCH);
 constexpr auto kThinnest = static_cast<double>(shader::FIT_THINNEST);
@@ -32,15 +32,15 @@ constexpr auto kTurnFrom = static_cast<double>(shader::TURN_FROM);
 constexpr auto kWallBent = static_cast<double>(shader::WALL_BENT);
 constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
 
-/// What voxel j found, where it bounds material m.
+/// The surfel of voxel j, relative to voxel i, if it bounds material m.
 std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                                 const glm::ivec3& i, const glm::ivec3& j, int m) {
     if (j != field.clamped(j)) return std::nullopt;
     const VoxelEdge& edge = surfels[field.offset(j)];
     if (!edge.has_edge) return std::nullopt;
     const int own = scene.material(field.at(j));
-    // An upper end is the lower end of the material above.
-    // The volume's border bounds what is inside of it alone.
+    // A surfel of the material below or above also bounds m, if it lies on their common iso-value. A surfel on the
+    // volume's border bounds only its own material.
     const bool below = own + 1 == m && edge.upper && !edge.border, above = own == m + 1 && !edge.upper && !edge.border;
     if (own != m && !below && !above) return std::nullopt;
     return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above,
@@ -54,8 +54,8 @@ double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
     return std::max(w, 0.0) * std::max(w, 0.0);
 }
 
-/// The field's own expansion around voxel i, negative where the field is on the voxel's side of `iso`; design (13). Of
-/// about unit slope where it is 0, and the field's there.
+/// The second-order expansion of the field around voxel i (docs/method/faces.md, 5): negative on the voxel's side of
+/// `iso`, with a slope of about 1 where it is 0. Second: the field's slope there.
 std::pair<Quadric, double> field_quadric(const Field& field, const glm::ivec3& i, double iso, double side) {
     const auto at = [&](int x, int y, int z) { return field.at(i + glm::ivec3(x, y, z)); };
     const double f = at(0, 0, 0), off = iso - f;
@@ -72,10 +72,11 @@ std::pair<Quadric, double> field_quadric(const Field& field, const glm::ivec3& i
 
 struct Foot {
     dvec3 at, slope;
-    bool real;  ///< else the quadric has no surface in reach
+    bool real;  ///< false: the quadric has no surface in reach
 };
 
-/// The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
+/// The foot point: the point of the quadric whose normal passes through the voxel, searched from `at`. All positions
+/// are relative to the quadric's middle.
 Foot foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
     for (int step = 0; step < shader::FOOT_STEPS; ++step) {
         const double steep = glm::length(q.slope(at)), value = q.at(at);
@@ -90,7 +91,7 @@ Foot foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
     return {at, slope, glm::length(slope) >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius};
 }
 
-/// Of the field's own quadric about the voxel.
+/// The same for the field's own quadric around the voxel.
 Foot own_foot_of(const Quadric& q) {
     const dvec3 d(q.h[0][0], q.h[1][1], q.h[2][2]);
     dvec3 way = q.g;
@@ -98,12 +99,13 @@ Foot own_foot_of(const Quadric& q) {
     return foot_of(q, dvec3(0), 0.1 * glm::normalize(way));
 }
 
-/// How far a point is from a quadric, to first order.
+/// Distance of a point from a quadric, to first order.
 double off_of(const Quadric& q, const dvec3& r) {
     return q.at(r) / std::max(glm::length(q.slope(r)), 0.2);
 }
 
-/// By how much samples around voxel i lie on the wrong side of what `off` says, squared.
+/// Sum of squared distances, each at most 1, of the samples around voxel i that lie on the wrong side of a face. `off`:
+/// signed distance from the face.
 template <typename Off>
 double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m, const Off& off) {
     double wrong = 0;
@@ -116,8 +118,9 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
     return wrong;
 }
 
-/// What planes at a crease make of a voxel whose best quadric leaves `error`; nothing unless they leave less
-/// than half of it, or a fifth where two planes meet at a blunt angle and might be a narrow ridge.
+/// The edge of a voxel at a crease. `error`: what its best quadric leaves. nullopt unless the planes leave less than
+/// half of that, or than a fifth if two planes meet at a blunt angle and might be a narrow ridge. If the samples have
+/// only two values, planes also count if they leave almost nothing.
 std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m,
                                  std::span<const Surfel> surfels, const Surfel& nearest, double error) {
     const bool sharp = has_two_values(field, i);
@@ -125,7 +128,7 @@ std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, c
     const CreasePlanes planes = crease_planes(surfels, nearest, sharp);
     if (planes.count < 2) return std::nullopt;
     double off = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return planes.off(r); });
-    // Where it is sharp, what lies inside was rounded.
+    // If samples have only two values, surfels inside the planes come from rounding by the spline and are no error.
     for (const Surfel& s : surfels) {
         const double outside = sharp ? std::max(planes.off(s.at), 0.0) : planes.off(s.at);
         off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * outside * outside;
@@ -143,8 +146,8 @@ std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, c
     return edge;
 }
 
-/// Where matter ends along -n, by surfels that the fit does not look at: level with the face, or, where it is the same
-/// end of the interval, tilted against it.
+/// The nearest face along -n, found by surfels that the fit does not use. At the same end of the interval its normal
+/// may be tilted (WALL_TILTED); at the other end it must be almost opposite (WALL_LEVEL).
 struct FaceBehind {
     double away = std::numeric_limits<double>::infinity();
     dvec3 n{0};
@@ -164,27 +167,27 @@ FaceBehind face_behind(const Field& field, const ScaledScene& scene, const std::
     return behind;
 }
 
-/// Of a face with the normal n: what lies across n of H n moved to `turn`, by a share. By so much its slope turns a
-/// voxel along n; on the face itself that is of third order.
+/// H of a face with normal n, with the part of H n across n moved towards `turn` by `share`. That part is how much the
+/// slope turns per voxel along n; on the face itself it has an effect of third order only.
 dmat3 turned(const dmat3& h, const dvec3& n, const dvec3& turn, double share) {
     dvec3 change = share * (turn - h * n);
     change -= glm::dot(change, n) * n;
     return h + glm::outerProduct(n, change) + glm::outerProduct(change, n);
 }
 
-/// The larger of both curvatures, where H n is small; outwards is positive.
+/// The larger of the two curvatures, if H n is small; outwards is positive.
 double largest_bend(const dmat3& h) {
     const double norm = norm_of(h), sum = h[0][0] + h[1][1] + h[2][2];
     return 0.5 * (sum + std::sqrt(std::max(2 * norm * norm - sum * sum, 0.0)));
 }
 
-/// How the field's slope turns from a face, d away along n, to voxel i, along the gradient g.
+/// The turn of the field's slope, per voxel, between a face at distance d along n and voxel i with the gradient g.
 dvec3 turn_of(const dvec3& g, double d) {
     const double length = glm::length(g);
     return length > 0 ? -g / length * d / (d * d + kTurnFrom) : dvec3(0);
 }
 
-/// Whether samples next to a voxel are of materials below m, above it.
+/// Whether samples next to a voxel belong to materials below m, and above it.
 struct Crossed {
     bool down = false, up = false;
 };
@@ -198,7 +201,7 @@ Crossed crossed_beside(const Field& field, const ScaledScene& scene, const glm::
     return crossed;
 }
 
-/// The face on the voxel's side of a layer comes first.
+/// Makes the face on the voxel's side of a layer the first one.
 VoxelEdge near_face_first(VoxelEdge edge) {
     if (!(edge.D2 < 0)) return edge;
     edge.n = -edge.n;
@@ -208,10 +211,11 @@ VoxelEdge near_face_first(VoxelEdge edge) {
     return edge;
 }
 
-/// How much of the field's direction at a voxel is believed: by its slope there over that on the way to the face.
+/// Weight of the field's direction at a voxel, [0, 1]: from the slope there over the mean slope on the way to the face,
+/// `way` / |d|. `way`: difference of the field's values at both.
 double steep_of(double slope, double way, double d) {
-    const double on_the_way = way / std::max(std::abs(d), 1e-6);
-    const double times = slope / std::max(on_the_way, 1e-6);
+    const double mean_slope = way / std::max(std::abs(d), 1e-6);
+    const double times = slope / std::max(mean_slope, 1e-6);
     return std::clamp((times - static_cast<double>(shader::STEEP_FROM)) / static_cast<double>(shader::STEEP_OVER), 0.0,
                       1.0);
 }
@@ -230,20 +234,21 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     Surfel nearest;
     double distance = std::numeric_limits<double>::infinity();
     around(i, [&](const Surfel& s) {
-        // What is behind the outermost samples no voxel beside it knows.
+        // A voxel outside the matter uses no surfels on the border or beyond the outermost samples.
         const dvec3 at = dvec3(i) + s.at;
         if (beside && (s.border || glm::any(glm::lessThan(at, dvec3(0))) ||
                        glm::any(glm::greaterThan(at, dvec3(field.dims - 1)))))
             return;
-        // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
+        // The border ends matter however the kernel is cut; a surface beside it is known only from its face, so it goes
+        // first.
         const double rank = glm::length(s.at) + (s.border ? static_cast<double>(shader::BORDER_BEHIND) : 0);
-        // Of what is equally far the first is taken, whichever way numbers are rounded.
+        // Among equally near surfels take the first, whatever the rounding.
         if (!(glm::length(s.at) < kFaceSearch) || !(rank < distance - 1e-4)) return;
         distance = rank;
         nearest = s;
     });
     if (nearest.border) {
-        // A plane, and behind it where the volume ends on the other side.
+        // A plane; the face behind it is the opposite border.
         VoxelEdge edge;
         edge.n = nearest.n;
         edge.D = glm::dot(nearest.at, nearest.n);
@@ -254,7 +259,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const bool found = std::isfinite(distance);
     const Crossed crossed = crossed_beside(field, scene, i, m);
     if (!found) {
-        if (!crossed.down && !crossed.up) return normal_alone(field, i);
+        if (!crossed.down && !crossed.up) return edge_with_normal_only(field, i);
         nearest.upper = beside ? scene.material(field.at(i)) > m : !crossed.down;
     }
     const dvec3 middle = nearest.at, n = nearest.n;
@@ -290,7 +295,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
         sum += w * level;
         sum2 += w * level * level;
     }
-    // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
+    // Both faces of a wall are levels of one quadric, which is fitted to the nearer face.
     const double level = sum / std::max(opposite, 1e-20);
     const double of_wall = of_same + std::max(sum2 - sum * level, 0.0);
     bool is_wall = opposite > 0 && level < -kThinnest && of_wall < kWallShare * of_one;
@@ -301,7 +306,7 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const double error = (is_wall ? of_wall : of_one) + wrong;
     const double own_wrong = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return off_of(own, r); });
     const double own_error = of_own + own_wrong;
-    // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a
+    // If no single quadric fits the surfels, the field's own may: at specks, at corners, and in matter thinner than a
     // voxel.
     const Foot fitted = foot_of(is_wall ? wall : one, -middle, dvec3(0)), from_voxel = own_foot_of(own);
     const bool is_own = !found || (error > kWell && own_error < (error > kBadly ? 1 : kOwnShare) * error) ||
@@ -312,35 +317,36 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     }
     const Quadric& q = is_own ? own : (is_wall ? wall : one);
     const Foot& foot = is_own ? from_voxel : fitted;
-    if (is_own && !foot.real) return normal_alone(field, i);
+    if (is_own && !foot.real) return edge_with_normal_only(field, i);
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;
-    // Where none is seen a layer ends at its lower values.
+    // If no opposite surfel is found, the other face is the interval's lower end.
     edge.mixed = mixed > 0 || (mixed == 0 && nearest.upper);
     const double steep = glm::length(foot.slope);
     edge.n = foot.real ? foot.slope / steep : n;
     edge.D = glm::dot((is_own ? dvec3(0) : middle) + (foot.real ? foot.at : dvec3(0)), edge.n);
     if (foot.real) edge.bending = q.h / steep;
-    // Beside matter an expansion may make up a surface where the field has none.
+    // For a voxel outside the matter the expansion can have a surface where the field has none.
     const double off = std::abs(sample(field, dvec3(i) + edge.D * edge.n) - iso);
-    if (is_own && beside && !(off < static_cast<double>(shader::MADE_UP) * slope_there)) return normal_alone(field, i);
+    if (is_own && beside && !(off < static_cast<double>(shader::MADE_UP) * slope_there))
+        return edge_with_normal_only(field, i);
     if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
         edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     if (is_wall) return edge;
-    // Of a layer so thin that samples around have both of its sides, and perhaps none of it, the fit may see one face.
+    // In a thin layer the samples around lie on both sides of it, perhaps none in it. The fit may find only one face.
     const bool layer = beside && crossed.down && crossed.up;
     if (layer) {
         edge.D2 = (scene.upper(m) - scene.lower(m)) / slope_there - edge.D;
         edge.mixed = true;
     }
-    // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
+    // Of a thicker wall the fit finds only one face. Strong outward bending over the thickness means it is not a wall.
     if (!foot.real) return near_face_first(edge);
     const FaceBehind behind = face_behind(field, scene, surfels, i, m, edge.n, nearest.upper);
     const double thickness = edge.D + behind.away;
-    // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side,
-    // into the field's at the voxel. Where that is shallow it changes its direction fast.
+    // In a wall the slope turns from one face's normal to the other's. If the fit found no opposite side, it turns to
+    // the field's slope at the voxel, unless that slope is small: then its direction changes fast.
     const dvec3 g = (nearest.upper ? 1.0 : -1.0) * field_gradient(field, i);
     if (!is_own) edge.steep = steep_of(glm::length(g), std::abs(field.at(i) - iso), edge.D);
     if (std::isfinite(behind.away) && largest_bend(edge.bending) * thickness < kWallBent) {

@@ -11,7 +11,7 @@ namespace edgesplat::reference {
 
 namespace {
 
-/// The spline, or with `along` its derivative along that axis.
+/// Value of the spline, or with `along` its derivative along that axis.
 double spline(const Field& field, const glm::dvec3& p, int along = -1) {
     std::array<SplineTaps, 3> taps;
     std::array<const std::array<double, 4>*, 3> weights{};
@@ -66,9 +66,9 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
         scaled.iso.push_back(static_cast<double>(static_cast<float>(scaled_iso_value(volume, iso))));
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         scaled.drawn.push_back(extinctions_of(scene, m).most > 0);
-    const std::uint32_t seen_through = materials_seen_through(scene, volume.geometry);
+    const std::uint32_t translucent_mask = translucent_materials(scene, volume.geometry);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
-        scaled.seen_through.push_back((seen_through >> m & 1U) != 0);
+        scaled.is_translucent.push_back((translucent_mask >> m & 1U) != 0);
     scaled.transfer = scaled_transfer(scene, volume);
     scaled.light = !scene.lights.empty() || scene.effects.silhouette;
     return scaled;

@@ -34,7 +34,7 @@ double Footprints::at_point(const VoxelEdge& edge, const glm::dvec3& r) const {
     const double r2 = glm::dot(r, r);
     if (!warped(edge)) return edgesplat::kernel(r2, kernel());
     if (settings_.warp == WarpFamily::Face) {
-        // What a ray across the face meets there.
+        // The value on a ray through r along the face's normal.
         const double along = glm::dot(r, edge.n);
         return face_path(edge, r - along * edge.n, edge.n).kernel_at(along);
     }
@@ -82,12 +82,12 @@ std::pair<FootprintLayer, glm::dvec3> Footprints::select(const VoxelEdge& edge, 
     const double cosine = glm::dot(edge.n, u);
     const glm::dvec3 across = edge.n - cosine * u;
     const double sine = glm::length(across);
-    // Seen along its normal a footprint is the same all around.
+    // A ray along n: the footprint is rotationally symmetric, so any axis will do.
     return {select_footprint_layer(edge.D, std::abs(cosine), table_depth_),
             sine > 1e-4 ? across / sine : glm::dvec3(1, 0, 0)};
 }
 
-double Footprints::looked_up(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const {
+double Footprints::table_value(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const {
     const double x = glm::dot(p, axis);
     return kept_footprint_table(table_depth_).lookup(layer, x, std::sqrt(std::max(glm::dot(p, p) - x * x, 0.0)));
 }
@@ -100,7 +100,7 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
 }
 
 double Footprints::reach(const VoxelEdge& edge) const {
-    // Where the surface cuts it only rays will see.
+    // Only rays find where the surface cuts the kernel, so the reach is the largest possible.
     if (edge.traced) return static_cast<double>(shader::TRACE_REACH);
     if (!warped(edge)) return kernel().radius;
     return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), kernel()).reach : kPaperReach;

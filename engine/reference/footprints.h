@@ -1,4 +1,4 @@
-// One splat's kernel, at a point and along a ray: footprints/ behind the settings' choice of warp and mode.
+// The kernel of a splat, at a point and along a ray, by the settings' warp and footprint mode (footprints/).
 #pragma once
 
 #include <utility>
@@ -11,17 +11,18 @@
 
 namespace edgesplat::reference {
 
-/// What the settings make of a voxel's edge. Lengths in voxels, index space; positions relative to the voxel centre.
+/// Kernels and footprints for one choice of settings. Lengths in voxels, index space; positions relative to the voxel
+/// centre.
 class Footprints {
   public:
-    /// `table_depth`: no deeper under faces that are in the table kernels are sampled, voxels.
+    /// `table_depth`: FaceCut::depth of the faces in the table, voxels.
     explicit Footprints(const Settings& settings, double table_depth = kFaceDepth,
                         FacePieces pieces = FacePieces::Both);
 
-    /// What is warped, or cut: the narrow kernel where faces cut it and nothing is seen through.
+    /// The kernel that is warped or cut: the narrow one if faces cut it and all matter is opaque.
     const Kernel& kernel() const;
 
-    /// Whether the kernel is warped at all; otherwise the closed-form isotropic footprint holds in every mode.
+    /// Whether the kernel is warped or cut. If not, its footprint is the closed-form isotropic one in every mode.
     bool warped(const VoxelEdge& edge) const;
 
     /// h at the point r: K of the warped position.
@@ -34,29 +35,29 @@ class Footprints {
     /// The same over a piece of the line.
     double along_slice(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
-    /// Whether the kernel is cut at a face, and how its ray, or a piece of it, then sees it.
+    /// Whether a face cuts the kernel.
     bool cuts(const VoxelEdge& edge) const;
-    /// What a ray passes of it.
+    /// The parts of the cut kernel along a ray.
     FacePath face_path(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u) const;
-    /// Whether light falls in the depth of what a ray passes: where one sees through matter, and both pieces of it
-    /// count.
+    /// Whether light falls on both ends of the ray's path: in translucent matter, if both pieces count.
     bool lit_in_depth(const VoxelEdge& edge) const { return edge.deepest != kFaceDepth && pieces_ == FacePieces::Both; }
+    /// Integral of the cut kernel over a piece of the ray, and the ends of the ray's path through its matter.
     FaceFootprint at_face(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, const Slice& slice) const;
 
-    /// Whether the table has it: whole kernels, plain or cut at one face. Then its layers, and the axis (unit, across
-    /// the view; 0 of a plain kernel) that x lies along there, for rays along `to_voxel`.
+    /// Whether the table has the kernel's footprint: whole kernels, plain or cut at one face.
     bool tabulated(const VoxelEdge& edge) const;
+    /// Its layers for rays along `to_voxel`, and the layers' x axis (unit, across the ray; 0 for a plain kernel).
     std::pair<FootprintLayer, glm::dvec3> select(const VoxelEdge& edge, const glm::dvec3& to_voxel) const;
-    double looked_up(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const;
+    double table_value(const FootprintLayer& layer, const glm::dvec3& axis, const glm::dvec3& p) const;
 
-    /// Whether the point p + z u of a ray, as in `along_ray`, is inside the voxel's matter: in its kernel, and on the
-    /// voxel's own side of its edge. (With `paper` the kernel is taken as the ball that holds it.)
+    /// Whether the ray's point p + z u, as in `along_ray`, lies in the voxel's matter: in its kernel and on the voxel's
+    /// own side of its edge. (`paper`: the kernel counts as the ball that encloses it.)
     bool in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm::dvec3& u, double z) const;
 
-    /// How far from the voxel h can be anything but 0, voxels.
+    /// Distance from the voxel beyond which h is 0, voxels.
     double reach(const VoxelEdge& edge) const;
 
-    /// How far from its voxel a kernel of these settings can be anything but 0, voxels.
+    /// The largest reach of any kernel with these settings, voxels.
     double farthest_reach() const { return kernel_reach(settings_); }
 
   private:

@@ -26,7 +26,7 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter) {
     scene.name = volume.name;
     scene.dims = volume.geometry.dims;
     scene.iso_values = {low + range / 2};
-    // Beyond the outermost samples the field is theirs.
+    // Beyond the outermost samples the field is constant along each axis.
     const auto held = [last = glm::dvec3(volume.geometry.dims - 1)](const glm::dvec3& x) {
         return glm::clamp(x, glm::dvec3(0), last);
     };

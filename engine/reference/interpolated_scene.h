@@ -1,5 +1,5 @@
-// The field that the ray caster takes for the samples, as a scene: truth() of it is the ray caster's picture in double
-// precision, without steps (method.md, Ray caster).
+// The field that the ray caster interpolates from the samples, as an analytic scene. truth() of it is the ray caster's
+// picture in double precision, without steps (docs/method/raycast.md).
 #pragma once
 
 #include "engine/scene/renderer_kind.h"
@@ -7,8 +7,8 @@
 
 namespace edgesplat::reference {
 
-/// Value and gradient in the volume's unit, on its grid; no distance. Gradients are those of points at least one voxel
-/// inside the border: of interpolated values the interpolated central differences, of the spline its slope.
+/// Value and gradient in the volume's unit, on its grid; no distance. Gradients are taken at least one voxel inside the
+/// border: interpolated central differences, or with the cubic filter the spline's gradient.
 AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter);
 
 }  // namespace edgesplat::reference

@@ -21,27 +21,28 @@ double not_zero(double v) {
     return std::abs(v) < kStraight ? std::copysign(kStraight, v) : v;
 }
 
-/// A splat as a ray sees it.
+/// A splat along one ray.
 struct OutlinedSplat {
     const VoxelEdge& edge;
     const View& view;
     FaceSight sight;
     double thickness;                ///< of a wall; else infinite
-    double ahead, tau, depth_along;  ///< the last: mm of depth per voxel along the ray
+    double ahead, tau, depth_along;  ///< depth_along: mm of depth per voxel along the ray
 
     double depth(double z) const { return (ahead + z) * depth_along; }
 
-    /// Whether the point z of the ray lies inside of a corner's third plane.
+    /// Whether the ray's point z lies inside a corner's third plane.
     bool inside_corner(double z) const { return sight.ray.corner.p + z * sight.ray.corner.u < edge.corner.D; }
 
-    /// How a function with that gradient changes at z from a pixel to the next, to the right and down.
+    /// Change of a function with this gradient at z, from a pixel to its neighbours to the right and below.
     dvec2 rate_across(const dvec3& gradient, double z) const {
         const double pixel = 2 * view.frame.tan_half_y * depth(z) / view.height;
         return pixel * dvec2(glm::dot(gradient, view.world_to_index * view.frame.right),
                              glm::dot(gradient, view.world_to_index * -view.frame.up));
     }
 
-    /// Matter ends where `level`, of that rate, is 0, and is where it is less.
+    /// The outline where `level` is 0; matter lies where it is negative. `rate`: change of `level` per pixel. nullopt
+    /// if the outline is a pixel or more away, or the splat is too faint or too far from the ray.
     std::optional<Outline> passing(double level, const dvec2& rate, double z) const {
         const bool down = std::abs(rate.y) > std::abs(rate.x);
         const double along = down ? rate.y : rate.x, pixels = level / std::abs(along);
@@ -53,7 +54,7 @@ struct OutlinedSplat {
         return Outline{pixels, -level / along, down};
     }
 
-    /// Phi has its least value on the ray there, or of a wall's other face its largest.
+    /// The outline of a face: the ray's minimum of phi, or of a wall's other face its maximum.
     std::optional<Outline> of_face() const {
         const Quadratic& phi = sight.ray.phi;
         const bool opens = phi.a >= 0;
@@ -65,12 +66,12 @@ struct OutlinedSplat {
                        side * rate_across(sight.slope + z * sight.turn, z), z);
     }
 
-    /// The way between face and crease shrinks to nothing.
+    /// The outline at a crease: there the path between face and crease plane has length 0.
     std::optional<Outline> of_crease() const {
         const Quadratic& phi = sight.ray.phi;
         const FaceRoots roots = face_roots(phi, 0);
         if (!std::isfinite(edge.crease.D) || !roots.real) return {};
-        const bool leaves = sight.ray.crease.u > 0;  // the matter by the crease's plane
+        const bool leaves = sight.ray.crease.u > 0;  // the ray leaves the matter through the crease's plane
         const double side = leaves ? 1 : -1, u = not_zero(sight.ray.crease.u);
         const double at_face = (phi.a >= 0) == leaves ? roots.low : roots.high;
         const double at_crease = (edge.crease.D - sight.ray.crease.p) / u, z = 0.5 * (at_face + at_crease);

@@ -11,7 +11,7 @@ namespace edgesplat::reference {
 
 void parallel_for(int count, const std::function<void(int, int)>& work) {
     const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, std::max(count, 1));
-    // More pieces than threads, because pieces cost very different amounts (empty sky, full tissue).
+    // More pieces than threads, since their costs differ strongly (background or tissue).
     const int piece = std::max(1, count / (threads * 8));
     std::atomic<int> next{0};
     std::exception_ptr failure;

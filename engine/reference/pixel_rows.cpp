@@ -18,7 +18,7 @@ void check_picture_size(int width, int height) {
 namespace {
 
 void for_each_row(int height, const Progress& progress, const std::function<void(int)>& row) {
-    // A stride without a common factor visits every row once, and neighbours long after one another.
+    // A stride coprime to the height visits every row once, and neighbouring rows at distant times.
     int stride = std::max(height * 5 / 13, 1);
     while (std::gcd(stride, height) != 1)
         ++stride;

@@ -14,7 +14,7 @@ using glm::dvec3;
 
 constexpr auto kFitRidge = static_cast<double>(shader::FIT_RIDGE);
 
-/// Axes of a symmetric matrix by Jacobi's rotations, which leave its eigenvalues on the diagonal.
+/// Axes of a symmetric matrix by Jacobi rotations. `a` becomes diagonal, with the eigenvalues.
 dmat3 axes_of(dmat3& a) {
     dmat3 axes(1);
     for (int sweep = 0; sweep < 12; ++sweep) {

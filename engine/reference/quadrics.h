@@ -1,11 +1,11 @@
-// The quadric that fits points of a surface and their normals (method.md, Faces, 2).
+// Fits a quadric to points of a surface and their normals (docs/method/faces.md, 2).
 #pragma once
 
 #include <glm/glm.hpp>
 
 namespace edgesplat::reference {
 
-/// Sums over points with normals, by weight.
+/// Weighted sums over points with normals.
 struct Moments {
     double weight = 0;
     glm::dvec3 r{0}, m{0};
@@ -27,7 +27,7 @@ struct Quadric {
     glm::dvec3 slope(const glm::dvec3& r) const { return g + h * r; }
 };
 
-/// The one that fits them best, by least squares.
+/// The quadric that fits the points best, by least squares.
 Quadric quadric_of(const Moments& sums);
 
 }  // namespace edgesplat::reference

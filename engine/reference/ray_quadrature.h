@@ -1,4 +1,5 @@
-// Emission and absorption along a ray, dC = T sigma c dt and dT = -T sigma dt, to a tolerance (method.md, Reference).
+// Integrates emission and absorption along a ray, dC = T sigma c dt and dT = -T sigma dt, to a tolerance
+// (docs/method/reference.md).
 #pragma once
 
 #include <algorithm>
@@ -9,24 +10,25 @@
 
 namespace edgesplat::reference {
 
-/// What a point of a ray absorbs and emits, per unit of t.
+/// Absorption and emission at a point of a ray, per unit of t.
 struct Density {
     double extinction = 0;
     glm::dvec3 emission{0};  ///< extinction times colour
 };
 
-/// A stretch of a ray, seen from its beginning.
+/// A segment of a ray, composited from its beginning.
 struct Stretch {
     double tau = 0;
-    glm::dvec3 color{0};  ///< composited within the stretch
+    glm::dvec3 color{0};  ///< composited within the segment
 };
 
-/// `near`, and `far` behind it.
+/// The segment `near` with `far` behind it.
 inline Stretch joined(const Stretch& near, const Stretch& far) {
     return {near.tau + far.tau, near.color + std::exp(-near.tau) * far.color};
 }
 
-/// Gauss nodes on [0, 1], and the integrals from 0 to each node of the polynomial through the values at all of them.
+/// Gauss nodes on [0, 1] with weights. `partial`: weights of the integral from 0 to each node of the polynomial through
+/// all values.
 struct CollocationRule {
     static constexpr std::size_t kNodes = 4;
     std::array<double, kNodes> nodes{}, weights{};
@@ -35,26 +37,26 @@ struct CollocationRule {
 };
 const CollocationRule& collocation_rule();
 
-/// How exactly a ray is integrated.
+/// The tolerance of a ray's integral.
 struct Accuracy {
     double tolerance = 1e-4;  ///< of the whole ray
     double length = 1;        ///< of the whole ray, > 0, in t
-    bool tau_only = false;    ///< nothing is hidden, and the tolerance is relative to tau where tau > 1
+    bool tau_only = false;    ///< nothing is occluded; the tolerance is relative to tau where tau > 1
 };
 
-/// What has been seen so far along a ray, from the eye on.
+/// The integral along a ray, from the eye to the current point.
 struct RaySum {
     glm::dvec3 color{0};  ///< premultiplied
     double tau = 0;
     double transmittance = 1;  ///< exp(-tau)
-    double error = 0;          ///< sum of what the last halving of each panel changed: above the true error as a rule
+    double error = 0;          ///< sum of the changes by the last halving of each panel: usually above the true error
     std::uint64_t samples = 0;
 };
 
-constexpr int kDeepestPanel = 24;  ///< halvings of a panel at most
+constexpr int kDeepestPanel = 24;  ///< largest number of halvings of a panel
 
-/// Adds [begin, begin + length] to `sum`: halved until a panel's part of the pixel changes by less than its share of
-/// the tolerance. `density(t)` gives a Density.
+/// Adds [begin, begin + length] to `sum`. Panels are halved until their part of the pixel changes by less than their
+/// share of the tolerance. `density(t)` returns a Density.
 template <typename At>
 class PanelIntegrator {
   public:
@@ -87,7 +89,7 @@ class PanelIntegrator {
         const Stretch near = stretch(begin, half);
         const Stretch far = stretch(begin + half, half);
         const Stretch both = joined(near, far);
-        // Half of the tolerance is shared out by length, half by what a panel adds to the pixel.
+        // Half of the tolerance is distributed by length, half by the opacity that a panel adds to the pixel.
         const double share = length / accuracy_.length;
         double change = 0;
         double part = 0;

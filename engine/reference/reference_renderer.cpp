@@ -52,14 +52,14 @@ bool is_before(const CarriedEdge& carried, std::size_t voxel) {
 PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised)
     : volume_(&volume),
       scene_((validate(scene), scene)),
-      settings_((validate(settings), drawn_as(settings, scene))),
+      settings_((validate(settings), canonical_settings(settings, scene))),
       scaled_(scale_scene(scene, volume)),
       values_(scaled_field(volume)),
       footprints_(settings_, table_depth(scene_, volume.geometry)) {
     if (settings_.edges == EdgeEstimator::Cubic) {
         coefficients_ = bspline_coefficients(values_, volume.geometry.dims);
     }
-    // Faces are of both sides of a surface, drawn or not.
+    // Faces need the surfels on both sides of a surface, also those of materials that are not drawn.
     ScaledScene estimated = scaled_;
     if (draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
     const std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
@@ -112,19 +112,19 @@ Image PreparedVolume::draw(const Camera& camera, const View& view, Output output
     const int width = view.width, height = view.height;
     std::vector<SplatRecord> records = collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye,
                                                       output == Output::Tau, classified_, carried_);
-    // Optical depth is of all that is on a ray.
+    // Optical depth includes everything on a ray, so no face is traced.
     for (SplatRecord& record : records)
         if (output == Output::Tau) record.edge.traced.reset();
     const std::vector<Selected> selected =
         select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);
-    const bool one_piece = output != Output::Tau && one_piece_is_enough(settings_, scene_, geometry);
+    const bool one_piece = output != Output::Tau && has_single_piece(settings_, scene_, geometry);
     const Footprints drawn(settings_, table_depth(scene_, geometry), one_piece ? FacePieces::Longer : FacePieces::Both);
     const SplatDrawer drawer(records, selected, f, scene_, view, settings_, drawn);
 
     const std::size_t pixels = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
     std::vector<glm::dvec4> frame(pixels, glm::dvec4(0));
-    // Optical depth is a plain sum: sheets would change nothing.
+    // Optical depth is a plain sum, so it needs no sheets.
     if (output == Output::Tau) {
         std::vector<std::uint32_t> once = sorted.order;
         std::sort(once.begin(), once.end());

@@ -1,4 +1,4 @@
-// The whole frame in double precision, passes 1 to 7: the oracle the GPU is compared with.
+// The whole frame in double precision, passes 1 to 7. The GPU's pictures are tested against it.
 #pragma once
 
 #include "engine/image/image.h"
@@ -9,13 +9,13 @@ namespace edgesplat::reference {
 
 enum class Output { Color, Tau, Depth, Distance, Normal };
 
-/// Sheets drawn before pixels are tested for saturation again.
+/// Number of sheets between two tests of pixels for saturation.
 constexpr int kSheetsPerGroup = 16;
 
-/// Passes 1 of a volume and a scene, kept for several frames. The volume must outlive it.
+/// Pass 1 of a volume and a scene, kept for several frames. The volume must outlive it.
 class PreparedVolume {
   public:
-    /// With `quantised`, edges go through the 64 bits the GPU stores. Throws Error for an invalid scene or settings.
+    /// `quantised`: edges are rounded to the bits that the GPU stores. Throws Error for an invalid scene or settings.
     PreparedVolume(const Volume& volume, const Scene& scene, const Settings& settings, bool quantised = false);
 
     const Volume& volume() const { return *volume_; }
@@ -25,21 +25,22 @@ class PreparedVolume {
     const Footprints& footprints() const { return footprints_; }
     Field field() const { return {volume_->geometry.dims, values_, coefficients_}; }
     const std::vector<VoxelEdge>& edges() const { return edges_; }
-    /// What voxels beside matter that one sees through carry of it, in their order.
+    /// Edges of translucent matter at voxels outside it, in voxel order.
     const std::vector<CarriedEdge>& carried() const { return carried_; }
+    /// Those of one voxel.
     std::span<const CarriedEdge> carried_by(std::size_t voxel) const;
     /// classified_values() of the voxels; empty without a transfer function.
     const std::vector<double>& classified() const { return classified_; }
 
-    /// Draws with the edge of that voxel and material instead of its own.
+    /// Replaces the edge of this voxel and material.
     void replace_edge(std::size_t voxel, int material, const VoxelEdge& edge);
 
-    /// Passes 2 to 7. 4 channels (Color), 3 (Normal) or 1, as engine/renderer.h says of each. Throws Error for an
+    /// Passes 2 to 7. Color has 4 channels, Normal 3, the others 1, as engine/renderer.h documents. Throws Error for an
     /// invalid camera or a picture without pixels.
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
-    /// One picture with one ray a pixel.
+    /// One picture with one ray per pixel.
     Image draw(const Camera& camera, const View& view, Output output) const;
 
     const Volume* volume_;

@@ -37,7 +37,7 @@ glm::dvec3 lit(const Scene& scene, const Surface& surface, const glm::dvec3& eye
         const Light& light = scene.lights[l];
         const glm::dvec3 sent = light.intensity * light.color * reach.lights[l];
         const glm::dvec3 to_light = towards(light, surface.position, eye);
-        // At the light itself every direction is as good.
+        // At the light itself, light falls along the normal.
         const double facing = to_light == glm::dvec3(0) ? 1.0 : glm::dot(surface.normal, to_light);
         diffuse += response.diffuse * sent * (has_normal ? std::max(facing, 0.0) : 0.5);
         if (!has_normal || !(facing > 0)) continue;

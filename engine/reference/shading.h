@@ -1,4 +1,4 @@
-// What a splat, or a point of a surface, looks like from the eye (method.md, Shading).
+// Shades a splat, or a point of a surface, as seen from the eye (docs/method/shading.md).
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@ namespace edgesplat::reference {
 struct Surface {
     glm::dvec3 color{1};  ///< linear light
     LightResponse response{};
-    glm::dvec3 normal{0};    ///< world, unit; 0 where there is none
+    glm::dvec3 normal{0};    ///< world, unit; 0: no normal
     glm::dvec3 position{0};  ///< world mm
     double depth = 0;        ///< along the view axis, mm
 };
@@ -21,10 +21,10 @@ struct Reach {
     std::array<double, kMaxLights> lights{1, 1, 1, 1};
 };
 
-/// What the scene's lights make of a surface (Blinn 1977): linear light. Without lights its colour.
+/// Colour of a surface under the scene's lights (Blinn 1977), linear light. Without lights the surface's own colour.
 glm::dvec3 lit(const Scene& scene, const Surface& surface, const glm::dvec3& eye, const Reach& reach = {});
 
-/// That, then silhouette, then fog.
+/// lit(), then silhouette, then fog.
 glm::dvec3 shade(const Scene& scene, const Surface& surface, const glm::dvec3& eye, const Reach& reach = {});
 
 }  // namespace edgesplat::reference

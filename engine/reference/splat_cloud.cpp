@@ -46,7 +46,7 @@ void SplatCloud::measure_emptiness() {
     clearance_.assign(splat_of_.size(), 255);
     for (std::size_t at = 0; at < splat_of_.size(); ++at)
         if (splat_of_[at] >= 0) clearance_[at] = 0;
-    // Two sweeps over the neighbours that lie before and behind a voxel: exact for the Chebyshev distance.
+    // Two sweeps, over the preceding and over the following neighbours, give the exact Chebyshev distance.
     const auto take = [&](std::size_t at, bool before) {
         const glm::ivec3 i = field_.voxel(at);
         int best = clearance_[at];
@@ -81,7 +81,7 @@ bool SplatCloud::clip(const glm::dvec3& origin, const glm::dvec3& u, double& beg
     return begin < end;
 }
 
-double SplatCloud::empty_around(const glm::dvec3& p) const {
+double SplatCloud::empty_distance(const glm::dvec3& p) const {
     const glm::dvec3 nearest = glm::clamp(glm::round(p), glm::dvec3(0), glm::dvec3(field_.dims - 1));
     const glm::dvec3 off = glm::abs(p - nearest);
     return clearance_[field_.offset(glm::ivec3(nearest))] - std::max({off.x, off.y, off.z}) - reach_;

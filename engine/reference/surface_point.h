@@ -1,4 +1,4 @@
-// Where light arrives at a splat (method.md, Light that arrives). Mirrors shaders/light/surface_point.glsl.
+// Finds where light arrives at a splat (docs/method/light.md). Mirrors shaders/light/surface_point.glsl.
 #pragma once
 
 #include "engine/reference/2_collect_splats.h"
@@ -6,25 +6,26 @@
 
 namespace edgesplat::reference {
 
-/// Voxels between a surface and the place that looks up from it, for shadows at least and for ambient light.
+/// Voxels between a surface and the point above it where light arrives: smallest and largest for shadows; for ambient
+/// occlusion.
 constexpr double kShortestLift = 1.5, kLongestLift = 8, kOcclusionLift = 1.25;
 
 struct SurfacePoint {
     glm::dvec3 foot{0};    ///< relative to the voxel centre, index space
-    glm::dvec3 normal{0};  ///< world, unit, outwards; 0 where the splat has none
-    glm::dvec3 step{0};    ///< index space: one mm along the normal
+    glm::dvec3 normal{0};  ///< world, unit, outwards; 0: the splat has none
+    glm::dvec3 step{0};    ///< one mm along the normal, index space
     double voxel = 1;      ///< mm per voxel along the normal
-    double room = 0;       ///< mm along the normal to where the next surface may be
+    double room = 0;       ///< mm along the normal before the next surface may follow
 };
 
-/// Whether the kernel reaches a second face too. `band`: R + a, voxels.
+/// Whether the kernel also reaches a second face. `band`: R + a, voxels.
 bool is_wall(const VoxelEdge& edge, double band);
 
-/// `turned`: of a wall, the face on the other side.
+/// The surface point of an edge. `turned`: the wall's other face.
 SurfacePoint surface_point(const VoxelEdge& edge, double band, bool turned, const VolumeGeometry& geometry);
 
-/// The same of a splat at x (index space) whose kernel `clip` cuts: where a plane is nearer to the voxel than the
-/// splat's own edge, the cut is the surface.
+/// The same for a splat at x (index space). If a plane of `clip` is nearer to the voxel than the splat's own edge, the
+/// surface is the cut.
 SurfacePoint at_cut(const SurfacePoint& uncut, const VoxelEdge& edge, const glm::dvec3& x, const IndexClip& clip,
                     const VolumeGeometry& geometry);
 

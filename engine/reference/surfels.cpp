@@ -1,4 +1,4 @@
-// Points of the surface beside voxels: the mirror of shaders/edges/find_surfel.glsl.
+// Surfels: points of the surface beside voxels. Mirrors shaders/edges/find_surfel.glsl.
 #include <algorithm>
 #include <cmath>
 
@@ -13,9 +13,9 @@ using glm::dvec3;
 
 constexpr auto kSurfelReach = static_cast<double>(shader::SURFEL_REACH);
 
-/// The point of the field's surface.
+/// The surfel of voxel i on the field's surface; without one only a normal.
 VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic) {
-    const VoxelEdge none = normal_alone(field, i);
+    const VoxelEdge none = edge_with_normal_only(field, i);
     const double f = field.at(i);
     const int m = scene.material(f);
     const double low = scene.lower(m), high = scene.upper(m);
@@ -51,11 +51,11 @@ VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const gl
     return edge;
 }
 
-/// Where the volume ends, half a voxel beyond its outermost samples: the side beside voxel i, towards it, or 0.
+/// Outward normal of the volume's border beside voxel i, half a voxel beyond the outermost samples; 0 if there is none.
 dvec3 border_beside(const Field& field, const glm::ivec3& i) {
     for (int axis = 0; axis < 3; ++axis) {
         const bool outermost = i[axis] == 0 || i[axis] == field.dims[axis] - 1;
-        if (!outermost || field.dims[axis] == 1) continue;  // along an axis of one voxel nothing ends
+        if (!outermost || field.dims[axis] == 1) continue;  // an axis of one voxel has no border
         dvec3 n(0);
         n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
         return n;
@@ -82,7 +82,7 @@ std::pair<double, double> values_around(const Field& field, const glm::ivec3& i)
     return around;
 }
 
-VoxelEdge normal_alone(const Field& field, const glm::ivec3& i) {
+VoxelEdge edge_with_normal_only(const Field& field, const glm::ivec3& i) {
     VoxelEdge edge;
     const dvec3 g = voxel_gradient(field, i);
     edge.has_normal = glm::length(g) >= kSmallestGradient;

@@ -30,7 +30,7 @@ struct Sample {
     double z = 0, value = 0, slope = 0;
 };
 
-/// Where between two samples a cubic turns over an end of the interval that both lie on one side of.
+/// Where the cubic between two samples on the same side of the interval's ends crosses an end and turns back.
 std::optional<double> turn_between(const Sample& a, const Sample& b, const VoxelEdge::Interval& interval) {
     const double step = b.z - a.z, d0 = a.slope * step, d1 = b.slope * step;
     if (!(d0 * d1 < 0)) return std::nullopt;
@@ -41,7 +41,7 @@ std::optional<double> turn_between(const Sample& a, const Sample& b, const Voxel
     return a.z + at * step;
 }
 
-/// Where the field is `level` between two places on either side of it.
+/// Where the field is `level`, between two places with the level between their values.
 double root(const Along& along, double level, double a, double b) {
     const bool rises = along.value(b) > along.value(a);
     for (int step = 0; step < 60; ++step) {
@@ -72,11 +72,11 @@ TracedRay trace_ray(const Field& field, const dvec3& eye, const dvec3& u, double
     if (!(first < std::min(last, whole.high))) return ray;
     Sample before;
     bool begun = false;
-    // False: nothing behind counts.
+    // Returns false if nothing further along the ray counts.
     const auto take = [&](const Sample& at) {
         const bool matter = interval.holds(at.value), was = begun && interval.holds(before.value);
         ray.last = at.z;
-        // Matter that the ray meets where it enters the volume begins there, with the border's normal.
+        // Matter that the ray is in when it enters the volume begins at the border, with the border's normal.
         if (!begun && matter && at_border) ray.pieces.push_back({whole.low, kInfinity, whole.normal, false});
         if (!begun && matter && !at_border) ray.pieces.push_back({-kInfinity, kInfinity, dvec3(0), false});
         if (begun && matter != was) {
@@ -126,7 +126,7 @@ MetEdge met_edge(const VoxelEdge& edge, const Field& field, const dvec3& eye, co
         }
     }
     if (!longest) {
-        // What was not looked at keeps its quadric.
+        // Beyond the range that was traced, the splat keeps its quadric.
         met.matter = ray.last < high - 1e-3;
         return met;
     }
@@ -142,14 +142,14 @@ MetEdge met_edge(const VoxelEdge& edge, const Field& field, const dvec3& eye, co
         face.D2 = kInfinity;
         if (leaves) face.D2 = std::max((longest->end - longest->begin) * std::abs(glm::dot(u, face.n)), 0.05) - face.D;
     } else if (!leaves) {
-        // Matter all along: the face is too far off to cut it.
+        // Matter along the whole chord: the face is put too far away to cut it.
         met.edge.traced.reset();
         met.edge.n = glm::normalize(edge.n - edge.bending * (edge.D * edge.n));
         met.edge.D = static_cast<double>(shader::TRACE_WHOLE);
         met.edge.bending = glm::dmat3(0);
         met.edge.D2 = kInfinity;
     } else {
-        // Where it but leaves matter there is more of that before, of other splats.
+        // The ray only leaves matter here; splats in front show that matter.
         met.matter = false;
     }
     return met;

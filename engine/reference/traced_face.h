@@ -1,4 +1,5 @@
-// Faces that rays find, of splats that no quadric fits (method.md, 5_trace_faces). Lengths are voxels, index space.
+// Traced faces: rays find the surface for splats that no quadric fits (docs/method/tiles.md, 5_trace_faces). Lengths
+// are voxels, index space.
 #pragma once
 
 #include <vector>
@@ -7,35 +8,35 @@
 
 namespace edgesplat::reference {
 
-/// Whether the samples around a voxel have two values alone: how the field goes between them is not known then.
+/// Whether the samples around a voxel have only two values. Then the field between them is not known.
 bool has_two_values(const Field& field, const glm::ivec3& i);
 
-/// A part of a ray that lies in matter, voxels from the eye. It begins at -infinity where what is looked at began in
-/// it, at the volume's border where that does, and ends at infinity where no end was found.
+/// A part of a ray inside matter, voxels from the eye. It begins at -infinity if the traced range begins inside matter,
+/// or at the volume's border if matter begins there. It ends at infinity if no end was found.
 struct TracedPiece {
     double begin = 0, end = 0;
-    glm::dvec3 n{0};     ///< out of the matter where it begins, unit
-    bool upper = false;  ///< the values beyond that end are higher
+    glm::dvec3 n{0};     ///< unit normal out of the matter at the beginning
+    bool upper = false;  ///< it begins at the interval's upper end
 };
 
-/// What was found of a ray, and how far along it was looked.
+/// The pieces of a ray, and where tracing ended.
 struct TracedRay {
     std::vector<TracedPiece> pieces;  ///< at most two
     double last = 0;
 };
 
-/// Between `first` and `last` along the unit vector u from `eye`. The field has coefficients.
+/// Traces the ray from `eye` along the unit vector u, between `first` and `last`. The field must have coefficients.
 TracedRay trace_ray(const Field& field, const glm::dvec3& eye, const glm::dvec3& u, double first, double last,
                     const VoxelEdge::Interval& interval);
 
 /// An edge as one ray meets it.
 struct MetEdge {
     VoxelEdge edge;
-    bool matter = true;  ///< false: nothing of the kernel's matter is on the ray
+    bool matter = true;  ///< false: the ray passes through none of the kernel's matter
 };
 
-/// Of an edge that is traced: the plane that touches the field's surface where the ray `ahead` u + p meets it, p its
-/// point nearest to the voxel, relative to it; of others the edge itself.
+/// The edge as the ray `ahead` u + p meets it; p is the ray's point nearest to the voxel, relative to it. A traced edge
+/// becomes the plane that touches the field's surface where the ray enters the matter; other edges stay unchanged.
 MetEdge met_edge(const VoxelEdge& edge, const Field& field, const glm::dvec3& eye, const glm::dvec3& u,
                  const glm::dvec3& p, double ahead);
 

@@ -14,20 +14,20 @@ namespace edgesplat::reference {
 
 namespace {
 
-constexpr double kStep = 0.25;         ///< voxels between the points at which a ray is probed
-constexpr double kSlopeStep = 1e-4;    ///< voxels, for the slope of a distance
-constexpr double kFinestProbe = 1e-7;  ///< voxels, how exactly an extremum along a ray is found
+constexpr double kStep = 0.25;         ///< voxels between the probes of a ray
+constexpr double kSlopeStep = 1e-4;    ///< voxels, for the numerical gradient of a distance
+constexpr double kFinestProbe = 1e-7;  ///< voxels: precision of an extremum along a ray
 constexpr int kDeepestHalving = 40;
 
 /// A point of a ray.
 struct Probe {
     double t = 0;
     double value = 0;
-    double distance = 0;  ///< to the nearest edge; 0 where the scene does not know
+    double distance = 0;  ///< to the nearest edge; 0 if the scene has no distance
     int material = 0;
 };
 
-/// Integrates one ray after the other. Positions are in index space, t in voxels.
+/// Integrates rays one after another. Positions are in index space, t in voxels.
 class TruthWalker {
   public:
     TruthWalker(const AnalyticScene& scene, const Scene& look, const View& view, double tolerance)
@@ -38,7 +38,7 @@ class TruthWalker {
         u_ = u;
         mm_per_voxel_ = glm::length(view_.geometry.index_to_world_axes * u);
         if (!enter(length_)) return sum_;
-        // One probe before the beginning and one behind the end, for extrema near either.
+        // One probe before the beginning and one behind the end, to find extrema near both.
         const int steps = static_cast<int>(std::ceil(length_ / kStep));
         const double step = length_ / steps;
         std::array<Probe, 3> last{probe(-step), probe(0), probe(step)};
@@ -51,17 +51,17 @@ class TruthWalker {
             if (sum_.transmittance < cut_) break;
             before = after;
         }
-        // Whatever stands behind.
+        // Bound on what lies behind.
         if (sum_.transmittance < cut_) sum_.error += sum_.transmittance;
         return sum_;
     }
 
   private:
-    /// Where value and distance turn round, if they do between the outer two of three probes.
+    /// The extrema of value and distance between the outer two of three probes, if any.
     using Extrema = std::array<std::optional<Probe>, 2>;
 
-    /// Data reach half a voxel beyond the outermost centres: there the voxels' cells end, and the kernels' sum passes
-    /// one half.
+    /// Finds the part of the ray inside the data, which end half a voxel beyond the outermost centres: there the
+    /// voxels' cells end, and the sum of kernels passes one half. False: the ray misses them.
     bool enter(double& length) {
         const glm::dvec3 low(-0.5);
         const glm::dvec3 high = glm::dvec3(view_.geometry.dims) - 0.5;
@@ -96,8 +96,8 @@ class TruthWalker {
     Extrema extrema(const std::array<Probe, 3>& p) {
         Extrema found;
         if (p[0].material != p[1].material || p[1].material != p[2].material) return found;
-        // A surface is touched between two probes only if the value comes as near to it as it changes from one to the
-        // other; and a distance changes by no more than the way.
+        // A ray touches a surface between two probes only if the value there is as near to the iso-value as it changes
+        // between probes. A distance changes by at most the step.
         const double change = std::abs(p[1].value - p[0].value) + std::abs(p[2].value - p[1].value);
         const bool near = std::any_of(look_.iso_values.begin(), look_.iso_values.end(),
                                       [&](double iso) { return std::abs(iso - p[1].value) <= change; });
@@ -107,7 +107,7 @@ class TruthWalker {
         return found;
     }
 
-    /// Golden section. Stops as soon as another material is met: bisection does the rest.
+    /// Golden section search. Stops at the first probe in another material; bisection does the rest.
     std::optional<Probe> extremum(const std::array<Probe, 3>& p, double Probe::*of) {
         const auto [low, high] = std::minmax(p[0].*of, p[2].*of);
         double sign = 0;
@@ -135,7 +135,7 @@ class TruthWalker {
         return std::nullopt;
     }
 
-    /// From one probe to the next, by way of what turned up between them.
+    /// Integrates from one probe to the next, through the extrema between them.
     void stretch(const Probe& from, const Probe& to, const Extrema& before, const Extrema& after) {
         std::array<Probe, 5> at;
         std::size_t count = 0;
@@ -181,8 +181,7 @@ class TruthWalker {
         if (!(per_voxel > 0)) return;
         const double tau = per_voxel * (end - begin);
         const double opacity = -std::expm1(-tau);
-        // Over opacity instead of length the weight of every point is the same, and only the light is left to
-        // integrate.
+        // Integrated over opacity instead of length, every point has the same weight; only the light varies.
         const auto color = [&](double a) {
             const double t = std::min(begin - std::log1p(-a) / per_voxel, end);
             ++sum_.samples;
@@ -194,7 +193,7 @@ class TruthWalker {
         sum_.transmittance *= std::exp(-tau);
     }
 
-    /// With a transfer function extinction changes along the way, too.
+    /// With a transfer function extinction varies along the ray, too.
     void absorb_by_value(double begin, double end) {
         const auto density = [&](double t) -> Density {
             const glm::dvec3 x = origin_ + t * u_;
@@ -232,8 +231,8 @@ class TruthWalker {
 
     glm::dvec3 color_at(const glm::dvec3& color, const glm::dvec3& x) const {
         if (look_.lights.empty()) return color;
-        // Lower values lie where the gradient does not point. A distance rises in the same direction all the way from
-        // its edge, so that it need not be followed there; it has a slope where a step has no gradient.
+        // The normal points to lower values, against the gradient. The slope of a distance has the same direction all
+        // the way from its edge, so it can be taken at x. It also exists where a step has no gradient.
         glm::dvec3 n = scene_.signed_distance ? distance_slope(x) : -scene_.gradient(x);
         const double length = glm::length(n);
         n = length > 0 && std::isfinite(length) ? n / length : glm::dvec3(0);
@@ -248,7 +247,7 @@ class TruthWalker {
         glm::dvec3 normal{0};  ///< out of the volume
     };
 
-    /// Where matter is cut by the end of the data, that is its surface.
+    /// The nearest border of the data. Where it cuts matter it is a surface.
     Border border_beside(const glm::dvec3& x) const {
         Border nearest;
         for (int axis = 0; axis < 3; ++axis) {
@@ -260,7 +259,7 @@ class TruthWalker {
         return nearest;
     }
 
-    /// To the nearest iso-value; `slope` is the length of the gradient, where no distance is known.
+    /// Distance to the nearest iso-surface, voxels. `slope`: length of the gradient, used if the scene has no distance.
     double distance_to_surface(const glm::dvec3& x, double slope) const {
         double nearest =
             look_.transfer.empty() ? std::numeric_limits<double>::infinity() : double{shader::BORDER_LIGHT};
@@ -277,7 +276,7 @@ class TruthWalker {
             step[axis] = kSlopeStep;
             slope[axis] = scene_.signed_distance(x + step) - scene_.signed_distance(x - step);
         }
-        // Half-way between two edges there is none but rounding.
+        // Half-way between two edges the slope is only rounding error.
         return glm::length(slope) > kSlopeStep * 1e-6 ? slope : glm::dvec3(0);
     }
 
@@ -298,12 +297,12 @@ DirectResult truth(const AnalyticScene& scene, const VolumeGeometry& geometry, c
     check_picture_size(width, height);
     check_options(options);
     validate(look);
-    Scene of_a_ray = look;
-    of_a_ray.effects.samples = 1;
-    if (const std::string beyond = beyond_ray_casting(of_a_ray); !beyond.empty())
-        fail("truth: {} cannot be shown, expected a scene without", beyond);
+    Scene one_sample = look;
+    one_sample.effects.samples = 1;
+    if (const std::string obstacle = raycast_obstacle(one_sample); !obstacle.empty())
+        fail("truth: {} is not supported, expected a scene without it", obstacle);
     if (geometry.dims != scene.dims) {
-        fail("truth: {} is made for {} x {} x {} voxels, not {} x {} x {}", scene.name, scene.dims.x, scene.dims.y,
+        fail("truth: {} has {} x {} x {} voxels, but the volume {} x {} x {}", scene.name, scene.dims.x, scene.dims.y,
              scene.dims.z, geometry.dims.x, geometry.dims.y, geometry.dims.z);
     }
     const auto draw = [&](const View& view, const DirectOptions& how) -> DirectResult {

@@ -1,4 +1,4 @@
-// A device that is lost: opened anew, once a picture.
+// Renderer: recovers from a lost device, once per picture.
 #include <utility>
 
 #include "engine/error.h"
@@ -9,8 +9,8 @@ namespace {
 
 [[noreturn]] void give_up(const std::string& device) {
     throw DeviceLost(
-        fmt::format("Vulkan: the device{} was lost (ErrorDeviceLost), and again after it was opened anew; its driver "
-                    "ends what takes too long or fails: try a smaller --size or another --device, see the system's log",
+        fmt::format("Vulkan: the device{} was lost (ErrorDeviceLost), and again after it was reopened; a driver stops "
+                    "work that takes too long or fails: see the system's log, try a smaller --size or another --device",
                     device.empty() ? "" : " " + device));
 }
 
@@ -28,27 +28,27 @@ std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attemp
     }
 }
 
-void Renderer::lose_device() {
+void Renderer::simulate_device_loss() {
     state_->lose = true;
 }
 
 RenderResult Renderer::draw_again_if_lost(const std::function<RenderResult()>& draw) {
     for (bool again = false;; again = true) {
         try {
-            if (std::exchange(state_->lose, false)) throw vk::DeviceLostError("as it was asked for");
+            if (std::exchange(state_->lose, false)) throw vk::DeviceLostError("simulated");
             return draw();
         } catch (const vk::DeviceLostError&) {
-            // Of a picture in parts the others have gone on.
-            if (again || state_->orders.exchange != nullptr) give_up(device().name);
+            // The other parts of a divided picture have continued and cannot repeat it.
+            if (again || state_->options.exchange != nullptr) give_up(device().name);
         } catch (const vk::SystemError& error) {
             fail("Vulkan: {}", error.what());
         }
-        fmt::print(stderr, "edgesplat: warning: the device {} was lost; it is opened anew and the picture made again\n",
+        fmt::print(stderr, "edgesplat: warning: the device {} was lost; it is reopened and the picture drawn again\n",
                    device().name);
-        // What was asked of it is asked of the new one.
+        // Options and volume are carried over to the new device.
         auto fresh = open_state(state_->session.choice(), 1, validation_messages());
-        fresh->orders = state_->orders;
-        fresh->session.commands().count_draws(fresh->orders.counting);
+        fresh->options = state_->options;
+        fresh->session.commands().count_draws(fresh->options.counting);
         fresh->splats.set_volume(state_->splats.original());
         state_ = std::move(fresh);
     }

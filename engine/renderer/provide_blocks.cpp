@@ -1,4 +1,4 @@
-// SplatProvider: the splats of a picture block by block, but for blocks that it does not show.
+// SplatProvider: collects a picture's splats block by block, skipping blocks that it does not show.
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -12,7 +12,7 @@
 namespace edgesplat {
 namespace {
 
-/// Whether what lies outside the picture counts in it.
+/// Whether splats outside the picture matter: they may cast shadows.
 bool needs_everything(const Scene& scene) {
     return !shadow_lights(scene).empty();
 }
@@ -23,13 +23,13 @@ std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameReq
     const Settings drawn = drawn_settings(request);
     const double reach = kernel_reach(drawn);
     CollectionPlan wanted = plan_collection(*request.volume, request.scene, drawn, true);
-    // A mask of what is buried may be needed or not.
+    // Assume that a mask of buried voxels is needed unless the settings exclude it.
     wanted.buried = drawn.cull_buried;
     wanted.blocks = true;
     const auto fits = [&](std::uint64_t splats) {
         const SplatCount count{SplatCount::From::Voxels, {splats, glm::ivec3(0), request.volume->geometry.dims - 1}};
         return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
-                           orders_->memory_budget)
+                           options_->memory_budget)
             .fits();
     };
     if (!fits(0)) return std::nullopt;
@@ -45,8 +45,7 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
                                                          double& milliseconds) {
     const Volume& original = *levels_.original();
     if (occludes_ambient(request.scene)) {
-        fail("occlusion: {} is held on the device block by block, expected a volume that fits as a whole",
-             original.name);
+        fail("occlusion: {} is on the device block by block, expected a volume that fits as a whole", original.name);
     }
     const auto start = Clock::now();
     const auto most = most_splats_in_blocks(request);
@@ -72,13 +71,13 @@ SplatProvider::Gathered SplatProvider::collect_blocks(const FrameRequest& reques
                             wanted);
     }
     const std::vector<std::size_t> needed = blocks_shown(request);
-    // Room for more than may come is given back.
+    // Give back room beyond the limit.
     if (splats.room() > most_splats) splats.drop_blocks(needed, true);
     if (splats.lists().splat_count > most_splats) return Gathered::TooMany;
     std::vector<std::size_t> missing;
     std::ranges::copy_if(needed, std::back_inserter(missing), [&](std::size_t i) { return !splats.holds(i); });
     if (missing.empty()) return Gathered::All;
-    // Whatever ends this early has added blocks, and the next picture may show no other.
+    // An early end, too, has added blocks; the next picture may need only these, so the box must be right.
     try {
         const Gathered gathered = collect_missing(request, needed, std::move(missing), most_splats, patience);
         splats.bound_blocks(shown_.volume);
@@ -97,16 +96,16 @@ SplatProvider::Gathered SplatProvider::collect_missing(const FrameRequest& reque
     drawer_->targets().drop();
     shown_.splats.bind(shown_.volume);
     shown_.splats.forget_light();
-    const bool hides = may_hide_blocks(request);
-    if (hides) sort_by_depth(request, missing);
-    double looking = 0;
+    const bool skips_hidden = can_skip_hidden_blocks(request);
+    if (skips_hidden) sort_by_depth(request, missing);
+    double testing = 0;
     for (std::size_t number = 0; number < missing.size(); ++number) {
-        orders_->heed_interruption();
-        // The nearest may hide all else, so the first looks come soon; together they take a fifth of the time at most.
-        if (hides && 4 * looking <= milliseconds_since(start) - looking) {
-            const auto look = Clock::now();
-            leave_hidden_blocks(request, missing, number);
-            looking += milliseconds_since(look);
+        options_->throw_if_interrupted();
+        // Near blocks may occlude the rest, so visibility is tested early; the tests take at most a fifth of the time.
+        if (skips_hidden && 4 * testing <= milliseconds_since(start) - testing) {
+            const auto test_start = Clock::now();
+            skip_hidden_blocks(request, missing, number);
+            testing += milliseconds_since(test_start);
             if (number == missing.size()) break;
         }
         if (number > 0 && milliseconds_since(start) > patience) return Gathered::Unfinished;
@@ -127,13 +126,13 @@ std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request
         const CollectionBlock& block = blocks[i];
         if (needs_everything(request.scene) || view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
     }
-    // Light comes from all splats.
+    // Shadows need all splats.
     if (!divides_blocks_ || needs_everything(request.scene)) return shown;
     const double thickness = sheet_thickness(geometry, request.camera, drawn_settings(request));
     std::vector<CollectionBlock> cores;
     for (const std::size_t i : shown)
         cores.push_back(blocks[i]);
-    const glm::ivec2 slab = slab_of_part(geometry, request.camera, thickness, cores, orders_->exchange->part());
+    const glm::ivec2 slab = slab_of_part(geometry, request.camera, thickness, cores, options_->exchange->part());
     drawer_->set_slab(slab);
     std::erase_if(shown, [&](std::size_t i) {
         const glm::ivec2 sheets = sheets_of_block(geometry, request.camera, thickness, reach, blocks[i]);
@@ -142,10 +141,11 @@ std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request
     return shown;
 }
 
-bool SplatProvider::may_hide_blocks(const FrameRequest& request) const {
+bool SplatProvider::can_skip_hidden_blocks(const FrameRequest& request) const {
     const Settings drawn = drawn_settings(request);
-    // Parts, lights and optical depth need what cannot be seen; several samples are as many pictures.
-    return orders_->exchange == nullptr && shadow_lights(request.scene).empty() && !request.outputs.tau &&
+    // Parts, shadows and optical depth need occluded splats; several samples are several pictures, each with its own
+    // view.
+    return options_->exchange == nullptr && shadow_lights(request.scene).empty() && !request.outputs.tau &&
            request.scene.effects.samples == 1 && drawn.saturation < 1 && drawn.sheet_format == SheetFormat::Tiles;
 }
 
@@ -158,13 +158,13 @@ void SplatProvider::sort_by_depth(const FrameRequest& request, std::vector<std::
     });
 }
 
-void SplatProvider::leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing,
-                                        std::size_t first) {
+void SplatProvider::skip_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing,
+                                       std::size_t first) {
     if (shown_.splats.lists().splat_count == 0 || first + 1 >= missing.size()) return;
     const Settings drawn = drawn_settings(request);
     const auto& geometry = shown_.volume.volume()->geometry;
     const auto blocks = shown_.splats.blocks();
-    // Whatever is missing lies behind these sheets, so that pixels which they close are closed in the whole picture.
+    // All missing blocks lie behind these sheets, so pixels that they saturate are saturated in the whole picture.
     const glm::ivec2 sheets =
         sheets_of_block(geometry, request.camera, sheet_thickness(geometry, request.camera, drawn), kernel_reach(drawn),
                         blocks[missing[first]]);

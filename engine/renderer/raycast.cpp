@@ -1,4 +1,4 @@
-// Renderer::raycast: the other way to look at the same scene.
+// Renderer::raycast: draws a scene by ray casting.
 #include "engine/clock.h"
 #include "engine/error.h"
 #include "engine/overlays/overlays.h"
@@ -18,8 +18,8 @@ RenderResult Renderer::raycast(const Scene& scene, const Camera& camera, const S
     if (width < 1 || height < 1 || width > 16384 || height > 16384)
         fail("size: {}x{}, expected 1 to 16384 pixels per side", width, height);
     validate(scene);
-    if (const std::string beyond = beyond_ray_casting(scene); !beyond.empty())
-        fail("raycast: {} cannot be shown, expected a scene without", beyond);
+    if (const std::string beyond = raycast_obstacle(scene); !beyond.empty())
+        fail("raycast: {} is not supported, expected a scene without it", beyond);
     validate(wanted);
     validate(raycast);
     return draw_again_if_lost([&] { return raycast_once(scene, camera, wanted, raycast, width, height); });
@@ -30,7 +30,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     RendererState& self = *state_;
     gpu::Commands& commands = self.session.commands();
     const gpu::Device& device = self.session.device();
-    const Settings settings = drawn_as(wanted);
+    const Settings settings = canonical_settings(wanted);
     RenderResult result;
     auto& stats = result.stats;
     const std::uint64_t submissions_before = commands.submissions();

@@ -8,13 +8,13 @@
 
 namespace edgesplat {
 
-SplatProvider::SplatProvider(DeviceSession& session, const Orders& orders, PictureDrawer& drawer,
+SplatProvider::SplatProvider(DeviceSession& session, const RenderOptions& options, PictureDrawer& drawer,
                              std::optional<RaycastResources>& rays)
-    : session_(&session), orders_(&orders), drawer_(&drawer), rays_(&rays), shown_(session), other_(session) {}
+    : session_(&session), options_(&options), drawer_(&drawer), rays_(&rays), shown_(session), other_(session) {}
 
 void SplatProvider::set_volume(std::shared_ptr<const Volume> volume) {
     if (take_changes(volume)) return;
-    // The same object's samples may have been written to: nothing of it stays.
+    // Even the same object may have new samples, so everything is freed.
     drawer_->targets().drop();
     rays_->reset();
     checked_.clear();
@@ -68,23 +68,23 @@ std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& 
     return SplatCount{SplatCount::From::Frame, shown_.splats.lists().extent()};
 }
 
-std::optional<MemoryNeed> SplatProvider::beyond_memory(const FrameRequest& request) {
+std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& request) {
     const double reach = kernel_reach(drawn_settings(request));
     const CollectionPlan wanted = planned_collection(request);
     const auto known = collected_splats(wanted);
     const SplatCount splats = known.value_or(most_splats(wanted));
     FrameForecast forecast = forecast_frame(request, wanted, splats, reach, session_->profile());
-    std::vector<std::pair<std::string, std::uint64_t>> asked;
+    std::vector<std::pair<std::string, std::uint64_t>> needed;
     for (const PlannedResource& resource : forecast.resources)
-        asked.emplace_back(resource.text.name, resource.bytes);
-    if (asked == checked_) return checked_need_;
-    MemoryNeed need = memory_need(session_->device(), forecast, orders_->memory_budget);
-    // The bound by the number of voxels is too high for most volumes; counting takes longer.
+        needed.emplace_back(resource.text.name, resource.bytes);
+    if (needed == checked_) return checked_need_;
+    MemoryNeed need = memory_need(session_->device(), forecast, options_->memory_budget);
+    // The upper bound by the number of voxels is too high for most volumes; exact counting takes longer.
     if (!need.fits() && !known) {
         forecast = forecast_frame(request, wanted, count_splats(*request.volume, wanted), reach, session_->profile());
-        need = memory_need(session_->device(), forecast, orders_->memory_budget);
+        need = memory_need(session_->device(), forecast, options_->memory_budget);
     }
-    checked_ = std::move(asked);
+    checked_ = std::move(needed);
     checked_need_ = need.fits() ? std::nullopt : std::optional(std::move(need));
     return checked_need_;
 }
@@ -95,12 +95,12 @@ void SplatProvider::settle(FrameRequest& request, int finest) {
     const Volume& volume = *request.volume;
     const glm::ivec3 dims = volume.geometry.dims;
     const bool many = std::max({dims.x, dims.y, dims.z}) > kBlockCore;
-    const bool wanted = std::isfinite(orders_->patience);
+    const bool wanted = std::isfinite(options_->patience);
     bool blocks = volume.values.empty() || (wanted && many && volume.geometry.voxel_count() > kCoarseVoxels);
     if (!blocks) {
-        const auto need = beyond_memory(request);
+        const auto need = memory_shortfall(request);
         blocks = need && many && most_splats_in_blocks(request).value_or(0) > 0;
-        if (need && !blocks) refuse_memory(session_->device(), request, *need, orders_->memory_budget);
+        if (need && !blocks) refuse_memory(session_->device(), request, *need, options_->memory_budget);
     }
     hold_in_blocks(blocks);
 }
@@ -126,10 +126,10 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
         if (shown_.volume.in_blocks())
             gathered = collect_in_blocks(request, patience, stats.setup_milliseconds);
         else
-            stats.setup_milliseconds += provide_whole(request);
-        if (!too_many_somewhere(gathered)) return gathered;
-        const auto need = request.volume->values.empty() ? std::nullopt : beyond_memory(request);
-        if (need) refuse_memory(session_->device(), request, *need, orders_->memory_budget);
+            stats.setup_milliseconds += provide_undivided(request);
+        if (!any_part_overflows(gathered)) return gathered;
+        const auto need = request.volume->values.empty() ? std::nullopt : memory_shortfall(request);
+        if (need) refuse_memory(session_->device(), request, *need, options_->memory_budget);
         if (at + 1 == count) {
             fail("{}: the picture does not fit into the device's memory at any of its {} resolutions", original.name,
                  count);
@@ -137,7 +137,7 @@ SplatProvider::Gathered SplatProvider::provide_level(FrameRequest request, int f
     }
 }
 
-double SplatProvider::provide_whole(const FrameRequest& request) {
+double SplatProvider::provide_undivided(const FrameRequest& request) {
     const auto start = Clock::now();
     const Settings settings = drawn_settings(request);
     const bool found = shown_.provide(request.scene, settings, keeps_buried(request), cost_);
@@ -147,10 +147,10 @@ double SplatProvider::provide_whole(const FrameRequest& request) {
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
     cost_ = {};
-    if (other_.volume.volume()) std::swap(shown_, other_);  // go on with what was on its way
+    if (other_.volume.volume()) std::swap(shown_, other_);  // resume the unfinished level
     stats.wanted_level =
         level_for(original()->geometry, levels_.count(), request.camera, request.size, drawn_settings(request).detail);
-    if (provide_level(request, stats.wanted_level, orders_->patience, stats) == Gathered::All) {
+    if (provide_level(request, stats.wanted_level, options_->patience, stats) == Gathered::All) {
         other_ = LevelStore(*session_);
     } else {
         std::swap(shown_, other_);
@@ -169,7 +169,7 @@ void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
 
 bool SplatProvider::agree_on_level(int& finest) {
     drawer_->set_slab({});
-    PartExchange* const exchange = orders_->exchange;
+    PartExchange* const exchange = options_->exchange;
     const int level = shown_.volume.level();
     divides_blocks_ = exchange && exchange->largest(shown_.volume.in_blocks() ? 0 : 1) == 0;
     const int coarsest = exchange ? exchange->largest(level) : level;
@@ -178,13 +178,13 @@ bool SplatProvider::agree_on_level(int& finest) {
     return false;
 }
 
-bool SplatProvider::too_many_somewhere(Gathered gathered) {
-    PartExchange* const exchange = orders_->exchange;
+bool SplatProvider::any_part_overflows(Gathered gathered) {
+    PartExchange* const exchange = options_->exchange;
     const bool here = gathered == Gathered::TooMany;
     if (!exchange) return here;
     if (exchange->largest(here ? 1 : 0) > 0) return true;
     if (!divides_blocks_) return false;
-    // Sheets and what the device rounds are counted from the box of the splats.
+    // All parts need the same box, since sheet numbers and the device's rounding depend on it.
     const SplatExtent extent = shown_.splats.lists().extent();
     glm::ivec3 low = extent.low, high = extent.high;
     const bool none = extent.count == 0;

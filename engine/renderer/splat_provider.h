@@ -1,5 +1,5 @@
-// Sees to it that the device holds the splats of a picture: at the finest level of the volume whose splats fit, as a
-// whole or in blocks.
+// Keeps a picture's splats on the device, at the finest level of the volume whose splats fit: from the whole volume or
+// block by block.
 #pragma once
 
 #include "engine/forecast/memory.h"
@@ -13,82 +13,84 @@ namespace edgesplat {
 
 class SplatProvider {
   public:
-    /// `rays`: what the ray caster keeps of the volume, which goes with it.
-    SplatProvider(DeviceSession& session, const Orders& orders, PictureDrawer& drawer,
+    /// `rays`: the ray caster's resources, which are freed with the volume.
+    SplatProvider(DeviceSession& session, const RenderOptions& options, PictureDrawer& drawer,
                   std::optional<RaycastResources>& rays);
 
-    /// Null: none. What is held of the one before goes, or most of it stays, where the two differ in a box at most.
+    /// Null: no volume. Frees the last volume's resources, or keeps most of them if the new volume differs only in a
+    /// box.
     void set_volume(std::shared_ptr<const Volume> volume);
     const std::shared_ptr<const Volume>& original() const { return levels_.original(); }
-    /// What pictures are made of.
+    /// The level that pictures show.
     const LevelStore& level() const { return shown_; }
 
-    /// The splats that a picture takes, or those of a coarser level while they are on their way. Throws Error.
+    /// Provides a picture's splats, or those of a coarser level while they are still being collected. Throws Error.
     void provide(const FrameRequest& request, RenderStats& stats);
-    /// The volume itself as a whole, for rays; with the spline through its samples. Whether anything was missing.
+    /// Uploads the whole volume for ray casting; with `coefficients` also its spline. Returns whether any were missing.
     bool provide_volume(bool coefficients);
-    /// Frees what pictures with these settings do not use.
+    /// Frees resources that pictures with these settings do not use.
     void release_unused(const Settings& drawn);
 
-    /// The splats that are collected, if they are those of the plan.
+    /// The collected splats; nullopt if they are not those of the plan.
     std::optional<SplatCount> collected_splats(const CollectionPlan& wanted) const;
-    /// After the memory budget was changed.
+    /// Forgets the last memory check; call after the memory budget changed.
     void forget_checked() { checked_.clear(); }
 
   private:
-    /// What became of the splats that a picture takes.
+    /// Result of collecting a picture's splats.
     enum class Gathered { All, Unfinished, TooMany };
 
     bool take_changes(const std::shared_ptr<const Volume>& next);
     void use_level(int level);
     void hold_in_blocks(bool blocks);
-    /// Level, and whether the device holds the volume whole, for a picture; `request.volume` is that level's then.
-    /// Throws Error if nothing fits into the device's memory.
+    /// Selects the level `finest`, and whether it is on the device as a whole or in blocks. Sets `request.volume` to
+    /// the level. Throws Error if neither fits into the device's memory.
     void settle(FrameRequest& request, int finest);
     Gathered provide_level(FrameRequest request, int finest, double patience, RenderStats& stats);
 
-    /// What a request takes of the device's memory, if it does not fit with the volume as a whole.
-    std::optional<MemoryNeed> beyond_memory(const FrameRequest& request);
-    /// The most splats that fit if the volume is held block by block; nothing if not even none do.
+    /// The memory that a request needs with the volume as a whole; nullopt if it fits.
+    std::optional<MemoryNeed> memory_shortfall(const FrameRequest& request);
+    /// Maximum number of splats that fit with the volume in blocks; nullopt if not even 0 splats fit.
     std::optional<std::uint64_t> most_splats_in_blocks(const FrameRequest& request) const;
 
-    /// Passes 1 to 2d, of the volume as a whole. Milliseconds, 0 where none ran.
-    double provide_whole(const FrameRequest& request);
-    /// Passes 1 to 2d block by block.
+    /// Runs passes 1 to 2d for the volume as a whole. Returns the time in ms, 0 if none ran.
+    double provide_undivided(const FrameRequest& request);
+    /// Runs passes 1 to 2d block by block.
     Gathered collect_in_blocks(const FrameRequest& request, double patience, double& milliseconds);
-    /// Passes 1 and 2 for the blocks that a picture shows, a block at least, and no more once `patience` milliseconds
-    /// are over; blocks that it does not show are dropped where there is no room.
+    /// Runs passes 1 and 2 for the blocks that a picture shows: at least one block, then until `patience` milliseconds
+    /// are over. Without room, blocks that it does not show are dropped.
     Gathered collect_blocks(const FrameRequest& request, const CollectionPlan& wanted, std::uint64_t most_splats,
                             double patience);
-    /// The same for those of the blocks `needed` that are missing.
+    /// The same for the blocks in `missing`, a subset of `needed`.
     Gathered collect_missing(const FrameRequest& request, const std::vector<std::size_t>& needed,
                              std::vector<std::size_t> missing, std::uint64_t most_splats, double patience);
-    /// The blocks of a picture by number; of one that is drawn in parts, those of this part's slab.
+    /// Numbers of the blocks that a picture shows; for a divided picture, those of this part's slab.
     std::vector<std::size_t> blocks_shown(const FrameRequest& request);
-    /// Whether blocks that cannot be seen can be left unread.
-    bool may_hide_blocks(const FrameRequest& request) const;
-    /// Those first that may show nearest to the eye.
+    /// Whether occluded blocks need not be read.
+    bool can_skip_hidden_blocks(const FrameRequest& request) const;
+    /// Sorts blocks by their first sheet, nearest to the eye first.
     void sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const;
-    /// Draws the splats in front of the missing blocks from number `first` on, and drops those of them that these
-    /// splats hide in every pixel.
-    void leave_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
+    /// Draws the splats in front of the missing blocks from index `first` on; removes the blocks from `missing` that
+    /// are occluded in every pixel.
+    void skip_hidden_blocks(const FrameRequest& request, std::vector<std::size_t>& missing, std::size_t first);
 
-    /// Whether all that draw parts of a picture have the volume at the same level; else `finest` is where they may.
+    /// Whether all parts of a picture use the same level; if not, sets `finest` to the coarsest of them.
     bool agree_on_level(int& finest);
-    /// Whether a part of the picture has too many splats; if none has, the box becomes that of all parts' splats.
-    bool too_many_somewhere(Gathered gathered);
+    /// Whether any part of the picture has too many splats. If none has, the bounding box is widened to that of all
+    /// parts' splats.
+    bool any_part_overflows(Gathered gathered);
 
     DeviceSession* session_;
-    const Orders* orders_;
+    const RenderOptions* options_;
     PictureDrawer* drawer_;
     std::optional<RaycastResources>* rays_;
     VolumeLevels levels_;
     LevelStore shown_;
-    LevelStore other_;             ///< a level on its way while a coarser one is shown; empty: none
+    LevelStore other_;             ///< a level being collected while a coarser one is shown; empty: none
     SetupCost cost_;               ///< of the picture being provided
-    bool divides_blocks_ = false;  ///< all that draw parts of the picture hold the volume block by block
-    std::vector<std::pair<std::string, std::uint64_t>> checked_;  ///< resources that were last asked for
-    std::optional<MemoryNeed> checked_need_;                      ///< what beyond_memory found of them
+    bool divides_blocks_ = false;  ///< all parts of the picture have the volume in blocks
+    std::vector<std::pair<std::string, std::uint64_t>> checked_;  ///< resources of the last memory check
+    std::optional<MemoryNeed> checked_need_;                      ///< memory_shortfall()'s result for them
 };
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// What a Renderer owns, one owner for each lifetime.
+// The state of a Renderer: one owner for each lifetime.
 #pragma once
 
 #include "engine/renderer/splat_provider.h"
@@ -8,18 +8,19 @@ namespace edgesplat {
 struct RendererState {
     explicit RendererState(const DeviceChoice& choice, std::uint64_t messages_before = 0)
         : session(choice, messages_before) {
-        orders.check_numbers = choice.check_numbers;
+        options.check_numbers = choice.check_numbers;
     }
 
-    Orders orders;
+    RenderOptions options;
     DeviceSession session;
-    PictureDrawer drawer{session, orders};
-    std::optional<RaycastResources> rays;  ///< of the volume, once a picture was made that way
-    SplatProvider splats{session, orders, drawer, rays};
-    bool lose = false;  ///< see Renderer::lose_device
+    PictureDrawer drawer{session, options};
+    std::optional<RaycastResources> rays;  ///< of the volume; set after the first ray-cast picture
+    SplatProvider splats{session, options, drawer, rays};
+    bool lose = false;  ///< the next picture fails once: Renderer::simulate_device_loss
 };
 
-/// Opens the device; where it is lost meanwhile, up to so many times. Throws Error, DeviceLost in the end.
+/// Opens the device; if it is lost meanwhile, tries up to `attempts` times. Throws Error, or DeviceLost after the last
+/// attempt.
 std::unique_ptr<RendererState> open_state(const DeviceChoice& choice, int attempts, std::uint64_t messages_before = 0);
 
 }  // namespace edgesplat

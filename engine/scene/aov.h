@@ -1,4 +1,4 @@
-// Extra outputs of a picture, a row each: what scenes, programs, frames and files know of them comes from it.
+// The table of extra outputs (AOVs). Scenes, programs, frames and files read their rows from it.
 #pragma once
 
 #include <array>
@@ -10,21 +10,21 @@
 
 namespace edgesplat {
 
-/// Extra outputs of a frame. None is made unless asked for.
+/// The requested extra outputs of a frame; none by default.
 struct AovRequest {
-    bool tau = false;       ///< optical depth along the pixel's ray, 1 channel, unsaturated, nothing buried dropped
-    bool depth = false;     ///< mean distance along the view axis, mm, 1 channel; 0 where nothing is hit
-    bool normal = false;    ///< mean world normal of what is seen, 3 channels, unit length or 0
-    bool distance = false;  ///< mean signed distance of the seen voxels to their edge, voxels, 1 channel
+    bool tau = false;    ///< optical depth along the pixel's ray, 1 channel; without saturation, buried voxels included
+    bool depth = false;  ///< mean distance along the view axis, mm, 1 channel; 0 where nothing is hit
+    bool normal = false;    ///< mean world normal of the visible matter, 3 channels, unit length or 0
+    bool distance = false;  ///< mean signed distance of the visible voxels to their edge, voxels, 1 channel
 };
 
 struct Aov {
-    std::string_view name;  ///< in scenes and on the command line
-    std::string_view help;  ///< what it shows, in one line
+    std::string_view name;  ///< name in scenes and on the command line
+    std::string_view help;  ///< description in one line
     bool AovRequest::*wanted;
-    std::uint32_t payload;  ///< shader::PAYLOAD_*: what a draw sums for it, and for others of that payload
-    int first;              ///< of its channels in that draw's picture
-    std::array<const char*, 3> channels;  ///< their names in an .exr; null beyond the last
+    std::uint32_t payload;  ///< shader::PAYLOAD_* of the draw that computes it; outputs may share a payload
+    int first;              ///< its first channel in that draw's picture
+    std::array<const char*, 3> channels;  ///< channel names in an .exr; null beyond the last
     int count() const { return channels[1] == nullptr ? 1 : channels[2] == nullptr ? 2 : 3; }
 };
 
@@ -33,13 +33,13 @@ std::span<const Aov, kAovCount> aovs();
 
 std::vector<std::string> aov_names();
 
-/// Those of the names; others are left out.
+/// The request for these names; unknown names are ignored.
 AovRequest aov_request(std::span<const std::string> names);
 
-/// The payloads that a request draws, colour first: shader::PAYLOAD_*.
+/// The payloads (shader::PAYLOAD_*) that a request needs, colour first.
 std::vector<std::uint32_t> payloads_of(const AovRequest& outputs);
 
-/// "colour", or the names of the outputs that a draw is for.
+/// "colour", or the names of the outputs that this payload computes.
 std::string payload_name(std::uint32_t payload);
 
 }  // namespace edgesplat

@@ -13,7 +13,7 @@ bool finite(const glm::dvec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Unit vector of v; scaled first, so that neither tiny nor huge vectors are lost in the square.
+/// Unit vector of v; scaled first to avoid overflow and underflow of the square.
 glm::dvec3 direction_of(const glm::dvec3& v) {
     const double largest = std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
     return glm::normalize(v / largest);

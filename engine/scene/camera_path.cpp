@@ -11,30 +11,30 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kSteps = 16;            ///< in which the up direction is carried from key to key
-constexpr double kRunsThrough = 0.1;  ///< of the keys' distances to their targets: nearer, the view turns round
-constexpr double kAlongUp = 0.985;    ///< cosine (10 degrees) from which a view counts as along `up`
+constexpr int kSteps = 16;            ///< steps of the transport of the up direction between two keys
+constexpr double kRunsThrough = 0.1;  ///< share of the keys' distances to their targets: below it, the view is rotated
+constexpr double kAlongUp = 0.985;    ///< cosine (10 degrees) above which a view counts as parallel to `up`
 
-/// The turn that takes one unit vector to another by the shortest way, applied to v. Not for opposite ones.
+/// Applies to v the shortest rotation from one unit vector to another. Not for opposite vectors.
 glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& from, const glm::dvec3& to) {
     const glm::dvec3 axis = glm::cross(from, to);
     const double cosine = glm::dot(from, to);
     return v * cosine + glm::cross(axis, v) + axis * (glm::dot(axis, v) / (1 + cosine));
 }
 
-/// v turned right-handed by an angle about a unit axis (Rodrigues).
+/// v rotated right-handed by an angle about a unit axis (Rodrigues).
 glm::dvec3 turned_about(const glm::dvec3& v, double angle, const glm::dvec3& axis) {
     const double cosine = std::cos(angle), sine = std::sin(angle);
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));
 }
 
-/// v turned about an axis whose length is the angle.
+/// v rotated about an axis whose length is the angle.
 glm::dvec3 turned_about(const glm::dvec3& v, const glm::dvec3& rotation) {
     const double angle = glm::length(rotation);
     return angle > 0 ? turned_about(v, angle, rotation / angle) : v;
 }
 
-/// Angle from a to b about the unit vector that both are perpendicular to, (-pi, pi].
+/// Angle from a to b about a unit vector perpendicular to both, (-pi, pi].
 double angle_about(const glm::dvec3& axis, const glm::dvec3& a, const glm::dvec3& b) {
     return std::atan2(glm::dot(axis, glm::cross(a, b)), glm::dot(a, b));
 }
@@ -43,7 +43,7 @@ Camera camera_of(const CameraKey& key) {
     return {key.eye, key.target - key.eye, key.up, key.fov};
 }
 
-/// A path's curves.
+/// The interpolating curves of a path.
 class Curves {
   public:
     explicit Curves(const CameraPath& path) : loop_(path.loop) {
@@ -73,7 +73,7 @@ class Curves {
     }
 
   private:
-    /// One up for all keys is kept as it is where the view never comes near it.
+    /// If all keys have the same up and the view never comes near it, uses it unchanged.
     void keep_upright(const CameraPath& path) {
         const glm::dvec3 up = glm::normalize(path.keys.front().up);
         for (const CameraKey& key : path.keys)
@@ -86,12 +86,12 @@ class Curves {
         upright_ = up;
     }
 
-    /// What lies between two keys.
+    /// The section between two keys.
     struct Span {
         std::size_t first = 0;
-        bool turns_round = false;                  ///< the eye would run through its target
+        bool turns_round = false;                  ///< the eye would pass through its target, so the view is rotated
         glm::dvec3 turn{0};                        ///< axis times angle from the first view to the second
-        glm::dvec3 first_rate{0}, second_rate{0};  ///< of the views: axis times radians per span
+        glm::dvec3 first_rate{0}, second_rate{0};  ///< rates of the view: axis times radians per span
     };
 
     glm::dvec3 look_at_key(std::size_t i) const { return target_.values[i] - eye_.values[i]; }
@@ -121,7 +121,7 @@ class Curves {
         return span;
     }
 
-    /// From the eye towards the target; mm where the target is followed.
+    /// View vector from the eye towards the target; mm if the target is followed.
     glm::dvec3 look(const Span& span, double u) const {
         if (!span.turns_round) return direct_look(span.first, u);
         const hermite::Weights w(u);
@@ -130,7 +130,7 @@ class Curves {
         return turned_about(view, span.second_rate * w.second_rate);
     }
 
-    /// The first key's up carried along the view to u without rolling.
+    /// The first key's up, transported along the view to u without roll.
     glm::dvec3 carried_up(const Span& span, double u) const {
         const int steps = std::min(static_cast<int>(u * kSteps), kSteps - 1);
         glm::dvec3 view = glm::normalize(look(span, 0)), up = up_[span.first];
@@ -141,21 +141,21 @@ class Curves {
         };
         for (int k = 1; k <= steps; ++k)
             carry(double(k) / kSteps);
-        // Within a step the turns from both its ends are blended, so that the rate is continuous from step to step.
+        // Blends the rotations from both ends of a step, so that the rate is continuous.
         const glm::dvec3 view0 = view, up0 = up, here = glm::normalize(look(span, u));
         carry((steps + 1.0) / kSteps);
         const double weight = hermite::Weights(u * kSteps - steps).second;
         return glm::normalize(glm::mix(turned(up0, view0, here), turned(up, view, here), weight));
     }
 
-    /// By how much the up direction has to roll between two keys, radians.
+    /// Roll of the up direction between two keys, radians.
     double roll(const Span& span) const {
         const glm::dvec3 view = glm::normalize(look_at_key(span.first + 1));
         return angle_about(view, carried_up(span, 1), up_[span.first + 1]);
     }
 
     glm::dvec3 up(const Span& span, std::size_t i, double u) const {
-        // Rolls of this span and its neighbours add up to a curve with its own rates at the keys.
+        // The rolls of this span and its neighbours form a curve with its own rates at the keys.
         const std::size_t spans = up_.size() - 1;
         const bool before = i > 0 || loop_, after = i + 1 < spans || loop_;
         hermite::Keys<double> rolls;
@@ -179,10 +179,10 @@ class Curves {
     hermite::Keys<glm::dvec3> eye_, target_;
     hermite::Keys<double> fov_;
     std::optional<glm::dvec3> upright_;
-    std::vector<glm::dvec3> up_;  ///< of each key, unit, perpendicular to its view
+    std::vector<glm::dvec3> up_;  ///< up of each key: unit, perpendicular to its view
 };
 
-/// The last of the ascending times that is not after `time`.
+/// Index of the last of the ascending times that is <= `time`.
 std::size_t key_before(const std::vector<double>& times, double time) {
     return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), time) - times.begin()) - 1;
 }
@@ -197,7 +197,7 @@ glm::dvec3 unit(const char* what, const char* field, const glm::dvec3& v) {
     return glm::normalize(v);
 }
 
-/// A point of the centripetal Catmull-Rom curve between p[1] and p[2] (Barry and Goldman's pyramid), u in [0, 1].
+/// Point of the centripetal Catmull-Rom curve between p[1] and p[2] (Barry and Goldman's pyramid), u in [0, 1].
 glm::dvec3 catmull_rom(const std::array<glm::dvec3, 4>& p, double u) {
     std::array<double, 4> t{};
     for (std::size_t k = 1; k < 4; ++k)
@@ -211,12 +211,12 @@ glm::dvec3 catmull_rom(const std::array<glm::dvec3, 4>& p, double u) {
     return between(between(a, b, t[0], t[2]), between(b, c, t[1], t[3]), t[1], t[2]);
 }
 
-/// A curve as a polyline fine enough to be measured, with the length up to each of its points.
+/// A curve as a fine polyline, with the arc length at each point.
 struct MeasuredCurve {
     std::vector<glm::dvec3> points;
     std::vector<double> lengths;
 
-    /// The point at a length; beyond the end straight on.
+    /// The point at an arc length; continues straight beyond the end.
     glm::dvec3 at(double length) const {
         const std::size_t last = points.size() - 1;
         const std::size_t i = std::min(key_before(lengths, std::max(length, 0.0)), last - 1);
@@ -225,7 +225,7 @@ struct MeasuredCurve {
 };
 
 MeasuredCurve measured_curve(const std::vector<glm::dvec3>& points) {
-    constexpr int kSamples = 512;  // a span
+    constexpr int kSamples = 512;  // per span
     MeasuredCurve curve;
     const auto add = [&](const glm::dvec3& p) {
         const double step = curve.points.empty() ? 0 : glm::length(p - curve.points.back());
@@ -255,8 +255,7 @@ void validate(const CameraPath& path) {
         if (i > 0 && !(key.time > path.keys[i - 1].time))
             fail("camera path key {} time: {} s is not after the key before, {} s", i, key.time, path.keys[i - 1].time);
         if (key.target == key.eye)
-            fail("camera path key {} target: ({}, {}, {}) is where the eye is", i, key.target.x, key.target.y,
-                 key.target.z);
+            fail("camera path key {} target: ({}, {}, {}) equals the eye", i, key.target.x, key.target.y, key.target.z);
         unit(fmt::format("camera path key {}", i).c_str(), "up", key.up);
         try {
             camera_frame(camera_of(key));
@@ -267,7 +266,7 @@ void validate(const CameraPath& path) {
     const CameraKey &first = path.keys.front(), &last = path.keys.back();
     if (path.loop && (path.keys.size() < 2 || first.eye != last.eye || first.target != last.target ||
                       first.up != last.up || first.fov != last.fov))
-        fail("camera path loop: the last key's camera is not the first one's; expected it repeated");
+        fail("camera path loop: the last key's camera differs from the first key's; expected the same camera");
 }
 
 double duration(const CameraPath& path) {
@@ -301,7 +300,7 @@ CameraPath orbit_path(const Orbit& orbit) {
     const glm::dvec3 axis = unit("orbit", "axis", orbit.axis);
     check_positive("orbit", "seconds", orbit.seconds);
     if (!(std::abs(orbit.degrees) > 0 && std::abs(orbit.degrees) <= 36000))
-        fail("orbit degrees: {} is not other than 0 and at most 36000 either way", orbit.degrees);
+        fail("orbit degrees: {} is 0 or outside [-36000, 36000]", orbit.degrees);
     const CameraFrame start = camera_frame(orbit.start);
     const int spans = std::max(4, static_cast<int>(std::ceil(std::abs(orbit.degrees) / kDegreesPerKey - 1e-9)));
     CameraPath path;
@@ -317,7 +316,7 @@ CameraPath orbit_path(const Orbit& orbit) {
 }
 
 CameraPath fly_through(const FlyThrough& flight) {
-    constexpr int kKeys = 64;  // a span
+    constexpr int kKeys = 64;  // per span
     check_positive("fly through", "seconds", flight.seconds);
     check_positive("fly through", "look_ahead", flight.look_ahead);
     std::vector<glm::dvec3> points;

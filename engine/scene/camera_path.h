@@ -1,4 +1,4 @@
-// Cameras and parameters that change with time: smooth curves through keys, and paths that need no keys.
+// Time-dependent cameras and parameters: smooth curves through keys, orbits and flights.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,7 @@
 
 namespace edgesplat {
 
-/// Where the eye is at one time, and what it looks at.
+/// The camera at one time.
 struct CameraKey {
     double time = 0;         ///< s
     glm::dvec3 eye{0};       ///< world mm
@@ -19,8 +19,8 @@ struct CameraKey {
     bool operator==(const CameraKey&) const = default;
 };
 
-/// At least one key, times ascending. Before the first and after the last key the camera stands still; with `loop` the
-/// last key repeats the first one's camera, and the path goes on from there as it began.
+/// At least one key, times ascending. The camera stands still before the first and after the last key. With `loop` the
+/// last key repeats the first one's camera, and the path is periodic.
 struct CameraPath {
     std::vector<CameraKey> keys;
     bool loop = false;
@@ -33,20 +33,20 @@ void validate(const CameraPath& path);
 /// Seconds from the first key to the last.
 double duration(const CameraPath& path);
 
-/// The camera at a time in seconds: exactly the key's at a key, continuous in place, view, up and their rates between.
-/// Eye, target and angle follow cubic Hermite curves whose rates at the keys keep them from overshooting (equal keys
-/// stand still; collinear ones are passed monotonically, Fritsch and Carlson 1980). One `up` for all keys stays as it
-/// is unless the view comes within 10 degrees of it; else it is carried along the view without rolling (Bishop 1975)
-/// and the roll from key to key spread evenly, so that it never flips. Where an eye would run through its target the
-/// view turns round instead. The curve turns with the keys. Throws Error.
+/// The camera at a time in seconds. At a key it is exactly the key's camera; between keys, position, view, up and their
+/// rates are continuous. Eye, target and angle follow cubic Hermite curves without overshoot: equal keys stand still,
+/// collinear keys are passed monotonically (Fritsch and Carlson 1980). If all keys have the same `up`, it is used
+/// unchanged, unless the view comes within 10 degrees of it. Otherwise `up` is transported along the view without roll
+/// (Bishop 1975), and the roll between keys is distributed evenly, so that it never flips. Where the eye would pass
+/// through its target, the view is rotated instead. The curve is equivariant under rotation of the keys. Throws Error.
 Camera camera_at(const CameraPath& path, double time);
 
-/// The camera `start` carried around an axis, at constant speed; keys every 5 degrees or less.
+/// A rotation of the camera `start` around an axis at constant speed; keys every 5 degrees or less.
 struct Orbit {
     Camera start;
-    glm::dvec3 center{0};      ///< world mm: what the eye looks at and goes around
-    glm::dvec3 axis{0, 0, 1};  ///< world, any length > 0; positive angles turn right-handed about it
-    double degrees = 360;      ///< other than 0; multiples of 360 make a loop
+    glm::dvec3 center{0};      ///< world mm: target of the eye and centre of the orbit
+    glm::dvec3 axis{0, 0, 1};  ///< world, any length > 0; positive angles are right-handed
+    double degrees = 360;      ///< not 0; multiples of 360 make a loop
     double seconds = 8;        ///< > 0
 };
 CameraPath orbit_path(const Orbit& orbit);
@@ -55,13 +55,14 @@ CameraPath orbit_path(const Orbit& orbit);
 struct FlyThrough {
     std::vector<glm::dvec3> points;  ///< world mm, at least two different ones
     double seconds = 8;              ///< > 0
-    double look_ahead = 10;          ///< mm along the curve (beyond its end: straight on) to what the eye looks at, > 0
-    glm::dvec3 up{0, 0, 1};          ///< world, any length > 0
-    double fov = 60;                 ///< degrees, (0, 180)
+    /// Distance of the target ahead on the curve, mm, > 0; beyond its end the curve continues straight.
+    double look_ahead = 10;
+    glm::dvec3 up{0, 0, 1};  ///< world, any length > 0
+    double fov = 60;         ///< degrees, (0, 180)
 };
 CameraPath fly_through(const FlyThrough& flight);
 
-/// A number that changes with time, under the key it has in a scene file, such as "effects.fog.density".
+/// A time-dependent number. `key` is its key in a scene file, such as "effects.fog.density".
 struct AnimatedParameter {
     struct Key {
         double time = 0;  ///< s

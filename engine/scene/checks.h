@@ -1,4 +1,4 @@
-// Checks that several parts of a scene share.
+// Range checks that several parts of a scene share.
 #pragma once
 
 #include <glm/glm.hpp>

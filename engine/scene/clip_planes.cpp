@@ -11,7 +11,7 @@ std::vector<IndexPlane> in_index_space(const std::vector<Plane>& planes, const V
     std::vector<IndexPlane> result;
     const glm::dvec3 at = geometry.to_world(origin);
     for (const Plane& plane : planes) {
-        // Scaled first: the square of a long or short normal would leave the range of double.
+        // Scaled first to avoid overflow and underflow of the square.
         const double largest = std::max({std::abs(plane.normal.x), std::abs(plane.normal.y), std::abs(plane.normal.z)});
         const glm::dvec3 world = plane.normal / largest;
         const glm::dvec3 normal = glm::transpose(geometry.index_to_world_axes) * world;
@@ -21,7 +21,7 @@ std::vector<IndexPlane> in_index_space(const std::vector<Plane>& planes, const V
     return result;
 }
 
-/// Where the line is on the near side of all planes.
+/// Interval of the line on the near side of all planes.
 struct Inside {
     double first = -std::numeric_limits<double>::infinity();
     double last = std::numeric_limits<double>::infinity();

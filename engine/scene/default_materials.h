@@ -1,4 +1,4 @@
-// What resolve_scene gives materials that are left open, and that written out.
+// Default colours and extinctions of materials, and the materials of a scene as document entries.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,19 +7,20 @@
 
 namespace edgesplat {
 
-/// Linear light. By a material's place from the lowest iso-value up, the first is 0; after the sixth they begin anew.
+/// Default colour (linear light) of the material with index `place`, from 0 at the lowest iso-value; repeats after the
+/// sixth.
 glm::dvec3 default_color(std::size_t place);
 
-/// Linear light, of a thing by its number in a segmentation, from 1.
+/// Default colour (linear light) of a label by its number, from 1.
 glm::dvec3 default_label_color(std::size_t label);
 
-/// Per mm. `highest`: no iso-value lies above the material's.
+/// Default extinction per mm. `highest`: the material above the highest iso-value.
 double default_extinction(bool highest, const VolumeGeometry& geometry);
 
-/// Everything of a material said.
+/// The complete description of a material.
 MaterialChoice choice_of(const Material& material);
 
-/// Writes out iso-values and materials as they are in a scene of the document.
+/// Copies iso-values and materials of the scene into the document.
 void write_out_materials(SceneDocument& document, const Scene& scene);
 
 }  // namespace edgesplat

@@ -9,7 +9,7 @@ namespace edgesplat {
 
 namespace {
 
-// Comparisons are written so that NaN fails them.
+// Callers write comparisons so that NaN fails.
 void check(const std::string& field, double value, bool in_range, const char* range) {
     if (!in_range || !std::isfinite(value)) fail("scene {}: {} is outside {}", field, value, range);
 }

@@ -1,5 +1,5 @@
-// What a scene may call for beside surfaces and light. Every effect is off unless the scene says otherwise, and what
-// is off leaves no pass, no buffer and no instruction in the frame.
+// Optional effects of a scene. All are off by default; an effect that is off adds no pass, buffer or instruction to the
+// frame.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -8,8 +8,8 @@
 
 namespace edgesplat {
 
-/// Depth cueing: of what lies `depth` mm along the view axis from the eye, exp(-density * max(0, depth - start)) is
-/// left and the rest takes the fog's colour. The background stays as it is.
+/// Depth cueing. With depth in mm along the view axis, a colour keeps the share exp(-density * max(0, depth - start));
+/// the rest is the fog's colour. The background does not change.
 struct Fog {
     glm::dvec3 color{0, 0, 0};  ///< linear light, 0..1
     double density = 0.01;      ///< per mm, >= 0
@@ -17,7 +17,7 @@ struct Fog {
     bool operator==(const Fog&) const = default;
 };
 
-/// Where a surface turns away from the eye its colour goes towards `color`: by strength * (1 - |n . v|)^sharpness.
+/// Blends colours towards `color` with weight strength * (1 - |n . v|)^sharpness: strongest at silhouettes.
 struct Silhouette {
     glm::dvec3 color{0, 0, 0};  ///< linear light, 0..1
     double strength = 0.8;      ///< [0, 1]
@@ -25,33 +25,34 @@ struct Silhouette {
     bool operator==(const Silhouette&) const = default;
 };
 
-/// Ambient light is what reaches a splat over the half space that its normal looks into (cosine weighted; over all
-/// directions where it has none): open sky beyond `radius`, and before it whatever the matter lets through.
+/// Ambient occlusion. The ambient light of a splat is the light that reaches it over the hemisphere of its normal
+/// (cosine weighted; over the sphere without a normal). Matter within `radius` attenuates it; beyond, there is no
+/// occlusion.
 struct AmbientOcclusion {
-    double strength = 1;  ///< [0, 1]: share of the occlusion that is shown
+    double strength = 1;  ///< [0, 1]: share of the occlusion that is applied
     double radius = 10;   ///< mm, > 0
     bool operator==(const AmbientOcclusion&) const = default;
 };
 
-/// How finely lights with shadows see the volume.
+/// Resolution of the shadow volumes.
 struct ShadowQuality {
-    int resolution = 256;  ///< pixels across the light's picture, [16, 2048]
-    int layers = 128;      ///< at most, along the light, [2, 1024]
+    int resolution = 256;  ///< pixels across a light's view, [16, 2048]
+    int layers = 128;      ///< maximum number of layers along the light, [2, 1024]
     bool operator==(const ShadowQuality&) const = default;
 };
 
-/// A plane through `point`; what lies on the side `normal` points to is beyond it.
+/// A plane through `point`; points on the side of `normal` are beyond it.
 struct Plane {
     glm::dvec3 point{0};         ///< world mm
     glm::dvec3 normal{0, 0, 1};  ///< world, any length > 0
     bool operator==(const Plane&) const = default;
 };
 
-/// What is cut away: everything beyond any plane of `keep` (planes, a box to stay inside of), and everything that is
-/// beyond no plane of `remove` (a box to be cut out). The cut is sharp, and its face is lit by its own normal.
+/// Clip planes. A point is removed if it is beyond any plane of `keep` (planes, or the outside of a box), or beyond no
+/// plane of `remove` (the inside of a box). The cut is sharp; its face is lit with the plane's normal.
 struct Clip {
     std::vector<Plane> keep;    ///< 0..8
-    std::vector<Plane> remove;  ///< 0..8; empty: nothing is cut out
+    std::vector<Plane> remove;  ///< 0..8; empty: removes nothing
     bool empty() const { return keep.empty() && remove.empty(); }
     bool operator==(const Clip&) const = default;
 };
@@ -59,11 +60,11 @@ struct Clip {
 inline constexpr std::size_t kMaxClipPlanes = 8;
 inline constexpr int kMaxSamples = 8;
 
-/// Signs in the picture, drawn over it: they change no pixel elsewhere.
+/// Overlays drawn over the picture; other pixels do not change.
 struct Overlays {
-    bool orientation = false;  ///< the volume's axes with patient directions
-    bool scale_bar = false;    ///< a length in mm at the depth of the volume's centre
-    bool legend = false;       ///< materials or transfer function with their values
+    bool orientation = false;  ///< orientation marker with patient directions
+    bool scale_bar = false;    ///< scale bar in mm at the depth of the volume's centre
+    bool legend = false;       ///< legend of materials or transfer function with values
     bool any() const { return orientation || scale_bar || legend; }
     bool operator==(const Overlays&) const = default;
 };
@@ -74,12 +75,12 @@ struct Effects {
     std::optional<AmbientOcclusion> occlusion;
     ShadowQuality shadows;  ///< used where a light asks for shadows
     Clip clip;
-    std::optional<glm::dvec3> background_top;  ///< linear light: the background goes from `background` (bottom) to this
-    bool antialias =
-        false;  ///< no footprint smaller than a pixel, its energy kept (Zwicker et al. 2002, EWA splatting)
-    /// A pixel that an outline of a face passes shows what is on both its sides; plain kernels and rays have none.
+    std::optional<glm::dvec3> background_top;  ///< linear light: top of a vertical gradient; `background` is its bottom
+    /// Limits footprints to at least one pixel and keeps their energy (Zwicker et al. 2002, EWA splatting).
+    bool antialias = false;
+    /// Antialiases the outlines of faces: a pixel on an outline blends both sides. No effect on plain kernels and rays.
     bool smooth_outlines = false;
-    int samples = 1;  ///< n: the mean of n x n pictures whose rays lie between the pixels' centres, [1, 8]
+    int samples = 1;  ///< n: each pixel is the mean of n x n subpixel samples, [1, 8]
     Overlays overlays;
     bool operator==(const Effects&) const = default;
 };

@@ -1,4 +1,4 @@
-// The presets that are part of the program: presets/*.toml (cmake/EmbedToml.cmake).
+// The presets embedded in the program: presets/*.toml (cmake/EmbedToml.cmake).
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// All that decides a picture.
+// The complete input of a picture.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -12,7 +12,7 @@
 
 namespace edgesplat {
 
-/// All that decides a picture.
+/// The complete input of a picture.
 struct FrameRequest {
     std::shared_ptr<const Volume> volume;
     Scene scene;

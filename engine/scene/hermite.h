@@ -1,4 +1,4 @@
-// Cubic Hermite curves through keys in time that do not overshoot, in one dimension or three.
+// Cubic Hermite curves through keys in time, without overshoot, for scalars and 3-D vectors.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline double dot(const glm::dvec3& a, const glm::dvec3& b) {
     return glm::dot(a, b);
 }
 
-/// Values at ascending times; closed: the last value repeats the first, and the curve is smooth there too.
+/// Values at ascending times. `closed`: the last value repeats the first, and the curve is smooth there.
 template <typename T>
 struct Keys {
     std::vector<double> times;
@@ -30,8 +30,7 @@ struct Keys {
     bool closed = false;
 };
 
-/// The four cubic Hermite weights of a fraction u in [0, 1]: of the first value, the second, and of their rates times
-/// the interval's length.
+/// The cubic Hermite weights at u in [0, 1]: of both values, and of both rates times the interval's length.
 struct Weights {
     double first, second, first_rate, second_rate;
     explicit Weights(double u)
@@ -41,9 +40,10 @@ struct Weights {
           second_rate(u * u * (u - 1)) {}
 };
 
-/// Rate between two slopes over intervals of lengths h0 and h1: that of the parabola through the three values, no more
-/// than three times the smaller slope, and towards 0 where the way turns back. For numbers this satisfies Fritsch and
-/// Carlson's condition (1980) for a monotone curve; for vectors it turns with them.
+/// Rate at a key between intervals of lengths h0, h1 with slopes slope0, slope1. It is the rate of the parabola through
+/// the three values, at most three times the smaller slope, and tends to 0 where the direction reverses. For numbers
+/// this satisfies Fritsch and Carlson's condition (1980) for a monotone curve; for vectors it is equivariant under
+/// rotation.
 template <typename T>
 T rate_between(const T& slope0, double h0, const T& slope1, double h1) {
     const double a = length(slope0), b = length(slope1);
@@ -55,7 +55,8 @@ T rate_between(const T& slope0, double h0, const T& slope1, double h1) {
     return size > most ? rate * (most / size) : rate;
 }
 
-/// Rate at an end of a curve from the slope there and the one after: the parabola's, never backwards.
+/// Rate at an end of a curve from the slope there and the next slope: that of the parabola, never in the opposite
+/// direction.
 template <typename T>
 T rate_at_end(const T& slope, double h, const T& next, double next_h) {
     T rate = slope + (slope - next) * (h / (h + next_h));
@@ -85,7 +86,7 @@ T value(const Keys<T>& keys, std::size_t i, double u) {
     const double h = keys.times[i + 1] - keys.times[i];
     const T& from = keys.values[i];
     const T& to = keys.values[i + 1];
-    // From the nearer end, so that both ends, and what stands still between them, come out exactly.
+    // Evaluated from the nearer end: both ends, and constant intervals, are exact.
     const T straight = u < 0.5 ? from + (to - from) * w.second : to - (to - from) * w.first;
     return straight + (rate(keys, i) * w.first_rate + rate(keys, i + 1) * w.second_rate) * h;
 }

@@ -26,7 +26,7 @@ std::string get_number(const Settings& s) {
     return fmt::format("{}", s.*Member);
 }
 
-/// Sets a number that is the whole of `text` and in the knob's range.
+/// Parses the whole text as a number in the knob's range and sets it.
 template <auto Member>
 void set_number(Settings& s, const Knob& knob, View text) {
     View digits = text;
@@ -44,33 +44,32 @@ void set_number(Settings& s, const Knob& knob, View text) {
 std::vector<Knob> make_ladder() {
     std::vector<Knob> knobs;
     knobs.push_back({.name = "edges",
-                     .help = "How edges are found; off: conventional splatting, taylor: as in the paper",
+                     .help = "Edge estimator; off: conventional splatting, taylor: as in the paper",
                      .kind = KnobKind::Model,
                      .steps = {"off", "march", "cubic"},
                      .others = {"taylor"},
                      .get = get_name<&Settings::edges>,
                      .assign = [](Settings& s, const Knob&, View v) { s.edges = edge_estimator_named(v); }});
     knobs.push_back({.name = "warp",
-                     .help = "How kernels end at edges: warped by the paper's curve, or cut at faces, which are "
-                             "surfaces found as quadrics and lit where rays meet them",
+                     .help = "How kernels end at edges: warped by the paper's curve, or cut at faces (quadrics fitted "
+                             "to the surface, lit where rays intersect them)",
                      .kind = KnobKind::Model,
                      .steps = {"face"},
                      .others = {"paper"},
                      .get = get_name<&Settings::warp>,
                      .assign = [](Settings& s, const Knob&, View v) { s.warp = warp_family_named(v); },
                      .matters = draws_warped});
-    knobs.push_back(
-        {.name = "footprints",
-         .help = "How a kernel's footprint is evaluated at an edge: looked up in layers of a table, which has whole "
-                 "kernels at plane faces, or integrated; warp2d is the paper's, for warp = paper",
-         .kind = KnobKind::Method,
-         .steps = {"isotropic", "table", "procedural"},
-         .others = {"warp2d"},
-         .get = get_name<&Settings::footprints>,
-         .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
-         .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
+    knobs.push_back({.name = "footprints",
+                     .help = "How footprints are evaluated at an edge: from a table of whole kernels cut at plane "
+                             "faces, or integrated; warp2d is the paper's, for warp = paper",
+                     .kind = KnobKind::Method,
+                     .steps = {"isotropic", "table", "procedural"},
+                     .others = {"warp2d"},
+                     .get = get_name<&Settings::footprints>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.footprints = footprint_mode_named(v); },
+                     .matters = [](const Settings& s) { return s.edges != EdgeEstimator::Off; }});
     knobs.push_back({.name = "sheets",
-                     .help = "Whether a kernel lies in one sheet whole, or is cut at the planes between sheets",
+                     .help = "Whether a kernel lies in one sheet as a whole, or is cut at the planes between sheets",
                      .kind = KnobKind::Method,
                      .steps = all(sheet_cut_names()),
                      .others = {},
@@ -78,7 +77,7 @@ std::vector<Knob> make_ladder() {
                      .assign = [](Settings& s, const Knob&, View v) { s.sheets = sheet_cut_named(v); }});
     knobs.push_back(
         {.name = "sheet-spacing",
-         .help = "Voxels between sheets; whole kernels are neither better nor faster with thicker ones than a quarter",
+         .help = "Distance between sheets in voxels; with whole kernels, more than 0.25 is neither better nor faster",
          .kind = KnobKind::Method,
          .steps = {"0.5", "0.25", "0.125"},
          .others = {},
@@ -89,32 +88,32 @@ std::vector<Knob> make_ladder() {
          .get = get_number<&Settings::sheet_spacing>,
          .assign = set_number<&Settings::sheet_spacing>});
     knobs.push_back({.name = "sheet-format",
-                     .help = "Where sheets are summed: in layers of images, or tile by tile in registers",
+                     .help = "Buffer in which sheets are accumulated: layers of images, or registers, tile by tile",
                      .kind = KnobKind::Method,
                      .steps = all(sheet_format_names()),
                      .others = {},
                      .get = get_name<&Settings::sheet_format>,
                      .assign = [](Settings& s, const Knob&, View v) { s.sheet_format = sheet_format_named(v); }});
-    knobs.push_back(
-        {.name = "detail",
-         .help = "Pixels that the voxels of a coarser level may be wide where it is drawn; 0: never coarser",
-         .kind = KnobKind::Method,
-         .steps = {"2", "1", "0"},
-         .others = {},
-         .number = true,
-         .low = 0,
-         .high = 8,
-         .get = get_number<&Settings::detail>,
-         .assign = set_number<&Settings::detail>});
-    knobs.push_back({.name = "pixels",
-                     .help = "Which are drawn: some where the picture is smooth, the others following, or every one",
+    knobs.push_back({.name = "detail",
+                     .help = "Maximum voxel size of a coarser level, in pixels; 0: never coarser",
                      .kind = KnobKind::Method,
-                     .steps = all(pixel_choice_names()),
+                     .steps = {"2", "1", "0"},
                      .others = {},
-                     .get = get_name<&Settings::pixels>,
-                     .assign = [](Settings& s, const Knob&, View v) { s.pixels = pixel_choice_named(v); }});
+                     .number = true,
+                     .low = 0,
+                     .high = 8,
+                     .get = get_number<&Settings::detail>,
+                     .assign = set_number<&Settings::detail>});
+    knobs.push_back(
+        {.name = "pixels",
+         .help = "Which pixels are drawn: in smooth regions only some, with the others interpolated; or every one",
+         .kind = KnobKind::Method,
+         .steps = all(pixel_choice_names()),
+         .others = {},
+         .get = get_name<&Settings::pixels>,
+         .assign = [](Settings& s, const Knob&, View v) { s.pixels = pixel_choice_named(v); }});
     knobs.push_back({.name = "saturation",
-                     .help = "Opacity at which a pixel is finished; 1: never",
+                     .help = "Opacity at which a pixel is saturated; 1: never",
                      .kind = KnobKind::Method,
                      .steps = {"0.999", "0.9999"},
                      .others = {},
@@ -157,8 +156,8 @@ std::span<const Preset> presets() {
         accurate.sheet_spacing = 0.5;
         accurate.saturation = 0.9999;
         accurate.pixels = PixelChoice::Every;
-        return std::vector<Preset>{{"draft", "faces by the march: found sooner, drawn as fast", draft},
-                                   {"accurate", "slices of half a voxel, every pixel", accurate}};
+        return std::vector<Preset>{{"draft", "edges by march: faster to estimate, as fast to draw", draft},
+                                   {"accurate", "slices of half a voxel, every pixel drawn", accurate}};
     }();
     return rows;
 }

@@ -1,5 +1,5 @@
-// The ladder: every approximation is a knob with named steps, cheapest first. One table that the command line, its
-// help, the accuracy report and the app are made from; presets are rows of it.
+// The ladder: a table of all approximations as knobs with named steps, cheapest first. The command line, its help, the
+// accuracy report and the app are built from it; presets are rows of it.
 #pragma once
 
 #include <span>
@@ -11,30 +11,30 @@
 
 namespace edgesplat {
 
-/// What a better step buys.
+/// What a better step improves.
 enum class KnobKind {
-    Method,  ///< nearer to the model: the sum of all kernels, evaluated without sheets or tables
-    Model,   ///< a model that is nearer to the truth
+    Method,  ///< the error against the model: the sum of all kernels, evaluated without sheets or tables
+    Model,   ///< the model's error against the truth
 };
 
 /// One approximation.
 struct Knob {
-    std::string_view name;  ///< option (--NAME), column and key of reports
-    std::string_view help;  ///< what it decides, in one line
+    std::string_view name;  ///< name of the option (--NAME), of report columns and keys
+    std::string_view help;  ///< description in one line
     KnobKind kind;
     std::vector<std::string_view> steps;  ///< cheapest first
-    /// Values that are no steps but can be asked for all the same (what the paper did, where that is no bargain).
+    /// Accepted values that are not steps of the ladder, e.g. the paper's methods.
     std::vector<std::string_view> others;
-    /// Where the steps are measured from, given the base: a step of a knob that has no say there would be none.
+    /// Adapts the base settings so that this knob has an effect, before its steps are measured.
     void (*from)(Settings&) = nullptr;
-    bool number = false;       ///< any number of the setting's range is accepted; `steps` are those that are measured
-    double low = 0, high = 0;  ///< range of a number; `low` itself is excluded where `above_low`
+    bool number = false;       ///< true: accepts any number in the range; only `steps` are measured
+    double low = 0, high = 0;  ///< range of the number; `low` is excluded if `above_low`
     bool above_low = false;
-    std::string (*get)(const Settings&);  ///< the value as the command line spells it
+    std::string (*get)(const Settings&);  ///< the value as written on the command line
     void (*assign)(Settings&, const Knob&, std::string_view value);
-    bool (*matters)(const Settings&) = nullptr;  ///< whether it does anything there; null: always
+    bool (*matters)(const Settings&) = nullptr;  ///< whether the knob has an effect with these settings; null: always
 
-    /// Throws Error saying what was given and what is expected.
+    /// Sets the knob. Throws Error with the given and the expected value.
     void set(Settings& settings, std::string_view value) const { assign(settings, *this, value); }
     bool used(const Settings& settings) const { return matters == nullptr || matters(settings); }
 };
@@ -42,7 +42,7 @@ struct Knob {
 /// All knobs, in the order of the pipeline.
 std::span<const Knob> ladder();
 
-/// The knob of that name; throws Error listing the names.
+/// The knob with this name; throws Error listing the names.
 const Knob& knob_named(std::string_view name);
 
 /// A named row of the ladder.
@@ -52,14 +52,14 @@ struct Preset {
     Settings settings;
 };
 
-/// draft, accurate: cheapest first. The default settings are whole kernels, as draft is: draft is found sooner,
-/// accurate is drawn slower than both.
+/// draft and accurate, cheapest first. The default settings use whole kernels, as draft does. draft estimates edges
+/// faster; accurate draws slower than both.
 std::span<const Preset> presets();
 
-/// The preset of that name; throws Error listing the names.
+/// The preset with this name; throws Error listing the names.
 const Preset& preset_named(std::string_view name);
 
-/// "edges=march sheets=sliced ...": the knobs in which `settings` differs from `from`; empty if in none.
+/// The knobs in which `settings` differs from `from`, e.g. "edges=march sheets=sliced"; empty if none.
 std::string difference(const Settings& settings, const Settings& from = {});
 
 }  // namespace edgesplat

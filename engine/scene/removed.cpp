@@ -17,15 +17,15 @@ constexpr std::array kRemoved{
     Removed{"edge-half-width", "", kNoBand},
     Removed{"edge-strength", "", kNoBand},
     Removed{"edge-shape", "", "faces are as curved as the surface: leave it out"},
-    Removed{"normalise", "", "kernels that are cut at faces take no weights: leave it out"},
+    Removed{"normalise", "", "kernels cut at faces have no weights: leave it out"},
     Removed{"table-size", "", "the table of footprints has one size: leave it out"},
-    Removed{"accumulation", "", "pictures are summed in 32 bits a channel: leave it out"},
+    Removed{"accumulation", "", "pictures are accumulated in 32 bits per channel: leave it out"},
     Removed{"sheet-format", "half", "write layers"},
     Removed{"sheet-format", "float", "write layers"},
     Removed{"warp", "edge", "write face"},
     Removed{"edges", "quadratic", "write march"},
     Removed{"footprints", "table-lerp", "write table"},
-    Removed{"renderer", "raycast-warped", "write raycast, with the filter cubic for surfaces nearer to the truth"},
+    Removed{"renderer", "raycast-warped", "write raycast, with the filter cubic for more accurate surfaces"},
 };
 
 std::string instead_of(std::string_view name, std::string_view step) {
@@ -33,7 +33,7 @@ std::string instead_of(std::string_view name, std::string_view step) {
     std::replace(knob.begin(), knob.end(), '_', '-');
     const auto* found =
         std::ranges::find_if(kRemoved, [&](const Removed& r) { return r.knob == knob && r.step == step; });
-    return found == kRemoved.end() ? "" : fmt::format("is no more; {}", found->instead);
+    return found == kRemoved.end() ? "" : fmt::format("was removed; {}", found->instead);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Knobs and steps of them that scenes, pictures and scripts of before may name, and what to write instead.
+// Names of removed knobs and steps, with their replacements, for old scenes, pictures and scripts.
 #pragma once
 
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace edgesplat {
 
-/// "is no more: ..." of a knob, spelled as an option or as a key ("edge-half-width", "quality.edge_half_width"), or of
-/// a value of one; empty: there never was such a thing, or it is there.
+/// "was removed; ..." for a removed knob, spelled as option or key ("edge-half-width", "quality.edge_half_width"), or
+/// for a removed value of a knob. Empty if the name was never valid or still is.
 std::string removed_knob(std::string_view name);
 std::string removed_step(std::string_view knob, std::string_view value);
 

@@ -1,4 +1,4 @@
-// Which way to the picture.
+// The rendering methods.
 #pragma once
 
 #include <array>
@@ -6,19 +6,18 @@
 
 namespace edgesplat {
 
-/// Splatting; rays cast through the field between the samples; the sum of all kernels itself; a builtin volume's exact
-/// surfaces.
+/// Splatting; ray casting of the interpolated field; the exact sum of all kernels (reference); the exact surfaces of a
+/// builtin volume (truth).
 enum class RendererKind { Splat, Raycast, Reference, Truth };
 
 inline constexpr std::array<std::string_view, 4> kRendererNames{"splat", "raycast", "reference", "truth"};
 
-/// What the ray caster takes the field between the voxels for: trilinear interpolation, or the cubic B-spline through
-/// the samples.
+/// The ray caster's interpolation between samples: trilinear, or the cubic B-spline through them.
 enum class RaycastFilter { Trilinear, Cubic };
 
 inline constexpr std::array<std::string_view, 2> kRaycastFilterNames{"trilinear", "cubic"};
 
-/// Whether it computes on the processor alone and needs no Vulkan device.
+/// Whether the method runs on the processor and needs no Vulkan device.
 constexpr bool on_processor(RendererKind kind) {
     return kind == RendererKind::Reference || kind == RendererKind::Truth;
 }

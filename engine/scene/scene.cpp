@@ -17,7 +17,8 @@ void check_share(const std::string& field, double value) {
 void check_materials(const Scene& scene) {
     const std::size_t count = scene.iso_values.size();
     if (scene.materials.size() != count + 1) {
-        fail("scene materials: {} of them, expected {} (one more than iso-values)", scene.materials.size(), count + 1);
+        fail("scene materials: {} materials, expected {} (one more than iso-values)", scene.materials.size(),
+             count + 1);
     }
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const auto& [color, extinction, response, name] = scene.materials[m];
@@ -53,7 +54,7 @@ void check_transfer(const std::vector<TransferPoint>& points) {
 }
 
 void check_lights(const std::vector<Light>& lights) {
-    if (lights.size() > kMaxLights) fail("scene lights: {} of them, expected at most {}", lights.size(), kMaxLights);
+    if (lights.size() > kMaxLights) fail("scene lights: {} lights, expected at most {}", lights.size(), kMaxLights);
     std::size_t with_shadows = 0;
     for (std::size_t i = 0; i < lights.size(); ++i) {
         const Light& light = lights[i];
@@ -69,13 +70,12 @@ void check_lights(const std::vector<Light>& lights) {
             fail("scene {}position: ({}, {}, {}) is not finite", field, p.x, p.y, p.z);
         }
         if (light.shadows && light.kind == Light::Kind::Headlight) {
-            fail("scene {}shadows: a headlight casts none that the eye can see; expected a directional or point light",
-                 field);
+            fail("scene {}shadows: a headlight casts no visible shadows; expected a directional or point light", field);
         }
         with_shadows += light.shadows ? 1 : 0;
     }
     if (with_shadows > kMaxShadowLights) {
-        fail("scene lights: {} of them with shadows, expected at most {}", with_shadows, kMaxShadowLights);
+        fail("scene lights: {} lights with shadows, expected at most {}", with_shadows, kMaxShadowLights);
     }
 }
 
@@ -86,7 +86,7 @@ glm::dvec3 unit(const glm::dvec3& v) {
     return scaled / glm::length(scaled);
 }
 
-bool only_edges_lit(const Scene& scene, bool edges_drawn) {
+bool lights_edges_only(const Scene& scene, bool edges_drawn) {
     return scene.lit == Lit::Edges && edges_drawn && !scene.iso_values.empty();
 }
 
@@ -97,9 +97,9 @@ Light directional_light(const glm::dvec3& towards) {
     return light;
 }
 
-std::string beyond_ray_casting(const Scene& scene) {
+std::string raycast_obstacle(const Scene& scene) {
     const Effects& effects = scene.effects;
-    if (scene.labels) return "things by number";
+    if (scene.labels) return "labels in their own colours";
     if (scene.lights.size() > 1) return "more than one light";
     for (const Light& light : scene.lights) {
         if (light.kind == Light::Kind::Point) return "a point light";
@@ -122,7 +122,7 @@ std::string beyond_ray_casting(const Scene& scene) {
 void validate(const Scene& scene) {
     const std::size_t count = scene.iso_values.size(), fewest = scene.transfer.empty() ? 1 : 0;
     if (count < fewest || count > kMaxIsoValues) {
-        fail("scene iso_values: {} of them, expected {} to {}", count, fewest, kMaxIsoValues);
+        fail("scene iso_values: {} values, expected {} to {}", count, fewest, kMaxIsoValues);
     }
     for (std::size_t i = 0; i < count; ++i) {
         const double value = scene.iso_values[i];

@@ -1,4 +1,4 @@
-// What a single key's range cannot tell: counts, order, what goes together, and what is not there.
+// Checks beyond the ranges of single keys: counts, order, combinations, missing files.
 #include <algorithm>
 #include <exception>
 
@@ -47,7 +47,7 @@ class Checker {
             const std::vector<std::string> names(analytic_scene_names().begin(), analytic_scene_names().end());
             if (std::find(names.begin(), names.end(), name) == names.end()) {
                 const std::string nearest = nearest_name(name, names);
-                add("volume.path", "\"{}\": no builtin volume has this name; there are {}{}", v.path,
+                add("volume.path", "\"{}\": no builtin volume has this name; expected one of: {}{}", v.path,
                     fmt::join(names, ", "), nearest.empty() ? "" : "; did you mean \"builtin:" + nearest + "\"?");
             } else {
                 try {
@@ -74,7 +74,7 @@ class Checker {
 
     void check_iso_values() {
         const auto& iso = d_.iso_values;
-        if (iso.size() > kMaxIsoValues) add("iso_values", "{} of them: expected at most {}", iso.size(), kMaxIsoValues);
+        if (iso.size() > kMaxIsoValues) add("iso_values", "{} values: expected at most {}", iso.size(), kMaxIsoValues);
         for (std::size_t i = 1; i < iso.size(); ++i)
             if (!(iso[i] > iso[i - 1]))
                 add("iso_values", "{} is not above {} before it; expected ascending values", iso[i], iso[i - 1]);
@@ -82,7 +82,7 @@ class Checker {
         if (!sigmas.empty() && !iso.empty())
             add("iso_sigmas", "is given together with iso_values; expected one of them");
         if (sigmas.size() > kMaxIsoValues)
-            add("iso_sigmas", "{} of them: expected at most {}", sigmas.size(), kMaxIsoValues);
+            add("iso_sigmas", "{} values: expected at most {}", sigmas.size(), kMaxIsoValues);
         for (std::size_t i = 1; i < sigmas.size(); ++i)
             if (!(sigmas[i] > sigmas[i - 1]))
                 add("iso_sigmas", "{} is not above {} before it; expected ascending values", sigmas[i], sigmas[i - 1]);
@@ -90,7 +90,7 @@ class Checker {
             add("volume.labels", "is given together with volume.threshold; expected one of them");
     }
 
-    /// The preset if there is one of that name, else a problem.
+    /// The preset with this name; adds a problem if there is none.
     std::optional<ScenePreset> preset_at(const std::string& path, const std::string& name) {
         try {
             return scene_preset(name);
@@ -108,20 +108,21 @@ class Checker {
             const auto preset = material.preset.empty() ? std::nullopt : preset_at(path, material.preset);
             if (preset && preset->kind != PresetKind::Material)
                 add(path, "\"{}\" is a {}; expected a material", material.preset,
-                    preset->is_transfer() ? "transfer function (transfer_preset takes it)" : "look (--look takes it)");
+                    preset->is_transfer() ? "transfer function (use transfer_preset)" : "look (use --look)");
             all_have_iso = all_have_iso && preset && !preset->content.iso_values.empty();
         }
-        // Without iso-values presets may bring them, or one is chosen from the data, or a builtin volume has its own.
+        // Without iso_values, they come from presets, the data, or the builtin volume.
         const std::size_t given = d_.materials.size();
         if (given == 0) return;
         if (!d_.iso_values.empty() && given != d_.iso_values.size())
-            add("materials", "{} of them for {} iso_values: expected one per iso-value", given, d_.iso_values.size());
+            add("materials", "{} materials for {} iso_values: expected one per iso-value", given, d_.iso_values.size());
         if (!d_.iso_sigmas.empty() && given != d_.iso_sigmas.size())
-            add("materials", "{} of them for {} iso_sigmas: expected one per surface", given, d_.iso_sigmas.size());
+            add("materials", "{} materials for {} iso_sigmas: expected one per surface", given, d_.iso_sigmas.size());
         const bool open = d_.iso_values.empty() && d_.iso_sigmas.empty() && !all_have_iso && d_.transfer.empty() &&
                           d_.transfer_preset.empty();
         if (open && given != 1 && !is_builtin(d_.volume.path))
-            add("materials", "{} of them, but no iso_values: expected iso_values, or a preset with one in each", given);
+            add("materials", "{} materials, but no iso_values: expected iso_values, or a preset with one in each",
+                given);
     }
 
     void check_transfer() {
@@ -129,8 +130,7 @@ class Checker {
             const auto preset = preset_at("transfer_preset", d_.transfer_preset);
             if (preset && !preset->is_transfer())
                 add("transfer_preset", "\"{}\" is a {}; expected a transfer function", d_.transfer_preset,
-                    preset->kind == PresetKind::Look ? "look (--look takes it)"
-                                                     : "material (materials[].preset takes it)");
+                    preset->kind == PresetKind::Look ? "look (use --look)" : "material (use materials[].preset)");
             if (!d_.transfer.empty())
                 add("transfer_preset", "is given together with [[transfer]]; expected one of them");
         }
@@ -146,7 +146,7 @@ class Checker {
             const Light& light = d_.lights[i];
             const std::string path = fmt::format("lights[{}].shadows", i);
             if (light.shadows && light.kind == Light::Kind::Headlight)
-                add(path, "true: a headlight casts none that the eye can see; expected kind directional or point");
+                add(path, "true: a headlight casts no visible shadows; expected kind directional or point");
             with_shadows += light.shadows ? 1 : 0;
             if (light.shadows && with_shadows == kMaxShadowLights + 1)
                 add(path, "true: expected at most {} lights with shadows", kMaxShadowLights);
@@ -174,7 +174,7 @@ class Checker {
             add("camera.direction", "is given together with view; expected one of them");
         if (c.target && c.direction) add("camera.target", "is given together with direction; expected one of them");
         if (c.target && !c.eye) add("camera.target", "is given without eye; expected both");
-        if (c.target && c.eye && *c.target == *c.eye) add("camera.target", "is where the eye is");
+        if (c.target && c.eye && *c.target == *c.eye) add("camera.target", "equals the eye; expected another point");
     }
 
     void check_movie() {
@@ -189,7 +189,7 @@ class Checker {
                     m.path[i].time, m.path[i - 1].time);
         for (std::size_t i = 0; i < m.path.size(); ++i)
             if (m.path[i].eye == m.path[i].target)
-                add(fmt::format("movie.path[{}].target", i), "is where the eye is; expected another point");
+                add(fmt::format("movie.path[{}].target", i), "equals the eye; expected another point");
         for (std::size_t i = 0; i < m.animate.size(); ++i)
             check_animation(m.animate[i], fmt::format("movie.animate[{}]", i));
     }
@@ -221,7 +221,7 @@ class Checker {
         for (const std::string& aov : o.aovs)
             if (o.renderer != RendererKind::Splat && !(only_tau && aov == "tau"))
                 add("output.aovs", "\"{}\": renderer {} has {}", aov, renderer,
-                    only_tau ? "no extra output but tau" : "no extra outputs");
+                    only_tau ? "only the extra output tau" : "no extra outputs");
         if (!o.aovs.empty() && o.compare_plain) add("output.compare_plain", "true: expected no aovs beside it");
         if (!o.aovs.empty() && o.compare_raycast) add("output.compare_raycast", "true: expected no aovs beside it");
         if (o.compare_raycast && o.renderer != RendererKind::Splat)
@@ -229,7 +229,7 @@ class Checker {
         if (o.renderer == RendererKind::Truth && !is_builtin(d_.volume.path) && !d_.volume.path.empty())
             add("output.renderer", "\"truth\" needs the exact scene, which only builtin:NAME volumes have");
         if (o.renderer != RendererKind::Splat && d_.quality.max_error)
-            add("quality.max_error", "chooses how to splat; it needs output.renderer \"splat\"");
+            add("quality.max_error", "applies to splatting only; it needs output.renderer \"splat\"");
     }
 
     const SceneDocument& d_;

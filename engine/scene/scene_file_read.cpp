@@ -1,4 +1,4 @@
-// From TOML to a SceneDocument, key by key.
+// Reads TOML into a SceneDocument, key by key.
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What a preset may say; of [volume] only whether it is a segmentation.
+/// The keys of a preset; of [volume] only `labels`.
 constexpr std::array<std::string_view, 11> kPresetKeys{"about",      "iso_values", "iso_sigmas", "materials",
                                                        "transfer",   "ambient",    "lit",        "lights",
                                                        "background", "effects",    "volume"};
@@ -25,7 +25,7 @@ constexpr std::string_view kPresetVolumeKey = "volume.labels";
 
 using Problem = SceneTableProblem;
 
-/// A value on its way into the document.
+/// A value to set in the document.
 struct Assignment {
     const SceneKey* key;
     std::size_t index;
@@ -34,7 +34,7 @@ struct Assignment {
     std::size_t line;
 };
 
-/// Walks a TOML tree beside the table of keys.
+/// Reads a TOML tree with the table of keys.
 class Reader {
   public:
     Reader(SceneDocument& document, bool preset) : document_(document), preset_(preset) {
@@ -52,7 +52,7 @@ class Reader {
         }
     }
 
-    /// Puts what was read into the document, in the order of the table of keys: a preset before single knobs.
+    /// Sets all values in the order of the key table, so that a preset precedes individual knobs.
     void apply() {
         std::stable_sort(assignments_.begin(), assignments_.end(),
                          [](const Assignment& a, const Assignment& b) { return a.key < b.key; });
@@ -64,7 +64,7 @@ class Reader {
         problems_.push_back({line, path.empty() ? text : path + ": " + text});
     }
 
-    /// The line of a path, or of the nearest thing around it that the file has.
+    /// The line of a path, or of its closest parent in the file.
     std::size_t line_of_path(std::string path) const {
         while (!path.empty()) {
             const auto found = lines_.find(path);
@@ -85,7 +85,7 @@ class Reader {
                                  (top != "volume" || generic == top || generic == kPresetVolumeKey);
         if (preset_ && !for_presets && (groups_.contains(top) || find_key(top)))
             return add_problem(line, concrete,
-                               fmt::format("is not for presets; they have {}", fmt::join(kPresetKeys, ", ")));
+                               fmt::format("is not for presets; allowed are {}", fmt::join(kPresetKeys, ", ")));
         if (const SceneTable* table = find_table(generic)) return read_group(*table, node, concrete, line);
         if (const SceneKey* key = find_key(generic)) return read_key(*key, node, concrete, index, line);
         if (groups_.contains(generic)) {
@@ -154,7 +154,7 @@ class Reader {
         return true;
     }
 
-    /// The node as the key's type; nothing where it is of another.
+    /// The node as a value of the key's type; nullopt if its type differs.
     static std::optional<KeyValue> value_of(const toml::node& node, const SceneKey& key) {
         const toml::array* array = node.as_array();
         switch (key.type) {
@@ -184,7 +184,7 @@ class Reader {
 
     SceneDocument& document_;
     bool preset_;
-    std::set<std::string> groups_;  ///< tables that keys are in, and those around them
+    std::set<std::string> groups_;  ///< tables with keys, and their parents
     std::map<std::string, std::size_t> lines_;
     std::vector<Assignment> assignments_;
     std::vector<Problem> problems_;
@@ -233,7 +233,7 @@ SceneDocument parse_scene(std::string_view text, const std::string& name, const 
         const auto line =
             static_cast<std::size_t>(std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(bad), '\n')) +
             1;
-        report({{line, fmt::format("byte {} is no UTF-8 text; a scene is a text file in TOML", bad)}}, name);
+        report({{line, fmt::format("byte {} is not valid UTF-8; a scene is a text file in TOML", bad)}}, name);
     }
     toml::table table;
     try {
@@ -241,8 +241,7 @@ SceneDocument parse_scene(std::string_view text, const std::string& name, const 
     } catch (const toml::parse_error& error) {
         report({{error.source().begin.line, fmt::format("no valid TOML: {}", error.description())}}, name);
     }
-    if (table.empty())
-        report({{1, "the file is empty; `edgesplat scene new VOLUME` writes a scene to begin with"}}, name);
+    if (table.empty()) report({{1, "the file is empty; `edgesplat scene new VOLUME` writes a first scene"}}, name);
     SceneDocument document;
     Reader reader(document, options.preset);
     reader.read_table(table, "", "", 0);
@@ -266,7 +265,7 @@ SceneDocument read_scene_file(const fs::path& path) {
 
 namespace {
 
-/// A node that `text` means to a key: TOML where it is that, else a text or the inside of a list.
+/// The node of `text` for a key: parsed as TOML, else as a text or the inside of a list.
 toml::table node_of(const SceneKey* key, std::string text) {
     const bool list =
         key && (key->type == KeyType::Numbers || key->type == KeyType::Integers || key->type == KeyType::Texts);
@@ -292,9 +291,9 @@ void set_key(SceneDocument& document, std::string_view assignment) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string_view::npos || equals == 0)
         fail("'{}' is not KEY=VALUE, such as effects.fog.density=0.02", assignment);
-    // A scene file is UTF-8, and every document can be written as one.
+    // Every document must be writable as a scene file, which is UTF-8.
     if (const std::size_t bad = invalid_utf8(assignment); bad != std::string_view::npos)
-        fail("{}: byte {} is no UTF-8 text", assignment.substr(0, equals), bad);
+        fail("{}: byte {} is not valid UTF-8", assignment.substr(0, equals), bad);
     const std::string path(assignment.substr(0, equals)), text(assignment.substr(equals + 1));
     const KeyAddress address = key_address(path);
     const SceneKey* key = find_key(address.path);

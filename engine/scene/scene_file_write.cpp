@@ -1,4 +1,4 @@
-// From a SceneDocument to TOML, and the table of keys as text.
+// Writes a SceneDocument as TOML, and the key table as text.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ std::string leaf_of(const std::string& path) {
     return path.substr(path.rfind('.') == std::string::npos ? 0 : path.rfind('.') + 1);
 }
 
-/// A value as it stands in a file.
+/// A value as in a file.
 std::string spelled(const SceneKey& key, const KeyValue& value) {
     if (!key.points) return toml_text(value, key.type);
     const auto& numbers = std::get<std::vector<double>>(value);
@@ -26,12 +26,12 @@ std::string spelled(const SceneKey& key, const KeyValue& value) {
     return out + "]";
 }
 
-/// What holds where the key is not given.
+/// The default as text.
 std::string default_text(const SceneKey& key) {
     return key.default_value ? spelled(key, *key.default_value) : key.absent;
 }
 
-/// Neighbouring keys of one table.
+/// Groups adjacent keys of the same table.
 std::vector<std::span<const SceneKey>> sections() {
     std::vector<std::span<const SceneKey>> all;
     const auto keys = scene_keys();
@@ -45,7 +45,7 @@ std::vector<std::span<const SceneKey>> sections() {
     return all;
 }
 
-/// The group a section's table is, where it is one.
+/// The optional or list table of a section, or null.
 const SceneTable* group_of(const std::string& table) {
     return find_table(table.ends_with("[]") ? table.substr(0, table.size() - 2) : table);
 }
@@ -55,7 +55,7 @@ std::string header_of(const std::string& table) {
     return "[" + table + "]";
 }
 
-/// Lists that are empty though they are not by default, which the headers of their entries cannot say.
+/// Writes lists that are empty although their default is not: table headers cannot express this.
 std::string empty_lists(const SceneDocument& document) {
     const SceneDocument defaults;
     std::string out;
@@ -86,7 +86,7 @@ std::string comment_of(const SceneKey& key) {
     return wrapped_comment(fmt::format("{}. Default: {}", what, default_text(key)));
 }
 
-/// What stands behind a key that is commented out: its default, else something of the right form.
+/// Example value of a key that is commented out: its default, else a value of the correct type.
 std::string example_of(const SceneKey& key) {
     if (key.default_value) return spelled(key, *key.default_value);
     if (key.absent.find_first_not_of("0123456789.,[] ") == std::string::npos) return key.absent;
@@ -109,8 +109,7 @@ std::string example_of(const SceneKey& key) {
 
 void check_path_is_text(const SceneDocument& document) {
     if (invalid_utf8(document.volume.path) != std::string::npos)
-        fail("volume: {}: its name is not UTF-8 and cannot stand in a scene file; expected a name that is",
-             document.volume.path);
+        fail("volume: {}: its name is not UTF-8, which scene files require", document.volume.path);
 }
 
 std::string scene_text(const SceneDocument& document) {
@@ -134,7 +133,7 @@ std::string scene_text(const SceneDocument& document) {
 
 std::string commented_scene_text(const SceneDocument& document) {
     std::string out =
-        "# A scene of edgesplat. What stands behind # is not said; then what is called default holds.\n"
+        "# A scene of edgesplat. Keys behind # are not set; they have their default.\n"
         "# All keys: docs/scene_files.md, or `edgesplat scene keys`.\n\n";
     for (const auto& keys : sections()) {
         const std::string table = table_of(keys.front());

@@ -1,4 +1,4 @@
-// How a member of a scene's document becomes a key of scene files.
+// Builds scene-file keys from members of SceneDocument.
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ struct is_optional : std::false_type {};
 template <typename T>
 struct is_optional<std::optional<T>> : std::true_type {};
 
-/// How a member of the document is a value of a file, and back.
+/// Converts a member of the document to a value of a file, and back.
 template <typename T>
 KeyValue to_value(const T& v, const std::vector<std::string>& choices) {
     if constexpr (std::is_enum_v<T>)
@@ -62,10 +62,10 @@ void describe(SceneKey& key) {
     if constexpr (std::is_same_v<T, glm::ivec2>) key.type = KeyType::Integers, key.count = 2;
 }
 
-/// Rows of the table of keys, each from the member of the document that it is.
+/// Collects the rows of the key table, each from a member of the document.
 class KeyTable {
   public:
-    /// Adds a key whose member `access` names. What its row says beside path and type is in `facts`.
+    /// Adds a key for the member that `access` returns. `facts` holds the row's data except path and type.
     template <typename Access>
     void add(const char* path, Access access, SceneKey facts) {
         using Member = std::remove_reference_t<decltype(access(std::declval<SceneDocument&>(), std::size_t{}))>;
@@ -85,7 +85,7 @@ class KeyTable {
             describe<Member>(key);
             key.get = [access, choices = key.choices](const SceneDocument& d, std::size_t i) {
                 std::optional<KeyValue> value = to_value(access(d, i), choices);
-                // An empty text or list is what "not given" is in a document.
+                // In a document, an empty text or list means "not given".
                 if constexpr (requires(const Member& m) { m.empty(); })
                     if (access(d, i).empty()) value.reset();
                 return value;

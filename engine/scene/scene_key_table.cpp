@@ -1,4 +1,4 @@
-// What a scene file can say, row by row.
+// The rows of the scene-file key table.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,173 +15,181 @@ constexpr KeyRange kShare{0, 1};
 constexpr KeyRange kFromZero{.low = 0};
 constexpr KeyRange kAboveZero{.low = 0, .above_low = true};
 
-// One access function per member; works on a document that may be changed and on one that may not.
+// An access function of a member, for const and non-const documents.
 #define MEMBER(expression) ([](auto& d, [[maybe_unused]] std::size_t i) -> auto& { return d.expression; })
 
 void add_top(KeyTable& t) {
-    t.add("about", MEMBER(about), {.help = "What is to be seen, in words", .absent = "nothing"});
+    t.add("about", MEMBER(about), {.help = "Description of the scene", .absent = "nothing"});
     t.add("iso_values", MEMBER(iso_values),
           {.unit = "the volume's",
-           .help = "Values of the surfaces, ascending, at most 15; may be left out with a transfer function",
-           .absent = "those of the materials' presets, a builtin scene's own, or the strongest that `edgesplat info` "
-                     "suggests"});
+           .help = "Iso-values, ascending, at most 15; optional with a transfer function",
+           .absent = "those of the materials' presets or of the builtin scene, else the strongest that `edgesplat "
+                     "info` suggests"});
     t.add("iso_sigmas", MEMBER(iso_sigmas),
           {.unit = "standard deviations",
-           .help = "In place of iso_values: how far above the mean of all samples, ascending (electron densities)",
+           .help = "Iso-values as standard deviations above the mean of all samples, ascending; instead of iso_values "
+                   "(electron densities)",
            .absent = "none"});
     t.add("transfer_preset", MEMBER(transfer_preset),
           {.help = "A transfer function by name (`edgesplat scene presets`)", .absent = "none"});
-    t.add("ambient", MEMBER(ambient), {.help = "Light from everywhere", .range = kFromZero});
+    t.add("ambient", MEMBER(ambient), {.help = "Ambient light", .range = kFromZero});
     t.add("lit", MEMBER(lit),
-          {.help = "Which splats lights reach: those at an edge, or all, by their own gradient",
+          {.help = "Lit splats: only those at an edge, or all, with their own gradient as normal",
            .choices = {"edges", "everywhere"}});
-    t.add("background", MEMBER(background), {.unit = "linear light", .help = "Colour behind it all", .range = kShare});
+    t.add("background", MEMBER(background), {.unit = "linear light", .help = "Background colour", .range = kShare});
 }
 
 void add_volume(KeyTable& t) {
     t.add("volume.path", MEMBER(volume.path),
           {.help = "File, folder, pattern of slices (slice_%03d.tif) or builtin:NAME; relative to the scene file, then "
                    "to the folders in EDGESPLAT_VOLUMES",
-           .absent = "needed"});
+           .absent = "required"});
     t.add("volume.raw", MEMBER(volume.raw),
-          {.help = "Layout of a file without header: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]", .absent = "none"});
+          {.help = "Layout of a raw file: DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]", .absent = "none"});
     t.add("volume.component", MEMBER(volume.component),
-          {.help = "Component of vector or colour data", .range = {0, 1e6}, .absent = "needed for such data"});
+          {.help = "Component of vector or colour data", .range = {0, 1e6}, .absent = "required for such data"});
     t.add("volume.frame", MEMBER(volume.frame),
-          {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "needed for such data"});
+          {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "required for such data"});
     t.add("volume.series", MEMBER(volume.series),
-          {.help = "DICOM series of a folder with several: number or UID", .absent = "needed for such folders"});
+          {.help = "Series of a DICOM folder with several: number or UID", .absent = "required for such folders"});
     t.add("volume.resample", MEMBER(volume.resample),
-          {.help = "Unevenly spaced DICOM slices are interpolated at even places, cubically"});
+          {.help = "Resample unevenly spaced DICOM slices to even spacing by cubic interpolation"});
     t.add("volume.spacing", MEMBER(volume.spacing),
           {.unit = "mm", .help = "Voxel spacing along i, j, k", .range = kAboveZero, .absent = "the file's"});
     t.add("volume.threshold", MEMBER(volume.threshold),
-          {.unit = "the volume's", .help = "First make it binary: 1 from this value up, else 0", .absent = "none"});
+          {.unit = "the volume's", .help = "Step 1, binarise: 1 for samples >= this value, else 0", .absent = "none"});
     t.add("volume.labels", MEMBER(volume.labels),
-          {.help = "Whether samples are numbers of things, each drawn in a colour of its own",
-           .absent = "recognised, where the scene leaves open what is to be seen"});
-    t.add("volume.box_filter", MEMBER(volume.box_filter), {.help = "Then take the mean over 3x3x3 voxels"});
+          {.help = "Step 1 for segmentations: samples are labels, each drawn in its own colour",
+           .absent = "detected if the scene sets no iso-values, materials or transfer function"});
+    t.add("volume.box_filter", MEMBER(volume.box_filter), {.help = "Step 2: mean over 3x3x3 voxels"});
     t.add("volume.crop_low", MEMBER(volume.crop_low),
-          {.unit = "voxels", .help = "Then keep only voxels from here", .range = {0, 65535}, .absent = "the first"});
+          {.unit = "voxels", .help = "Step 3: crop, first voxel to keep", .range = {0, 65535}, .absent = "the first"});
     t.add("volume.crop_high", MEMBER(volume.crop_high),
-          {.unit = "voxels", .help = "to here, both included", .range = {0, 65535}, .absent = "the last"});
+          {.unit = "voxels", .help = "Last voxel to keep", .range = {0, 65535}, .absent = "the last"});
     t.add("volume.checksum", MEMBER(volume.checksum),
-          {.help = "Of the samples as drawn; any others are refused", .absent = "any"});
+          {.help = "Checksum of the preprocessed samples; other samples are refused", .absent = "any"});
 }
 
 void add_lights(KeyTable& t) {
     t.add(
         "lights[].kind", MEMBER(lights[i].kind),
-        {.help = "Where it is: at the eye, far away, or somewhere", .choices = {"headlight", "directional", "point"}});
+        {.help = "Position: at the eye, at infinity, or at a point", .choices = {"headlight", "directional", "point"}});
     t.add("lights[].direction", MEMBER(lights[i].direction),
-          {.unit = "world", .help = "Towards a directional light", .direction = true});
-    t.add("lights[].position", MEMBER(lights[i].position), {.unit = "world mm", .help = "Of a point light"});
-    t.add("lights[].color", MEMBER(lights[i].color), {.unit = "linear light", .help = "Its colour", .range = kShare});
-    t.add("lights[].intensity", MEMBER(lights[i].intensity), {.help = "Factor on its colour", .range = kFromZero});
+          {.unit = "world", .help = "Direction towards a directional light", .direction = true});
+    t.add("lights[].position", MEMBER(lights[i].position), {.unit = "world mm", .help = "Position of a point light"});
+    t.add("lights[].color", MEMBER(lights[i].color), {.unit = "linear light", .help = "Colour", .range = kShare});
+    t.add("lights[].intensity", MEMBER(lights[i].intensity), {.help = "Factor on the colour", .range = kFromZero});
     t.add("lights[].shadows", MEMBER(lights[i].shadows),
-          {.help = "Whether what stands in its way darkens what lies behind; not for a headlight, at most 2 lights"});
+          {.help = "Whether the light casts shadows; not for a headlight, at most 2 lights"});
 }
 
 void add_materials(KeyTable& t) {
-    // The same rows for the material below all iso-values and for those from each iso-value up.
+    // The same rows for the material below all iso-values and for the materials above each.
     const auto rows = [&t](const std::string& table, auto material, const char* color, const char* extinction) {
         const auto add = [&](const char* name, auto access, const SceneKey& facts) {
             t.add((table + name).c_str(), access, facts);
         };
         if (table != "below.")
             add("preset", [material](auto& d, std::size_t i) -> auto& { return material(d, i).preset; },
-                {.help = "A material by name (`edgesplat scene presets`); the other keys change single things of it",
+                {.help = "A material by name (`edgesplat scene presets`); the other keys override its values",
                  .absent = "none"});
         add("name", [material](auto& d, std::size_t i) -> auto& { return material(d, i).name; },
-            {.help = "For legends", .absent = "none"});
+            {.help = "Name in legends", .absent = "none"});
         add("color", [material](auto& d, std::size_t i) -> auto& { return material(d, i).color; },
-            {.unit = "linear light", .help = "Its colour", .range = kShare, .absent = color});
+            {.unit = "linear light", .help = "Colour", .range = kShare, .absent = color});
         add("extinction", [material](auto& d, std::size_t i) -> auto& { return material(d, i).extinction; },
-            {.unit = "per mm", .help = "0 is transparent", .range = kFromZero, .absent = extinction});
+            {.unit = "per mm",
+             .help = "Extinction coefficient; 0: transparent",
+             .range = kFromZero,
+             .absent = extinction});
         add("ambient", [material](auto& d, std::size_t i) -> auto& { return material(d, i).ambient; },
-            {.help = "Factor on light from everywhere", .range = kFromZero, .absent = "1.0"});
+            {.help = "Factor on ambient light", .range = kFromZero, .absent = "1.0"});
         add("diffuse", [material](auto& d, std::size_t i) -> auto& { return material(d, i).diffuse; },
-            {.help = "Factor on scattered light", .range = kFromZero, .absent = "1.0"});
+            {.help = "Factor on diffuse reflection", .range = kFromZero, .absent = "1.0"});
         add("specular", [material](auto& d, std::size_t i) -> auto& { return material(d, i).specular; },
-            {.help = "Factor on highlights; 0 is dull", .range = kFromZero, .absent = "0.0"});
+            {.help = "Factor on specular highlights; 0: none", .range = kFromZero, .absent = "0.0"});
         add("shininess", [material](auto& d, std::size_t i) -> auto& { return material(d, i).shininess; },
-            {.help = "Exponent of highlights", .range = {1, 1000}, .absent = "32.0"});
+            {.help = "Exponent of specular highlights", .range = {1, 1000}, .absent = "32.0"});
     };
     rows("materials[].", MEMBER(materials[i]), "one of a palette", "8 per voxel for the highest, 0.15 for the others");
     rows("below.", MEMBER(below), "[0.0, 0.0, 0.0]", "0.0");
-    t.add("transfer[].value", MEMBER(transfer[i].value), {.unit = "the volume's", .help = "Where; ascending"});
+    t.add("transfer[].value", MEMBER(transfer[i].value),
+          {.unit = "the volume's", .help = "Value of the point; ascending"});
     t.add("transfer[].color", MEMBER(transfer[i].color),
-          {.unit = "linear light", .help = "Colour there", .range = kShare});
+          {.unit = "linear light", .help = "Colour at this value", .range = kShare});
     t.add("transfer[].extinction", MEMBER(transfer[i].extinction),
-          {.unit = "per mm", .help = "Extinction there", .range = kFromZero});
+          {.unit = "per mm", .help = "Extinction at this value", .range = kFromZero});
 }
 
 void add_effects(KeyTable& t) {
     t.add("effects.background_top", MEMBER(effects.background_top),
           {.unit = "linear light",
-           .help = "Background at the top; `background` is at the bottom",
+           .help = "Background at the top of a vertical gradient; `background` is its bottom",
            .range = kShare,
            .absent = "one colour"});
-    t.add("effects.antialias", MEMBER(effects.antialias), {.help = "No footprint smaller than a pixel"});
+    t.add("effects.antialias", MEMBER(effects.antialias), {.help = "Footprints of at least one pixel"});
     t.add("effects.smooth_outlines", MEMBER(effects.smooth_outlines),
-          {.help = "A pixel that an outline passes shows what is on both its sides"});
+          {.help = "Antialias outlines: a pixel on an outline blends both sides"});
     t.add("effects.samples", MEMBER(effects.samples),
-          {.help = "n: the mean of n x n pictures whose rays lie between the pixels' centres",
-           .range = {1, kMaxSamples}});
+          {.help = "n: each pixel is the mean of n x n subpixel samples", .range = {1, kMaxSamples}});
     t.add("effects.fog.color", MEMBER(effects.fog->color),
-          {.unit = "linear light", .help = "What far things fade to", .range = kShare});
+          {.unit = "linear light", .help = "Colour of the fog", .range = kShare});
     t.add("effects.fog.density", MEMBER(effects.fog->density),
-          {.unit = "per mm", .help = "How fast", .range = kFromZero});
+          {.unit = "per mm", .help = "Density of the fog", .range = kFromZero});
     t.add("effects.fog.start", MEMBER(effects.fog->start),
-          {.unit = "mm", .help = "From which depth on", .range = kFromZero});
+          {.unit = "mm", .help = "Depth where the fog begins", .range = kFromZero});
     t.add("effects.silhouette.color", MEMBER(effects.silhouette->color),
-          {.unit = "linear light", .help = "Colour of what turns away from the eye", .range = kShare});
-    t.add("effects.silhouette.strength", MEMBER(effects.silhouette->strength), {.help = "Its share", .range = kShare});
+          {.unit = "linear light", .help = "Colour of silhouettes", .range = kShare});
+    t.add("effects.silhouette.strength", MEMBER(effects.silhouette->strength),
+          {.help = "Weight of the colour", .range = kShare});
     t.add("effects.silhouette.sharpness", MEMBER(effects.silhouette->sharpness),
-          {.help = "How narrow the line is", .range = {0.25, 64}});
+          {.help = "Exponent; larger values give thinner lines", .range = {0.25, 64}});
     t.add("effects.occlusion.strength", MEMBER(effects.occlusion->strength),
-          {.help = "Share of the occlusion that is shown", .range = kShare});
+          {.help = "Share of the occlusion that is applied", .range = kShare});
     t.add("effects.occlusion.radius", MEMBER(effects.occlusion->radius),
-          {.unit = "mm", .help = "Beyond it the sky is open", .range = kAboveZero});
+          {.unit = "mm", .help = "Radius within which matter occludes", .range = kAboveZero});
     t.add("effects.shadows.resolution", MEMBER(effects.shadows.resolution),
-          {.unit = "pixels", .help = "Across a light's picture", .range = {16, 2048}});
-    t.add("effects.shadows.layers", MEMBER(effects.shadows.layers), {.help = "Along a light", .range = {2, 1024}});
+          {.unit = "pixels", .help = "Resolution across the light", .range = {16, 2048}});
+    t.add("effects.shadows.layers", MEMBER(effects.shadows.layers),
+          {.help = "Layers along the light", .range = {2, 1024}});
     t.add("effects.clip.keep[].point", MEMBER(effects.clip.keep[i].point),
           {.unit = "world mm", .help = "A point of the plane"});
     t.add("effects.clip.keep[].normal", MEMBER(effects.clip.keep[i].normal),
-          {.unit = "world", .help = "Towards the side that is cut away", .direction = true});
+          {.unit = "world", .help = "Normal towards the side that is removed", .direction = true});
     t.add("effects.clip.remove[].point", MEMBER(effects.clip.remove[i].point),
           {.unit = "world mm", .help = "A point of the plane"});
     t.add("effects.clip.remove[].normal", MEMBER(effects.clip.remove[i].normal),
-          {.unit = "world", .help = "Out of the region that is cut out", .direction = true});
-    t.add("effects.clip.keep_box.low", MEMBER(keep_box->low), {.unit = "world mm", .help = "Its lowest corner"});
-    t.add("effects.clip.keep_box.high", MEMBER(keep_box->high), {.unit = "world mm", .help = "Its highest corner"});
-    t.add("effects.clip.remove_box.low", MEMBER(remove_box->low), {.unit = "world mm", .help = "Its lowest corner"});
-    t.add("effects.clip.remove_box.high", MEMBER(remove_box->high), {.unit = "world mm", .help = "Its highest corner"});
-    t.add("effects.overlays.orientation", MEMBER(effects.overlays.orientation), {.help = "The volume's axes"});
-    t.add("effects.overlays.scale_bar", MEMBER(effects.overlays.scale_bar), {.help = "A length in mm"});
-    t.add("effects.overlays.legend", MEMBER(effects.overlays.legend), {.help = "Materials or transfer function"});
+          {.unit = "world", .help = "Normal out of the region that is removed", .direction = true});
+    t.add("effects.clip.keep_box.low", MEMBER(keep_box->low), {.unit = "world mm", .help = "Lowest corner"});
+    t.add("effects.clip.keep_box.high", MEMBER(keep_box->high), {.unit = "world mm", .help = "Highest corner"});
+    t.add("effects.clip.remove_box.low", MEMBER(remove_box->low), {.unit = "world mm", .help = "Lowest corner"});
+    t.add("effects.clip.remove_box.high", MEMBER(remove_box->high), {.unit = "world mm", .help = "Highest corner"});
+    t.add("effects.overlays.orientation", MEMBER(effects.overlays.orientation),
+          {.help = "Marker of the volume's axes"});
+    t.add("effects.overlays.scale_bar", MEMBER(effects.overlays.scale_bar), {.help = "Scale bar in mm"});
+    t.add("effects.overlays.legend", MEMBER(effects.overlays.legend),
+          {.help = "Legend of the materials or the transfer function"});
 }
 
 void add_camera(KeyTable& t) {
     std::vector<std::string> views(view_names().begin(), view_names().end());
     t.add("camera.view", MEMBER(camera.view),
-          {.help = "A camera by name, which shows all that the scene shows of the volume; close: near a surface",
+          {.help = "A named view that frames the visible part of the volume; close: near a surface",
            .choices = views,
-           .absent = "where neither eye nor direction is given: front of patients and builtin volumes, else the view "
-                     "along an axis that tells most"});
+           .absent = "without eye and direction: front for patients and builtin volumes, else the axis view that shows "
+                     "most of the shape"});
     t.add("camera.eye", MEMBER(camera.eye),
-          {.unit = "world mm", .help = "Where the eye is", .absent = "such that all is seen"});
+          {.unit = "world mm", .help = "Position of the eye", .absent = "chosen to frame the volume"});
     t.add("camera.target", MEMBER(camera.target),
-          {.unit = "world mm", .help = "What the eye looks at", .absent = "the volume's centre"});
+          {.unit = "world mm", .help = "Point at the centre of the picture", .absent = "the volume's centre"});
     t.add("camera.direction", MEMBER(camera.direction),
           {.unit = "world",
-           .help = "Which way the eye looks; without eye the whole volume is framed",
+           .help = "View direction; without eye the whole volume is framed",
            .absent = "towards the target",
            .direction = true});
     t.add("camera.up", MEMBER(camera.up),
           {.unit = "world",
-           .help = "What is up in the picture",
+           .help = "Up direction of the picture",
            .absent = "[0.0, 0.0, 1.0], or the view's own",
            .direction = true});
     t.add("camera.voxel", MEMBER(camera.voxel),
@@ -194,33 +202,35 @@ void add_movie(KeyTable& t) {
     t.add("movie.fps", MEMBER(movie.fps), {.help = "Frames a second", .range = {0, 1000, true}});
     t.add("movie.voxel", MEMBER(movie.voxel),
           {.help = "Positions are voxel indices, directions run along the volume's axes"});
-    t.add("movie.loop", MEMBER(movie.loop), {.help = "The last key of the path is the first one again"});
-    t.add("movie.path[].time", MEMBER(movie.path[i].time), {.unit = "s", .help = "When; ascending"});
-    t.add("movie.path[].eye", MEMBER(movie.path[i].eye), {.unit = "world mm", .help = "Where the eye is then"});
-    t.add("movie.path[].target", MEMBER(movie.path[i].target), {.unit = "world mm", .help = "What it looks at"});
+    t.add("movie.loop", MEMBER(movie.loop), {.help = "Closed path: the last key repeats the first"});
+    t.add("movie.path[].time", MEMBER(movie.path[i].time), {.unit = "s", .help = "Time; ascending"});
+    t.add("movie.path[].eye", MEMBER(movie.path[i].eye), {.unit = "world mm", .help = "Position of the eye"});
+    t.add("movie.path[].target", MEMBER(movie.path[i].target),
+          {.unit = "world mm", .help = "Point at the centre of the picture"});
     t.add("movie.path[].up", MEMBER(movie.path[i].up),
-          {.unit = "world", .help = "What is up in the picture", .direction = true});
+          {.unit = "world", .help = "Up direction of the picture", .direction = true});
     t.add("movie.path[].fov", MEMBER(movie.path[i].fov),
           {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
-    t.add("movie.orbit.degrees", MEMBER(movie.orbit->degrees), {.unit = "degrees", .help = "How far around"});
-    t.add("movie.orbit.seconds", MEMBER(movie.orbit->seconds), {.unit = "s", .help = "How long", .range = kAboveZero});
-    t.add("movie.orbit.axis", MEMBER(movie.orbit->axis), {.unit = "world", .help = "Around what", .direction = true});
+    t.add("movie.orbit.degrees", MEMBER(movie.orbit->degrees), {.unit = "degrees", .help = "Angle of the orbit"});
+    t.add("movie.orbit.seconds", MEMBER(movie.orbit->seconds), {.unit = "s", .help = "Duration", .range = kAboveZero});
+    t.add("movie.orbit.axis", MEMBER(movie.orbit->axis),
+          {.unit = "world", .help = "Axis of rotation", .direction = true});
     t.add("movie.flight.points", MEMBER(movie.flight->points),
-          {.unit = "world mm", .help = "Where the eye flies along", .absent = "needed", .points = true});
+          {.unit = "world mm", .help = "Points that the eye passes", .absent = "required", .points = true});
     t.add("movie.flight.seconds", MEMBER(movie.flight->seconds),
-          {.unit = "s", .help = "How long", .range = kAboveZero});
+          {.unit = "s", .help = "Duration", .range = kAboveZero});
     t.add("movie.flight.look_ahead", MEMBER(movie.flight->look_ahead),
-          {.unit = "mm", .help = "How far ahead on the curve the eye looks", .range = kAboveZero});
+          {.unit = "mm", .help = "Distance of the target ahead on the curve", .range = kAboveZero});
     t.add("movie.flight.up", MEMBER(movie.flight->up),
-          {.unit = "world", .help = "What is up in the picture", .direction = true});
+          {.unit = "world", .help = "Up direction of the picture", .direction = true});
     t.add("movie.flight.fov", MEMBER(movie.flight->fov),
           {.unit = "degrees", .help = "Full vertical angle", .range = {0, 180, true, true}});
     t.add("movie.animate[].key", MEMBER(movie.animate[i].key),
-          {.help = "A number of the scene, such as effects.fog.density or iso_values[0]", .absent = "needed"});
+          {.help = "Key of a number in the scene, e.g. effects.fog.density or iso_values[0]", .absent = "required"});
     t.add("movie.animate[].times", MEMBER(movie.animate[i].times),
-          {.unit = "s", .help = "When; ascending", .absent = "needed"});
+          {.unit = "s", .help = "Time; ascending", .absent = "required"});
     t.add("movie.animate[].values", MEMBER(movie.animate[i].values),
-          {.help = "What it is then; as many as times", .absent = "needed"});
+          {.help = "Values at these times; as many as times", .absent = "required"});
 }
 
 void add_quality(KeyTable& t) {
@@ -228,16 +238,16 @@ void add_quality(KeyTable& t) {
     for (const Preset& preset : presets())
         names.emplace_back(preset.name);
     t.add("quality.preset", MEMBER(quality.preset),
-          {.help = "A row of the ladder; the keys below change single steps of it",
+          {.help = "A preset of the settings; the keys below override its values",
            .choices = names,
-           .absent = "none, the defaults below"});
+           .absent = "none: the defaults below"});
     t.keys.back().set = [](SceneDocument& d, std::size_t, const KeyValue& v) {
         d.quality.preset = std::get<std::string>(v);
         d.quality.settings = preset_named(d.quality.preset).settings;
     };
     t.add("quality.max_error", MEMBER(quality.max_error),
           {.unit = "RMS of full scale",
-           .help = "Choose the cheapest method that keeps this error against its model",
+           .help = "Choose the cheapest method with at most this error against its model",
            .range = {0, 1, true, true},
            .absent = "none"});
     for (const Knob& knob : ladder()) {
@@ -260,29 +270,29 @@ void add_quality(KeyTable& t) {
         t.keys.push_back(std::move(key));
     }
     t.add("quality.cull_buried", MEMBER(quality.settings.cull_buried),
-          {.help = "Drop voxels that opaque ones hide from every side"});
+          {.help = "Cull voxels that opaque voxels enclose"});
 }
 
 void add_output(KeyTable& t) {
     t.add(
         "output.file", MEMBER(output.file),
-        {.help = "The picture: .png (8 bit sRGB) or .exr (float32 linear, with alpha); relative to the working folder",
-         .absent = "said on the command line"});
+        {.help = "Picture file: .png (8 bit sRGB) or .exr (float32 linear, with alpha); relative to the working folder",
+         .absent = "given on the command line"});
     t.add("output.size", MEMBER(output.size), {.unit = "pixels", .help = "Width and height", .range = {1, 16384}});
     t.add("output.aovs", MEMBER(output.aovs), {.help = "Extra outputs", .choices = aov_names(), .absent = "none"});
-    t.add("output.compare_plain", MEMBER(output.compare_plain), {.help = "Conventional splatting beside it"});
-    t.add("output.compare_raycast", MEMBER(output.compare_raycast),
-          {.help = "What the ray caster makes of it beside it"});
+    t.add("output.compare_plain", MEMBER(output.compare_plain),
+          {.help = "Add a picture with conventional splatting beside it"});
+    t.add("output.compare_raycast", MEMBER(output.compare_raycast), {.help = "Add a ray cast picture beside it"});
     t.add("output.renderer", MEMBER(output.renderer),
-          {.help = "Which way to the picture", .choices = {kRendererNames.begin(), kRendererNames.end()}});
+          {.help = "Rendering method", .choices = {kRendererNames.begin(), kRendererNames.end()}});
     t.add("output.raycast_step", MEMBER(output.raycast_step),
-          {.unit = "voxels", .help = "Between samples (raycast)", .range = {0.01, 4, true}});
+          {.unit = "voxels", .help = "Distance between samples (raycast)", .range = {0.01, 4, true}});
     t.add("output.raycast_filter", MEMBER(output.raycast_filter),
-          {.help = "The field between the samples: interpolated, or the cubic B-spline through them, whose surfaces "
-                   "are nearer to the truth and take several times as long (raycast)",
+          {.help = "Interpolation between samples: trilinear, or the cubic B-spline through them, which is more "
+                   "accurate and several times slower (raycast)",
            .choices = {kRaycastFilterNames.begin(), kRaycastFilterNames.end()}});
     t.add("output.tolerance", MEMBER(output.tolerance),
-          {.help = "Largest error of a pixel, of full scale (reference, truth)", .range = {0, 0.1, true}});
+          {.help = "Maximum error of a pixel, of full scale (reference, truth)", .range = {0, 0.1, true}});
 }
 
 template <typename Access>
@@ -310,7 +320,7 @@ SceneTable optional_table(const char* path, const char* help, Access access) {
             }};
 }
 
-/// A document in which every table is there, for the defaults.
+/// A document in which every optional table exists, for the defaults.
 SceneDocument full_document(std::span<const SceneTable> tables) {
     SceneDocument document;
     for (const SceneTable& table : tables)
@@ -322,26 +332,28 @@ SceneDocument full_document(std::span<const SceneTable> tables) {
 
 std::span<const SceneTable> scene_tables() {
     static const std::vector<SceneTable> tables{
-        list_table("materials", "One per iso-value, in the same order: what lies from that value up", kMaxIsoValues,
+        list_table("materials", "One per iso-value, in the same order: the material above that value", kMaxIsoValues,
                    MEMBER(materials)),
         list_table("transfer",
-                   "Points of a piecewise-linear transfer function, which says colour and extinction in "
-                   "place of the materials",
+                   "Points of a piecewise-linear transfer function, which defines colour and extinction instead of the "
+                   "materials",
                    kMaxTransferPoints, MEMBER(transfer)),
-        list_table("lights", "At most 4; `lights = []`: colours are shown as they are. Default: a headlight",
-                   kMaxLights, MEMBER(lights)),
-        optional_table("effects.fog", "Far things fade", MEMBER(effects.fog)),
+        list_table("lights", "At most 4; with `lights = []` colours are unlit. Default: a headlight", kMaxLights,
+                   MEMBER(lights)),
+        optional_table("effects.fog", "Depth cueing: distant matter fades", MEMBER(effects.fog)),
         optional_table("effects.silhouette", "Lines where surfaces turn away from the eye", MEMBER(effects.silhouette)),
-        optional_table("effects.occlusion", "Ambient light does not reach into hollows", MEMBER(effects.occlusion)),
-        list_table("effects.clip.keep", "Planes: what lies beyond any of them is cut away", kMaxClipPlanes,
+        optional_table("effects.occlusion", "Ambient occlusion: hollows receive less ambient light",
+                       MEMBER(effects.occlusion)),
+        list_table("effects.clip.keep", "Clip planes: matter beyond any of them is removed", kMaxClipPlanes,
                    MEMBER(effects.clip.keep)),
-        list_table("effects.clip.remove", "Planes around a region that is cut out", kMaxClipPlanes,
+        list_table("effects.clip.remove", "Clip planes around a region that is removed", kMaxClipPlanes,
                    MEMBER(effects.clip.remove)),
-        optional_table("effects.clip.keep_box", "What lies outside of the box is cut away", MEMBER(keep_box)),
-        optional_table("effects.clip.remove_box", "What lies in the box is cut out", MEMBER(remove_box)),
-        list_table("movie.path", "Where the eye is at which time", 10000, MEMBER(movie.path)),
-        optional_table("movie.orbit", "Around the volume's centre, from the scene's camera on", MEMBER(movie.orbit)),
-        optional_table("movie.flight", "Along a smooth curve at constant speed", MEMBER(movie.flight)),
+        optional_table("effects.clip.keep_box", "The outside of the box is removed", MEMBER(keep_box)),
+        optional_table("effects.clip.remove_box", "The inside of the box is removed", MEMBER(remove_box)),
+        list_table("movie.path", "Camera keys in time", 10000, MEMBER(movie.path)),
+        optional_table("movie.orbit", "An orbit around the volume's centre, starting at the scene's camera",
+                       MEMBER(movie.orbit)),
+        optional_table("movie.flight", "A flight along a smooth curve at constant speed", MEMBER(movie.flight)),
         list_table("movie.animate", "A number that changes with time", 1000, MEMBER(movie.animate)),
     };
     return tables;

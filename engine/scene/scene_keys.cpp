@@ -33,7 +33,7 @@ bool whole(double value) {
     return std::trunc(value) == value;
 }
 
-/// The last step of a path.
+/// The last component of a path.
 std::string leaf(std::string_view path) {
     return std::string(path.substr(path.rfind('.') + 1));
 }
@@ -47,12 +47,12 @@ std::string with_index(const std::string& path, std::size_t index) {
 double& number_in(KeyValue& value, const KeyAddress& address, std::string_view text) {
     if (double* number = std::get_if<double>(&value); number && !address.component) return *number;
     auto* list = std::get_if<std::vector<double>>(&value);
-    if (!list || !address.component) fail("{}: is no single number", text);
-    if (*address.component >= list->size()) fail("{}: there are {} numbers", text, list->size());
+    if (!list || !address.component) fail("{}: is not a single number", text);
+    if (*address.component >= list->size()) fail("{}: the list has {} numbers", text, list->size());
     return (*list)[*address.component];
 }
 
-/// The key and its present value, or Error.
+/// The key and its current value, or Error.
 std::pair<const SceneKey*, KeyValue> value_at(const SceneDocument& document, const KeyAddress& address,
                                               std::string_view text) {
     const SceneKey* key = find_key(address.path);
@@ -65,7 +65,7 @@ std::pair<const SceneKey*, KeyValue> value_at(const SceneDocument& document, con
     if (group && group->count(document) <= address.index)
         fail("{}: the scene has no {}", text, with_index(table, address.index));
     const std::optional<KeyValue> value = key->get(document, address.index);
-    if (!value) fail("{}: the scene leaves it open", text);
+    if (!value) fail("{}: the scene does not set it", text);
     return {key, *value};
 }
 
@@ -159,7 +159,7 @@ KeyAddress key_address(std::string_view concrete) {
         const char* end = rest.data() + std::min(close, rest.size());
         const auto [next, error] = std::from_chars(begin, end, number);
         if (close == std::string_view::npos || error != std::errc() || next != end)
-            fail("{}: is no key of a scene; an index is a whole number, such as lights[0].color", concrete);
+            fail("{}: is not a key of a scene; an index is a whole number, e.g. lights[0].color", concrete);
         rest = rest.substr(close + 1);
         if (rest.empty() && !find_table(address.path)) {
             address.component = number;
@@ -191,7 +191,7 @@ std::string nearest_key(std::string_view concrete) {
     std::vector<std::string> paths, siblings;
     for (const SceneKey& key : scene_keys())
         paths.push_back(key.path);
-    for (const SceneKey& key : scene_keys())  // the tables they are in, and those around them
+    for (const SceneKey& key : scene_keys())  // also their tables and parent tables
         for (std::size_t end = key.path.find('.'); end != std::string::npos; end = key.path.find('.', end + 1)) {
             std::string table = key.path.substr(0, end);
             if (table.ends_with("[]")) table.resize(table.size() - 2);
@@ -205,7 +205,7 @@ std::string nearest_key(std::string_view concrete) {
         if (parent_of(path) == parent_of(generic)) siblings.push_back(path.substr(parent_of(path).size()));
     std::string best = nearest_name(leaf(generic), siblings);
     if (!best.empty()) best = parent_of(generic) + best;
-    // The right word in the wrong place.
+    // The correct name in the wrong table.
     for (std::size_t i = 0; best.empty() && i < paths.size(); ++i)
         if (leaf(paths[i]) == leaf(generic)) best = paths[i];
     if (best.empty()) best = nearest_name(generic, paths);

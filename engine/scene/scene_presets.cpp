@@ -15,31 +15,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it says more than materials and transfer functions can.
-bool says_light(const SceneDocument& content) {
+/// Whether it sets more than materials and transfer functions can.
+bool sets_light(const SceneDocument& content) {
     const SceneDocument usual;
     return content.ambient != usual.ambient || content.lights != usual.lights || content.lit != usual.lit ||
            content.background != usual.background || content.effects != usual.effects || content.volume.labels;
 }
 
-/// Reads a preset's text and refuses what is none.
+/// Parses a preset's text; throws if it is not a valid preset.
 ScenePreset parsed(std::string_view name, const std::string& file, std::string_view text) {
     const std::string called = file == "built in" ? "preset " + std::string(name) : file;
     ScenePreset preset{std::string(name), file, PresetKind::Look, parse_scene(text, called, {.preset = true})};
     const SceneDocument& content = preset.content;
     const std::size_t materials = content.materials.size(), points = content.transfer.size();
-    if (!says_light(content) && content.iso_sigmas.empty()) {
+    if (!sets_light(content) && content.iso_sigmas.empty()) {
         if (materials == 1 && points == 0 && content.iso_values.size() <= 1) preset.kind = PresetKind::Material;
         if (materials == 0 && points > 0) preset.kind = PresetKind::Transfer;
     }
     const std::size_t surfaces = std::max(content.iso_values.size(), content.iso_sigmas.size());
     const bool matched = materials == surfaces || materials == 0 || (surfaces == 0 && materials == 1);
-    if ((materials > 0 && points > 0) || (materials == 0 && points == 0 && !says_light(content)) || !matched)
+    if ((materials > 0 && points > 0) || (materials == 0 && points == 0 && !sets_light(content)) || !matched)
         throw SceneFileError({called +
-                              ": expected one [[materials]] for each of iso_values or iso_sigmas (one alone may do "
-                              "without), or [[transfer]] points with any iso_values"});
+                              ": expected one [[materials]] for each of iso_values or iso_sigmas (optional for "
+                              "a single material), or [[transfer]] points with optional iso_values"});
     if (preset.kind == PresetKind::Material && !content.materials.front().preset.empty())
-        throw SceneFileError({called + ": materials[0].preset: a preset cannot stand on another"});
+        throw SceneFileError({called + ": materials[0].preset: a preset cannot use another preset"});
     return preset;
 }
 
@@ -91,10 +91,11 @@ ScenePreset scene_preset(std::string_view name) {
     const std::vector<std::string> names = scene_preset_names();
     const std::string nearest = nearest_name(name, names);
     fail("\"{}\": no preset has this name; {}", name,
-         nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", ")) : "did you mean \"" + nearest + "\"?");
+         nearest.empty() ? fmt::format("expected one of: {}", fmt::join(names, ", "))
+                         : "did you mean \"" + nearest + "\"?");
 }
 
-void use_look(SceneDocument& document, std::string_view name) {
+void apply_look(SceneDocument& document, std::string_view name) {
     const SceneDocument content = scene_preset(name).content;
     document.iso_values = content.iso_values;
     document.iso_sigmas = content.iso_sigmas;

@@ -1,4 +1,4 @@
-// Materials, transfer functions and looks that have a name: TOML files of a user's folders and of the program itself.
+// Named materials, transfer functions and looks: TOML files in users' folders and in the program.
 #pragma once
 
 #include <filesystem>
@@ -11,36 +11,36 @@
 namespace edgesplat {
 
 enum class PresetKind {
-    Material,  ///< one material, with an iso-value where it has one that fits everywhere
-    Transfer,  ///< a transfer function, with the iso-values at which it has edges
-    Look,      ///< all that is to be seen and in which light: any of what `use_look` takes
+    Material,  ///< one material, with an iso-value if one value fits all volumes
+    Transfer,  ///< a transfer function with the iso-values of its edges
+    Look,      ///< a complete appearance: any of the values that `apply_look` applies
 };
 
-/// A part of a scene under a name.
+/// A named part of a scene.
 struct ScenePreset {
     std::string name;
-    std::string file;  ///< where it comes from; "built in" for those of the program
+    std::string file;  ///< its file; "built in" for presets of the program
     PresetKind kind = PresetKind::Material;
     SceneDocument content;
     bool is_transfer() const { return kind == PresetKind::Transfer; }
 };
 
-/// $XDG_CONFIG_HOME/edgesplat (~/.config/edgesplat); empty where neither is known.
+/// $XDG_CONFIG_HOME/edgesplat (~/.config/edgesplat); empty if neither variable is set.
 std::filesystem::path config_folder();
 
-/// Where users' presets are looked for, first come first: the folders in EDGESPLAT_PRESETS (colons between), then
+/// The folders of users' presets, highest priority first: those in EDGESPLAT_PRESETS (separated by colons), then
 /// $XDG_CONFIG_HOME/edgesplat/presets (~/.config/edgesplat/presets).
 std::vector<std::filesystem::path> preset_folders();
 
-/// Names of all presets, sorted. A name that occurs several times stands for the first file in the order above; the
-/// program's own come last.
+/// Names of all presets, sorted. If a name occurs several times, the first file in the order of folders is used; the
+/// program's presets have the lowest priority.
 std::vector<std::string> scene_preset_names();
 
-/// The preset of that name. Throws Error: no such preset (with the nearest name), or what is wrong with its file.
+/// The preset with this name. Throws Error if it does not exist (with the closest name) or its file is invalid.
 ScenePreset scene_preset(std::string_view name);
 
-/// What a scene looks like, by a preset of any kind: takes iso-values, materials, transfer function, ambient light,
-/// lights, background and effects from it, and its labels. Throws Error as `scene_preset` does.
-void use_look(SceneDocument& document, std::string_view name);
+/// Applies a preset of any kind: sets iso-values, materials, transfer function, ambient light, lights, background,
+/// effects and `volume.labels`. Throws Error as `scene_preset` does.
+void apply_look(SceneDocument& document, std::string_view name);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// What a scene leaves open is chosen from the volume.
+// Chooses omitted values of a scene from the volume.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -18,8 +18,8 @@ namespace edgesplat {
 namespace {
 
 constexpr double kOpaquePerVoxel = 8;          ///< default extinction of the highest material
-constexpr double kTranslucentPerVoxel = 0.15;  ///< and of those below it
-constexpr double kLabelSurface = 0.5;          ///< between nothing and any thing of a segmentation
+constexpr double kTranslucentPerVoxel = 0.15;  ///< default extinction of the materials below it
+constexpr double kLabelSurface = 0.5;          ///< iso-value between background and labels
 
 /// Default colours, lowest iso-value first; linear light.
 constexpr std::array<glm::dvec3, 6> kPalette{{{1.0, 0.85, 0.75},
@@ -41,11 +41,11 @@ std::vector<double> chosen_iso_values(const SceneDocument& document, const Volum
     return {suggestions.front().value};
 }
 
-/// So many standard deviations above the mean.
+/// Iso-values at `sigmas` standard deviations above the mean.
 std::vector<double> iso_values_of_sigmas(const std::vector<double>& sigmas, const Volume& volume) {
     if (volume.packed)
         return iso_values_of_sigmas(sigmas,
-                                    load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt)));
+                                    load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsAnalysed)));
     double sum = 0, squares = 0;
     for (const float value : volume.values)
         sum += static_cast<double>(value);
@@ -59,11 +59,11 @@ std::vector<double> iso_values_of_sigmas(const std::vector<double>& sigmas, cons
     return values;
 }
 
-/// A colour for each number that a thing may have in a volume from drawn_labels.
+/// A colour for each label number in a volume from drawn_labels.
 std::vector<TransferPoint> label_colors(const Volume& volume) {
     const double extinction = default_extinction(true, volume.geometry);
     const auto most = std::lround((static_cast<double>(volume.max_value) - 1) / kLabelStep);
-    // The surface is all things' together: below it is nothing, whatever it is found between.
+    // The surface at 0.5 is the same for all labels; lower values are transparent.
     std::vector<TransferPoint> points{{kLabelSurface - kLabelStep, default_label_color(1), 0},
                                       {kLabelSurface, default_label_color(1), extinction}};
     for (long label = 1; label <= most; ++label)
@@ -72,11 +72,11 @@ std::vector<TransferPoint> label_colors(const Volume& volume) {
     return points;
 }
 
-/// The view where none is asked for. Front is front of a patient, unless it sees a slab from its narrow side.
-std::string_view view_by_itself(const ViewRequest& request) {
+/// The default view. Front for a patient, unless that shows a slab from its narrow side.
+std::string_view default_view(const ViewRequest& request) {
     const Volume& volume = *request.volume;
     if (is_builtin(volume.name)) return "front";
-    if (!volume.in_patient) return telling_view(request);
+    if (!volume.in_patient) return most_informative_view(request);
     const VolumeGeometry& geometry = volume.geometry;
     glm::dvec3 size(0);
     for (int axis = 0; axis < 3; ++axis)
@@ -85,7 +85,7 @@ std::string_view view_by_itself(const ViewRequest& request) {
     return size.z < kSlab * std::min(size.x, size.y) ? "top" : "front";
 }
 
-/// The iso-values that all materials' presets bring; empty where one of them has none.
+/// The iso-values of all materials' presets; empty if one has none.
 std::vector<double> preset_iso_values(const std::vector<MaterialChoice>& materials) {
     std::vector<double> values;
     for (const MaterialChoice& material : materials) {
@@ -105,7 +105,7 @@ void check_iso_values(const std::vector<double>& iso, const Volume& volume) {
                  iso[i], volume.name, volume.min_value, volume.max_value);
 }
 
-/// `usual` with what the choice's preset says, then with what the choice itself says.
+/// `usual`, overridden by the choice's preset and then by the choice itself.
 Material material_of(const MaterialChoice& choice, const Material& usual) {
     Material material = usual;
     const auto apply = [&material](const MaterialChoice& said) {
@@ -119,14 +119,14 @@ Material material_of(const MaterialChoice& choice, const Material& usual) {
     };
     if (!choice.preset.empty()) {
         const ScenePreset preset = scene_preset(choice.preset);
-        if (preset.kind != PresetKind::Material) fail("preset '{}' is no material", preset.name);
+        if (preset.kind != PresetKind::Material) fail("preset '{}' is not a material", preset.name);
         apply(preset.content.materials.front());
     }
     apply(choice);
     return material;
 }
 
-/// Beyond them is outside of the box.
+/// Adds planes whose beyond sides are the outside of the box.
 void add_planes(const ClipBox& box, std::vector<Plane>& planes) {
     for (int axis = 0; axis < 3; ++axis) {
         glm::dvec3 normal(0);
@@ -143,7 +143,8 @@ glm::dvec3 default_color(std::size_t place) {
 }
 
 glm::dvec3 default_label_color(std::size_t label) {
-    // Hues a golden ratio of the circle apart, so that neighbouring numbers are told apart; every other one is paler.
+    // Hues a golden ratio of the circle apart, so that successive numbers are distinguishable; every second one is
+    // paler.
     constexpr double kGolden = 0.6180339887498949;
     const double turn = std::fmod(0.08 + kGolden * static_cast<double>(label - 1), 1.0);
     const double pale = label % 2 == 0 ? 0.45 : 0.12, bright = label % 3 == 0 ? 0.6 : 0.85;
@@ -195,7 +196,7 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
         fail("materials (--color, --extinction, --material): given {} times; expected once per iso-value, {} times",
              document.materials.size(), iso.size());
 
-    std::vector<std::size_t> order(iso.size());  // of the document's iso-values, by rising value
+    std::vector<std::size_t> order(iso.size());  // indices of the document's iso-values, by ascending value
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return iso[a] < iso[b]; });
     scene.materials.push_back(material_of(document.below, {.color = glm::dvec3(0)}));
@@ -234,12 +235,12 @@ Camera resolve_camera(const SceneDocument& document, const Volume& volume, const
         const glm::dvec3 direction =
             choice.direction ? along(*choice.direction) : (choice.target ? point(*choice.target) : center) - eye;
         if (!(glm::length(direction) > 0))
-            fail("camera.eye (--eye) is where the eye looks at ({}); give another target, or a direction",
+            fail("camera.eye (--eye) equals {}; give another target, or a direction",
                  choice.target ? "its target" : "the volume's centre");
         return {eye, direction, up, choice.fov};
     }
     if (choice.direction) return framing_camera(along(*choice.direction), up, request);
-    Camera camera = named_view(choice.view.empty() ? view_by_itself(request) : choice.view, request);
+    Camera camera = named_view(choice.view.empty() ? default_view(request) : choice.view, request);
     if (choice.up) camera.up = up;
     return camera;
 }

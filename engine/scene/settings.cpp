@@ -121,14 +121,14 @@ double kernel_reach(const Settings& settings) {
     return settings.warp == WarpFamily::Face ? kFaceFarthest : kPaperReach;
 }
 
-Settings papers_own(Settings base) {
+Settings paper_settings(Settings base) {
     base.edges = EdgeEstimator::Taylor;
     base.warp = WarpFamily::Paper;
     base.footprints = FootprintMode::Warp2d;
     return base;
 }
 
-Settings drawn_as(const Settings& settings) {
+Settings canonical_settings(const Settings& settings) {
     const Settings usual;
     Settings s = settings;
     if (!draws_warped(s)) {
@@ -142,10 +142,10 @@ Settings drawn_as(const Settings& settings) {
     return s;
 }
 
-Settings drawn_as(const Settings& settings, const Scene& scene) {
+Settings canonical_settings(const Settings& settings, const Scene& scene) {
     Settings s = settings;
     if (scene.iso_values.empty()) s.edges = EdgeEstimator::Off;
-    return drawn_as(s);
+    return canonical_settings(s);
 }
 
 bool smooths_outlines(const Settings& settings, const Scene& scene) {
@@ -153,7 +153,7 @@ bool smooths_outlines(const Settings& settings, const Scene& scene) {
 }
 
 void validate(const Settings& settings) {
-    // Comparisons are written so that NaN fails them.
+    // Written so that NaN fails.
     const auto in = [](double v, double low, double high) { return v >= low && v <= high; };
     const double full = settings.saturation;
     check("sheet_spacing", settings.sheet_spacing, in(settings.sheet_spacing, 0.05, 16), "[0.05, 16] voxels");

@@ -16,8 +16,8 @@ std::string read_text_file(const fs::path& path, std::string_view expected) {
     if (status.type() == fs::file_type::not_found) fail("{}: no such file", path.string());
     if (error) fail("{}: {}", path.string(), error.message());
     if (fs::is_directory(status)) fail("{}: is a folder; expected {}", path.string(), expected);
-    // Opening a FIFO or a device would wait for ever.
-    if (!fs::is_regular_file(status)) fail("{}: is no ordinary file; expected {}", path.string(), expected);
+    // Opening a FIFO or a device would block.
+    if (!fs::is_regular_file(status)) fail("{}: is not a regular file; expected {}", path.string(), expected);
     const std::uintmax_t size = fs::file_size(path, error);
     if (!error && size > kMaxTextBytes)
         fail("{}: {} bytes; expected {} of at most {}", path.string(), size, expected, kMaxTextBytes);

@@ -33,7 +33,7 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
         range.least = std::min(range.least, extinction);
         range.most = std::max(range.most, extinction);
     };
-    // Between its points and the interval's ends the function is linear; beyond the outermost it is constant.
+    // The function is linear between its points and the interval's ends, and constant beyond the outermost points.
     add(material == 0 ? scene.transfer.front().extinction : transfer_at(scene.transfer, low).extinction);
     add(high == infinity ? scene.transfer.back().extinction : transfer_at(scene.transfer, high).extinction);
     for (const TransferPoint& point : scene.transfer)
@@ -41,31 +41,31 @@ ExtinctionRange extinctions_of(const Scene& scene, std::size_t material) {
     return range;
 }
 
-std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& geometry) {
+std::uint32_t translucent_materials(const Scene& scene, const VolumeGeometry& geometry) {
     constexpr double kPerVoxel = 4;
     const glm::dvec3 spacing = geometry.spacing();
-    std::uint32_t seen_through = 0;
+    std::uint32_t translucent_mask = 0;
     for (std::size_t m = 0; m < scene.materials.size(); ++m) {
         const ExtinctionRange range = extinctions_of(scene, m);
-        const bool hides = range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel;
-        if (range.most > 0 && !hides) seen_through |= 1U << m;
+        const bool is_opaque = range.least * std::min({spacing.x, spacing.y, spacing.z}) >= kPerVoxel;
+        if (range.most > 0 && !is_opaque) translucent_mask |= 1U << m;
     }
-    return seen_through;
+    return translucent_mask;
 }
 
 std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
-    return draws_faces(settings) ? materials_seen_through(scene, geometry) : 0;
+    return draws_faces(settings) ? translucent_materials(scene, geometry) : 0;
 }
 
-bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry) {
-    return materials_seen_through(scene, geometry) == 0;
+bool all_matter_is_opaque(const Scene& scene, const VolumeGeometry& geometry) {
+    return translucent_materials(scene, geometry) == 0;
 }
 
 namespace {
 
-/// Whole kernels that hide what is behind: no clip plane shows what they are made of.
+/// Whether all matter is opaque and no clip plane cuts kernels.
 bool is_whole_and_opaque(const Scene& scene, const VolumeGeometry& geometry) {
-    return scene.effects.clip.empty() && hides_what_is_behind(scene, geometry);
+    return scene.effects.clip.empty() && all_matter_is_opaque(scene, geometry);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ double table_depth(const Scene& scene, const VolumeGeometry& geometry) {
     return is_whole_and_opaque(scene, geometry) ? kFaceDepth : 0;
 }
 
-bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+bool has_single_piece(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
     return draws_opaque_faces(settings, scene, geometry) && settings.sheets != SheetCut::Sliced;
 }
 
@@ -106,7 +106,7 @@ std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& vol
         only.value = 0;
         return {only};
     }
-    // Samples lie in 0..1; of points further away than this it does not matter how far.
+    // Samples lie in 0..1; points further away than this are clamped.
     constexpr double far = 1e30;
     std::vector<TransferPoint> points = scene.transfer;
     for (TransferPoint& point : points)

@@ -1,4 +1,4 @@
-// Colour and extinction by value: piecewise-linear transfer functions, and what materials are where there is none.
+// Piecewise-linear transfer functions, and properties of a scene that follow from its extinctions.
 #pragma once
 
 #include <cstddef>
@@ -13,47 +13,46 @@
 
 namespace edgesplat {
 
-/// The function at `value`, exactly; `points` ascending, at least one.
+/// The transfer function at `value`, exactly; `points` ascending, at least one.
 TransferPoint transfer_at(std::span<const TransferPoint> points, double value);
 
-/// Per mm.
+/// Extinctions, per mm.
 struct ExtinctionRange {
     double least = 0, most = 0;
 };
 
-/// Extinctions that occur in a material's interval of values: its own, or what the transfer function has there.
+/// Range of extinction in a material's interval of values: from the material or the transfer function.
 ExtinctionRange extinctions_of(const Scene& scene, std::size_t material);
 
-/// Whether all matter that is seen lets at most 2 % of light through a voxel.
-bool hides_what_is_behind(const Scene& scene, const VolumeGeometry& geometry);
+/// Whether all visible matter is opaque: at least 4 per voxel, so that at most 2 % of light passes a voxel.
+bool all_matter_is_opaque(const Scene& scene, const VolumeGeometry& geometry);
 
-/// Bit m: material m has matter that does not hide what is behind it.
-std::uint32_t materials_seen_through(const Scene& scene, const VolumeGeometry& geometry);
+/// Bit m: material m contains translucent matter.
+std::uint32_t translucent_materials(const Scene& scene, const VolumeGeometry& geometry);
 
-/// Those that voxels beside them carry, too: where faces cut kernels.
+/// Bit m: voxels next to material m emit splats of it, too. Only with faces, for translucent materials.
 std::uint32_t materials_carried_beside(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// Whether faces, and they alone, cut kernels of which all hide what is behind them: kernels are the narrow ones then.
+/// Whether kernels are cut only at faces (no clip planes) and all matter is opaque. Kernels are then the narrow ones.
 bool draws_opaque_faces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// The kernel of voxels that nothing cuts.
+/// The kernel of voxels without a face.
 const Kernel& uncut_kernel(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// No deeper under the faces of a table of footprints kernels are sampled, voxels: `kFaceDepth`, and then kernels are
-/// narrow, or 0.
+/// Maximum sampling depth below faces in the footprint table, voxels: `kFaceDepth` with narrow kernels, or 0 for no
+/// limit.
 double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 
-/// Whether of two pieces of a ray in one kernel the longer is enough: in whole kernels, uncut, that hide what is
-/// behind.
-bool one_piece_is_enough(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+/// Whether the longer of two pieces of a ray within a kernel is sufficient: for whole, unclipped, opaque kernels.
+bool has_single_piece(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// The one material whose faces rays may find where no quadric fits: all that is drawn, whole and opaque, of a field
-/// that is a cubic spline.
+/// The material whose faces may be found by rays where no quadric fits: the only visible material, unclipped and
+/// opaque, with the `cubic` estimator.
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry);
 
-/// The scene's points with values scaled as samples are (scaled_field), rounded to float32 as the device holds them;
-/// empty without a transfer function. In a constant volume one point: the function at its value.
+/// The scene's transfer points with values scaled like samples (scaled_field), rounded to float32 as on the device.
+/// Empty without a transfer function. For a constant volume: one point, the function at its value.
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume);
 
 }  // namespace edgesplat

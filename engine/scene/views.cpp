@@ -16,9 +16,9 @@
 namespace edgesplat {
 namespace {
 
-constexpr double kMargin = 1.04;             ///< room around the bounding box
-constexpr double kClosePixelsPerVoxel = 24;  ///< of the `close` view
-constexpr double kClearlyMore = 1.15;        ///< times what front tells makes another view the better one
+constexpr double kMargin = 1.04;             ///< margin around the bounding box
+constexpr double kClosePixelsPerVoxel = 24;  ///< pixels per voxel in the `close` view
+constexpr double kClearlyBetter = 1.15;      ///< a view must score this factor times front's score to replace it
 
 struct NamedDirection {
     std::string_view name;
@@ -48,8 +48,8 @@ bool shows(const Scene& scene, double value) {
     return scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())].extinction > 0;
 }
 
-/// Points (index space of `volume`) whose hull is that of what is seen: in each row the first and the last cube of
-/// eight voxels that are, so that single noisy ones do not count. Empty where no such cube is.
+/// Points (index space of `volume`) with the same convex hull as the visible matter: the first and last visible cube of
+/// eight voxels in each row, so that single noisy voxels do not count. Empty if there is none.
 std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
     const glm::ivec3 dims = volume.geometry.dims;
     const IndexClip clip = index_clip(scene.effects.clip, volume.geometry);
@@ -78,20 +78,20 @@ std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
     return points;
 }
 
-/// What must be in the picture, world: the volume's corners, or what is seen of it.
+/// Points that must be in the picture, world: the volume's corners, or its visible matter.
 std::vector<glm::dvec3> framed_points(const ViewRequest& request) {
     const Volume& volume = *request.volume;
     std::vector<glm::dvec3> points;
     if (request.fill && request.scene) {
-        const Volume* looked_at = &volume;
+        const Volume* analysed = &volume;
         Volume level;
         if (volume.packed) {
-            level = load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt));
-            looked_at = &level;
+            level = load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsAnalysed));
+            analysed = &level;
         }
-        points = seen_points(*looked_at, *request.scene);
+        points = seen_points(*analysed, *request.scene);
         for (glm::dvec3& point : points)
-            point = looked_at->geometry.to_world(point);
+            point = analysed->geometry.to_world(point);
     }
     for (int corner = 0; points.size() < 8 && corner < 8; ++corner) {
         const glm::dvec3 side(corner & 1, (corner >> 1) & 1, (corner >> 2) & 1);
@@ -100,10 +100,10 @@ std::vector<glm::dvec3> framed_points(const ViewRequest& request) {
     return points;
 }
 
-/// Where a ray first meets matter.
+/// The first intersection of a ray with matter.
 struct Meeting {
     double distance = 0;   ///< mm
-    glm::dvec3 normal{0};  ///< of the surface, unit, towards the eye; world
+    glm::dvec3 normal{0};  ///< unit normal of the surface towards the eye; world
 };
 
 std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& direction, const ViewRequest& request) {
@@ -116,7 +116,7 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
     const IndexClip clip = index_clip(request.scene->effects.clip, geometry);
     const glm::ivec3 last = geometry.dims - 1;
     const glm::dmat3 to_normal = glm::transpose(glm::inverse(geometry.index_to_world_axes));
-    bool in_volume = false;  // the place before
+    bool in_volume = false;  // whether the previous position was in the volume
     for (std::int64_t i = 0; i <= count; ++i) {
         const double t = static_cast<double>(i) * step;
         const glm::dvec3 place = geometry.to_index(eye + t * direction);
@@ -131,7 +131,7 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
             up[axis] = std::min(index[axis] + 1, last[axis]);
             down[axis] = std::max(index[axis] - 1, 0);
             const double rises = static_cast<double>(value_at(volume, up) - value_at(volume, down));
-            // Matter that the volume's border cuts is flat there, whatever it is within.
+            // Matter cut by the volume's border has a flat face there.
             gradient[axis] = !at_border ? rises : up[axis] - down[axis] < 2 ? 1 : 0;
         }
         glm::dvec3 normal = to_normal * gradient;
@@ -142,8 +142,8 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
     return std::nullopt;
 }
 
-/// The point that `close` looks at: on the central ray where it meets a surface head on, else on the ray nearest to it
-/// that does. Nothing where no ray meets any.
+/// The target of `close`: the surface hit head-on by the central ray, else by the ray nearest to it. nullopt if no ray
+/// hits a surface.
 std::optional<glm::dvec3> point_to_look_at(const Camera& camera, const ViewRequest& request) {
     constexpr double kHeadOn = 0.5;  // cosine
     constexpr int kRings = 12, kAround = 16;
@@ -164,11 +164,11 @@ std::optional<glm::dvec3> point_to_look_at(const Camera& camera, const ViewReque
     return grazed;
 }
 
-/// How much a picture tells of shape: in how many directions surfaces face (the exponential of their entropy), by the
-/// area that they cover across the rays, in mm^2. A wall, however near, tells nothing; a slab from its narrow side is
-/// small, and so is a row of things from its end, however large the first of them is drawn.
-double told_by(const Camera& camera, const ViewRequest& request) {
-    constexpr int kRays = 40, kBins = 6;  // along a side of the picture; of directions
+/// How much a picture shows of the shape: the number of directions that surfaces face (exponential of their entropy),
+/// times their area perpendicular to the rays, in mm^2. A wall scores little even if it is near; a slab from its narrow
+/// side has little area, and so has a row of objects seen from its end.
+double shape_score(const Camera& camera, const ViewRequest& request) {
+    constexpr int kRays = 40, kBins = 6;  // rays per side of the picture; bins of directions
     const CameraFrame frame = camera_frame(camera);
     const double aspect = static_cast<double>(request.width) / request.height;
     std::array<double, kBins * kBins> faced{};
@@ -183,7 +183,8 @@ double told_by(const Camera& camera, const ViewRequest& request) {
             const auto found = first_surface(camera.eye, direction, request);
             if (!found) continue;
             const int column = bin(glm::dot(found->normal, frame.right)), row = bin(glm::dot(found->normal, frame.up));
-            const double area = found->distance * found->distance;  // rays are as far apart as they are long
+            // the distance between rays is proportional to their length
+            const double area = found->distance * found->distance;
             faced[static_cast<std::size_t>(row * kBins + column)] += area;
             met += area;
         }
@@ -201,7 +202,7 @@ Camera camera_around(const std::vector<glm::dvec3>& points, const glm::dvec3& di
     const double tan_y = frame.tan_half_y / kMargin;
     const double tan_x = tan_y * request.width / request.height;
     const double infinity = std::numeric_limits<double>::infinity();
-    // How far out the picture's sides must lie where they pass the centre, so that every point is between them.
+    // Positions of the picture's sides in the plane of the centre, so that every point is between them.
     glm::dvec4 most(-infinity);  // right, left, top, bottom
     for (const glm::dvec3& point : points) {
         const glm::dvec3 p = point - center;
@@ -239,18 +240,18 @@ Camera framing_camera(const glm::dvec3& direction, const glm::dvec3& up, const V
     return camera_around(framed_points(request), direction, up, request);
 }
 
-std::string_view telling_view(const ViewRequest& request) {
+std::string_view most_informative_view(const ViewRequest& request) {
     if (request.volume->packed) return "front";
     const std::vector<glm::dvec3> points = framed_points(request);
     const auto worth = [&](const NamedDirection& view) {
-        return told_by(camera_around(points, view.direction, view.up, request), request);
+        return shape_score(camera_around(points, view.direction, view.up, request), request);
     };
     const NamedDirection* best = kViews.data();
-    double most = kClearlyMore * worth(*best);
+    double most = kClearlyBetter * worth(*best);
     for (const NamedDirection& view : kViews) {
-        const double told = &view == kViews.data() || view.direction[0] * view.direction[1] != 0 ? 0 : worth(view);
-        if (told > most) {
-            most = told;
+        const double score = &view == kViews.data() || view.direction[0] * view.direction[1] != 0 ? 0 : worth(view);
+        if (score > most) {
+            most = score;
             best = &view;
         }
     }
@@ -260,7 +261,7 @@ std::string_view telling_view(const ViewRequest& request) {
 Camera named_view(std::string_view name, const ViewRequest& request) {
     const auto view =
         std::find_if(kViews.begin(), kViews.end(), [&](const NamedDirection& v) { return v.name == name; });
-    if (view == kViews.end()) fail("no view is called '{}'; there are {}", name, fmt::join(kNames, ", "));
+    if (view == kViews.end()) fail("unknown view '{}', expected one of: {}", name, fmt::join(kNames, ", "));
     Camera camera = framing_camera(view->direction, view->up, request);
     if (name != "close") return camera;
 

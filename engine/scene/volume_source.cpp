@@ -1,4 +1,4 @@
-// Where a scene's volume is, and what is done to it before anything is drawn.
+// Finds, loads and preprocesses a scene's volume.
 #include <cstdlib>
 #include <sstream>
 
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether there is something to open; of a pattern of slices ("slice_%03d.tif", "*.dcm") only the folder can be told.
+/// Whether the path can be opened; for a pattern of slices ("slice_%03d.tif", "*.dcm") only its folder is checked.
 bool may_be_opened(const fs::path& path) {
     std::error_code ignored;
     if (fs::exists(path, ignored)) return true;
@@ -40,7 +40,7 @@ std::string find_volume(const std::string& path, const std::vector<fs::path>& fo
         fail("{}: is a scene file; expected a volume: a file, a folder, a pattern of slices or builtin:NAME", path);
     std::string places;
     for (const fs::path& folder : folders) {
-        // An absolute path stands for itself: folder / path is path then.
+        // For an absolute path, folder / path is path.
         const fs::path candidate = folder / path;
         if (may_be_opened(candidate)) return candidate.string();
         if (fs::path(path).is_absolute()) break;
@@ -82,7 +82,7 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
 }
 
 void recognise_labels(SceneDocument& document, Volume& volume) {
-    constexpr std::size_t kFewest = 3;  // a mask has one surface as it is
+    constexpr std::size_t kFewest = 3;  // two labels are a mask, which has one surface
     const VolumeSource& source = document.volume;
     const bool open = document.iso_values.empty() && document.iso_sigmas.empty() && document.materials.empty() &&
                       document.transfer.empty() && document.transfer_preset.empty() && !source.threshold &&
@@ -90,7 +90,7 @@ void recognise_labels(SceneDocument& document, Volume& volume) {
     const bool splats = document.output.renderer == RendererKind::Splat && !document.output.compare_raycast;
     if (!open || !splats || volume.packed || is_builtin(volume.name)) return;
     const std::size_t count = labels_of(volume).size();
-    if (count < kFewest || count > kMostDrawnLabels + 1) return;
+    if (count < kFewest || count > kMaxDrawnLabels + 1) return;
     volume = drawn_labels(volume);
     document.volume.labels = true;
     if (!document.volume.checksum.empty()) document.volume.checksum = fmt::format("{:016x}", volume.checksum);

@@ -17,7 +17,7 @@ std::uint32_t material_of(const shader::SceneParams& params, float scaled) {
     return material;
 }
 
-/// Bits of the materials between two samples' materials, both included.
+/// Bit mask of all materials from that of range.low to that of range.high.
 std::uint32_t materials_between(const shader::SceneParams& params, const ValueRange& range, const Volume& volume) {
     const auto material = [&](float value) {
         return material_of(params, static_cast<float>(scaled_value(volume, static_cast<double>(value))));
@@ -28,7 +28,7 @@ std::uint32_t materials_between(const shader::SceneParams& params, const ValueRa
     return mask;
 }
 
-/// The eight corners of a box.
+/// Calls body for each of the eight corners of a box.
 template <typename Body>
 void for_corners(const glm::dvec3& low, const glm::dvec3& high, const Body& body) {
     for (int corner = 0; corner < 8; ++corner)
@@ -58,13 +58,14 @@ std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, cons
                 block.size = glm::min(block.core_low + block.core_size + kBorder, dims) - block.low;
                 const std::uint32_t inside =
                     materials_between(params, source.range(block.core_low, block.core_size), volume);
-                // Voxels up to two beside matter that one sees through carry it, too.
+                // Voxels up to two voxels beside translucent matter emit splats of it, too.
                 const glm::ivec3 beside_low = glm::max(block.core_low - 2, 0);
                 const glm::ivec3 beside = glm::min(block.core_low + block.core_size + 2, dims) - beside_low;
-                const std::uint32_t around =
-                    params.seen_through == 0 ? 0 : materials_between(params, source.range(beside_low, beside), volume);
-                if ((inside & params.visible_mask) == 0 && (around & params.seen_through) == 0) continue;
-                // Outside the volume nothing is opaque, and what is cut away hides nothing.
+                const std::uint32_t around = params.translucent_mask == 0
+                                                 ? 0
+                                                 : materials_between(params, source.range(beside_low, beside), volume);
+                if ((inside & params.visible_mask) == 0 && (around & params.translucent_mask) == 0) continue;
+                // Outside the volume nothing is opaque, and clipped voxels occlude nothing.
                 const glm::ivec3 buried_low = block.core_low - params.bury_distance;
                 const glm::ivec3 buried = block.core_size + 2 * params.bury_distance;
                 const bool within = glm::all(glm::greaterThanEqual(buried_low, glm::ivec3(0))) &&

@@ -7,19 +7,18 @@
 namespace edgesplat {
 namespace {
 
-// A directional light is a point light this many radii of the box away: rays part by less than 1/50 voxel in 1000.
+// A directional light is a point light this many radii of the box away: rays diverge by less than 1/50 voxel in 1000.
 constexpr double kFarLight = 1e5;
-// A point light sees the box in one picture up to this slope from its axis (50 degrees), else in a cube of six.
+// A point light takes one picture if the box is within this slope of its axis (50 degrees), else up to six (a cube).
 constexpr double kWidestSlope = 1.2;
-// Optical depth at which a light's pixel takes no more: 6e-6 of the light, less than a unorm16 shows.
+// Optical depth at which a light's pixel saturates: 6e-6 of the light remain, less than a unorm16 step.
 constexpr float kDark = 12.0F;
-// Quadrature nodes of a piece of a footprint: with slices of a voxel 10 would be exact to 1e-5, 4 are to 1e-3 of the
-// peak.
+// Quadrature nodes per piece of a footprint. Error for slices of a voxel, relative to the peak: 1e-3 (10 nodes: 1e-5).
 constexpr std::uint32_t kNodes = 4;
-// Layers closer than this, in voxels, show nothing that kernels of radius 1.6 do not blur.
+// Thinnest layer, voxels. Thinner layers resolve nothing more, since kernels have a radius of 1.6 voxels.
 constexpr double kThinnestLayer = 1.0;
 
-/// Corners of the voxel box, grown by the reach of the kernels; world.
+/// Corners of the voxel box, widened by the kernels' reach (voxels); world coordinates.
 std::array<glm::dvec3, 8> corners_of(const VolumeGeometry& geometry, const glm::ivec3& low, const glm::ivec3& high,
                                      double reach) {
     std::array<glm::dvec3, 8> corners;
@@ -34,7 +33,7 @@ double degrees_of_slope(double slope) {
     return glm::degrees(2 * std::atan(slope));
 }
 
-/// Largest slope of a corner from the view's axis along either side of the picture; infinite behind the eye.
+/// Largest slope of a corner against the view axis, horizontally or vertically; infinite if a corner is behind the eye.
 double widest_slope(const std::array<glm::dvec3, 8>& corners, const Camera& camera) {
     const CameraFrame frame = camera_frame(camera);
     double widest = 0;
@@ -47,7 +46,7 @@ double widest_slope(const std::array<glm::dvec3, 8>& corners, const Camera& came
     return widest;
 }
 
-/// Whether all corners lie beyond one side of the picture, or behind the eye.
+/// Whether all corners lie beyond the same side of the picture, or behind the eye.
 bool misses(const std::array<glm::dvec3, 8>& corners, const Camera& camera) {
     const CameraFrame frame = camera_frame(camera);
     const double s = frame.tan_half_y;
@@ -58,7 +57,7 @@ bool misses(const std::array<glm::dvec3, 8>& corners, const Camera& camera) {
     });
 }
 
-/// The scene without what a light does not see.
+/// The scene's matter and clip planes, without lights and other effects.
 Scene only_matter(const Scene& scene) {
     Scene dark = scene;
     dark.lights.clear();
@@ -89,11 +88,11 @@ ShadowPlan plan_shadows(const Scene& scene, const Settings& settings) {
                                .direction = far ? light.direction : Light{}.direction,
                                .position = far ? Light{}.position : light.position});
     }
-    // Slices make the depth at every layer exact, whatever the kernel's size.
+    // With slices the optical depth at every layer is exact for any kernel size.
     plan.settings.sheets = SheetCut::Sliced;
     plan.settings.sheet_spacing = std::max(plan.settings.sheet_spacing, kThinnestLayer);
     plan.settings.sheet_format = SheetFormat::Layers;
-    plan.settings = drawn_as(plan.settings, scene);
+    plan.settings = canonical_settings(plan.settings, scene);
     plan.settings.saturation = Settings{}.saturation;
     return plan;
 }
@@ -102,7 +101,7 @@ std::vector<Camera> light_views(const Light& light, const VolumeGeometry& geomet
                                 const glm::ivec3& box_high, double reach, int resolution) {
     const auto corners = corners_of(geometry, box_low, box_high, reach);
     const glm::dvec3 middle = geometry.to_world(0.5 * (glm::dvec3(box_low) + glm::dvec3(box_high)));
-    // Two pixels to spare, so that no splat's place is looked up across the border.
+    // A margin of two pixels, so that no lookup at a splat crosses the picture's border.
     const double spare = resolution / (resolution - 2.0);
     Camera camera;
     if (light.kind == Light::Kind::Directional) {
@@ -147,7 +146,7 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
         nearest = std::min(nearest, z - around);
         farthest = std::max(farthest, z + around);
     }
-    // So many sheets of this thickness that, wherever the first begins, there are no more than layers.
+    // Thickness for layers - 1 sheets: the first sheet may begin before `nearest`, which adds one.
     Settings settings = shadows.settings;
     const double thickness = (farthest - std::max(nearest, 0.0)) / (shadows.quality.layers - 1);
     settings.sheet_spacing = std::max(settings.sheet_spacing, thickness / voxel);

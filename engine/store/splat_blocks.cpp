@@ -1,4 +1,4 @@
-// SplatStore: a list of the splats of blocks, which come and go.
+// SplatStore: a list of splats that blocks are added to and dropped from.
 #include <algorithm>
 
 #include "engine/plan/resource_table.h"
@@ -51,7 +51,7 @@ std::vector<float> SplatStore::read_block(const VolumeStore& volume, std::size_t
     };
     if (!r.samples.valid() || r.being_read != block) begin(block);
     std::vector<float> samples = r.samples.get();
-    // The next block is read while the device is at work on this one.
+    // Read the next block while the device processes this one.
     if (after) begin(*after);
     return samples;
 }
@@ -83,15 +83,15 @@ bool SplatStore::drop_blocks(std::span<const std::size_t> needed, bool shrink) {
     for (const std::size_t i : kept)
         count += residence_->held[i]->count;
     if (count == lists_.splat_count && !shrink) return false;
-    // Each list moves to one of its own length: the parts that stay, one behind the other.
+    // Each list is copied to a new one that has only the kept parts, without gaps.
     gpu::Commands& commands = session_->commands();
     auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
     for (const SplatListRow& row : splat_list_rows()) {
         gpu::Buffer& list = lists_.*row.list;
         if (!list) continue;
         const std::uint64_t bytes = row.bytes(*collected_);
-        gpu::Buffer closed(session_->device(), std::max<std::uint64_t>(count, 1) * bytes, gpu::Buffer::Place::Device,
-                           row.text.name);
+        gpu::Buffer compacted(session_->device(), std::max<std::uint64_t>(count, 1) * bytes, gpu::Buffer::Place::Device,
+                              row.text.name);
         std::vector<vk::BufferCopy> parts;
         std::uint64_t to = 0;
         for (const std::size_t i : kept) {
@@ -101,11 +101,11 @@ bool SplatStore::drop_blocks(std::span<const std::size_t> needed, bool shrink) {
         }
         if (!parts.empty()) {
             commands.run([&] {
-                commands.copy(list, closed, parts);
+                commands.copy(list, compacted, parts);
                 commands.barrier();
             });
         }
-        list = std::move(closed);
+        list = std::move(compacted);
         params.*row.collected = list.address();
     }
     lists_.splat_count = lists_.edge_splat_count = lists_.crease_splat_count = 0;

@@ -1,4 +1,4 @@
-// SplatStore: what of the light reaches each splat.
+// SplatStore: the light that reaches each splat.
 #include <algorithm>
 
 #include "engine/passes/2b_occlude_ambient.h"
@@ -63,7 +63,7 @@ void SplatStore::drop_shadows() {
 void SplatStore::begin_shadows() {
     drop_shadows();
     lists_.shadows = light_list(session_->device(), &SplatLists::shadows, lists_.splat_count);
-    // What lies in no picture of the light is in nothing's shadow.
+    // Splats outside the light's pictures are unshadowed.
     session_->commands().run([&] { session_->commands().fill(lists_.shadows, ~0U); });
 }
 

@@ -12,16 +12,16 @@ namespace {
 
 using Place = gpu::Buffer::Place;
 
-// A splat's number is multiplied by its size in 32 bits.
+// Shaders compute number * size of a splat in 32 bits.
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
 
-/// The planes of the scene, counted from a block's first voxel.
+/// Makes clip planes relative to a block's first voxel.
 void place_planes(glm::vec4 (&planes)[shader::MAX_CLIP_PLANES], const glm::ivec3& low) {
     for (glm::vec4& plane : planes)
         plane.w += glm::dot(glm::vec3(plane), glm::vec3(low));
 }
 
-/// Voxels whose edges are found again where the samples in a box are others.
+/// Number of voxels whose edges must be estimated again if the samples in a box change.
 std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& dims) {
     const VoxelBox reached = changed.widened(shader::CHANGE_MARGIN);
     return VoxelBox{glm::max(reached.low, 0), glm::min(reached.high, dims - 1)}.count();
@@ -66,12 +66,12 @@ bool SplatStore::collect(VolumeStore& volume, const CollectionPlan& wanted, Setu
     if (volume.changed() && collected_ == wanted && !wanted.takes_coefficients())
         collect_changes(volume, cost);
     else
-        collect_anew(volume, wanted, cost);
+        recollect(volume, wanted, cost);
     volume.forget_changes();
     return true;
 }
 
-void SplatStore::collect_anew(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
+void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
     collected_.reset();
     forget_light();
     lists_.occlusion = {};
@@ -86,7 +86,7 @@ void SplatStore::collect_anew(VolumeStore& volume, const CollectionPlan& wanted,
 }
 
 void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
-    // Nothing is known until it is found again.
+    // The list is invalid until the end; an exception leaves it so.
     const CollectionPlan plan = *std::exchange(collected_, std::nullopt);
     const VoxelBox& changed = *volume.changed();
     forget_light();
@@ -104,7 +104,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     };
     run([&] { mark_block(plan, whole); });
     if (plan.edge_field) {
-        // The pass goes as far beyond the core as it does in a block.
+        // The pass also covers ESTIMATE_MARGIN voxels around the core, as in a block.
         const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - shader::ESTIMATE_MARGIN);
         params.core_low = core.low;
         params.core_size = core.size();
@@ -127,7 +127,7 @@ void SplatStore::clear_counts() {
 }
 
 void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& largest) {
-    // What a change of the scene replaces is not held next to its successor.
+    // Free old resources before allocating new ones, so that both never exist at once.
     for (const SplatListRow& row : splat_list_rows())
         lists_.*row.list = {};
     for (const CollectionBufferRow& row : collection_buffer_rows())
@@ -233,9 +233,9 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     scan_runs(block, out);
     const std::uint64_t total = out.first + out.count;
     if (total > most_splats) return std::nullopt;
-    if (total > kMostSplats) fail("{} voxels can be seen at once; the splat list holds {}", total, kMostSplats);
+    if (total > kMostSplats) fail("{} splats are visible at once; the splat list allows {}", total, kMostSplats);
     if (exact || total > room()) reserve(plan, exact ? total : std::min(std::max(total, 2 * room()), most_splats));
-    // Behind the runs' offsets three more words.
+    // Three counters follow the runs' offsets.
     const std::uint64_t runs = passes::collect_runs(block.core_size);
     const std::span<std::uint32_t> counts = lists_.run_offsets.mapped<std::uint32_t>(runs + 3).subspan(runs);
     std::ranges::fill(counts, 0U);
@@ -252,7 +252,7 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     lists_.splat_count = total;
     lists_.edge_splat_count += out.with_edge;
     lists_.crease_splat_count += out.with_crease;
-    // Rays need the whole field.
+    // Tracing faces needs the whole field on the device.
     if (!residence_) lists_.traced_splat_count += counts[2];
     return out;
 }

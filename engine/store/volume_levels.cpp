@@ -5,7 +5,7 @@
 namespace edgesplat {
 namespace {
 
-/// A level as a volume without samples.
+/// A level's metadata as a volume without samples.
 std::shared_ptr<const Volume> outline(const Volume& volume, int level) {
     const auto out = std::make_shared<Volume>();
     out->geometry = level_geometry(volume.geometry, level);

@@ -1,4 +1,4 @@
-// A volume as it was set, and its coarser resolutions, each made when it is first asked for.
+// A volume and its coarser resolutions, each computed on first use.
 #pragma once
 
 #include <memory>
@@ -10,21 +10,21 @@ namespace edgesplat {
 
 class VolumeLevels {
   public:
-    /// Null: there is none.
+    /// Null: no volume.
     void set(std::shared_ptr<const Volume> volume);
     const std::shared_ptr<const Volume>& original() const { return levels_.front(); }
-    /// Voxels of 2^level along each axis; without samples where the original has none. Those of one call last until the
-    /// next set().
+    /// The volume with voxels of 2^level original voxels along each axis; without samples if the original has none.
+    /// Valid until the next set().
     const std::shared_ptr<const Volume>& at(int level);
     int count() const;
-    /// The finest level that is on the device in a moment.
+    /// The finest level of at most kCoarseVoxels voxels, or the coarsest level.
     int coarse() const;
 
   private:
     std::vector<std::shared_ptr<const Volume>> levels_{nullptr};
 };
 
-/// A level of no more voxels is on the device in a moment.
+/// A level with at most this many voxels is uploaded almost at once.
 inline constexpr std::size_t kCoarseVoxels = std::size_t{1} << 17U;
 
 }  // namespace edgesplat

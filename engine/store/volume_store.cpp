@@ -29,7 +29,7 @@ bool VolumeStore::hold_in_blocks(bool blocks) {
 
 void VolumeStore::change(std::shared_ptr<const Volume> next, const VoxelBox& box) {
     volume_ = std::move(next);
-    // The same samples have the same spline, which rays may need for every picture.
+    // Equal samples keep their spline coefficients, which rays may need for every picture.
     if (box.empty()) return;
     release_coefficients();
     for (std::optional<VoxelBox>* boxes : {&changed_, &behind_}) {

@@ -1,4 +1,4 @@
-// One resolution of a volume on the device: as a whole, or a block of it at a time.
+// Keeps one resolution of a volume on the device: as a whole, or one block at a time.
 #pragma once
 
 #include <memory>
@@ -11,10 +11,10 @@
 
 namespace edgesplat {
 
-/// Part of a volume whose splats are collected at once; voxels of the volume.
+/// Part of a volume whose splats are collected at once, in voxels of the volume.
 struct CollectionBlock {
-    glm::ivec3 low{0}, size{0};            ///< what the device's images hold
-    glm::ivec3 core_low{0}, core_size{0};  ///< what becomes splats
+    glm::ivec3 low{0}, size{0};            ///< voxels in the device's images: core and border
+    glm::ivec3 core_low{0}, core_size{0};  ///< core: voxels that become splats
 };
 CollectionBlock whole_block(const glm::ivec3& dims);
 
@@ -23,32 +23,31 @@ class VolumeStore {
     explicit VolumeStore(DeviceSession& session) : session_(&session) {}
 
     const std::shared_ptr<const Volume>& volume() const { return volume_; }
-    int level() const { return level_; }  ///< voxels of 2^level along each axis of the volume as it was set
+    int level() const { return level_; }  ///< a voxel is 2^level original voxels long
     bool in_blocks() const { return in_blocks_; }
     const VolumeImages& images() const { return images_; }
-    /// Samples that are others since the splats were collected, of a volume that is held as a whole.
+    /// Box of samples that changed since the splats were collected; only for a volume as a whole.
     const std::optional<VoxelBox>& changed() const { return changed_; }
 
-    /// What is held from now on. Whether something else was: then nothing is on the device any more.
+    /// Select the volume, and whether it is in blocks. Return whether that changed; then the images are freed.
     bool hold(std::shared_ptr<const Volume> volume, int level);
     bool hold_in_blocks(bool blocks);
-    /// The same grid of voxels with other samples in a box, which may be empty.
+    /// Replaces the volume by one with the same grid whose samples differ only in `box`, which may be empty.
     void change(std::shared_ptr<const Volume> next, const VoxelBox& box);
     void forget_changes() { changed_.reset(); }
 
-    /// As a whole: brings to the device what is not there of the samples, of the spline through them. Whether anything
-    /// was missing.
+    /// As a whole: upload samples, or spline coefficients, that are not on the device. Return whether any were missing.
     bool provide();
     bool provide_coefficients();
     void release_coefficients() { images_.coefficients = {}; }
 
-    /// In blocks: drops what is held, for blocks of up to that size.
+    /// In blocks: allocates images for blocks of up to that size; the old images are freed.
     void hold_blocks(const glm::ivec3& largest, bool coefficients);
-    /// Brings a block's scaled samples to the device, and their spline where there is room for one.
+    /// Uploads a block's scaled samples, and their spline coefficients if hold_blocks() allocated them.
     void load(const CollectionBlock& block, std::span<const float> samples);
 
   private:
-    /// Makes an image as a row of the table says.
+    /// Allocates an image as its row in the resource table defines.
     void make(gpu::GpuImage VolumeImages::*image, const glm::ivec3& size);
 
     DeviceSession* session_;
@@ -56,7 +55,7 @@ class VolumeStore {
     int level_ = 0;
     bool in_blocks_ = false;
     VolumeImages images_;
-    std::optional<VoxelBox> changed_, behind_;  ///< `behind_`: of these, what the image does not hold yet
+    std::optional<VoxelBox> changed_, behind_;  ///< `behind_`: changed samples that are not uploaded yet
 };
 
 }  // namespace edgesplat

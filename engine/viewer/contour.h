@@ -1,4 +1,4 @@
-// Where lines cross iso-contours, and how well samples tell the place.
+// Where rays cross iso-contours, and the uncertainty of the crossings.
 #pragma once
 
 #include <cmath>
@@ -18,7 +18,7 @@ struct IndexRay {
     glm::dvec3 at(double t) const { return origin + t * step; }
 };
 
-/// Where a function that changes its sign between a and b does so.
+/// The place between a and b where a function changes its sign, by bisection.
 template <typename Function>
 double bisected(const Function& f, double a, double b) {
     const bool positive = f(b) > 0;
@@ -31,7 +31,8 @@ double bisected(const Function& f, double a, double b) {
 
 inline constexpr int kCrossingReach = 2;
 
-/// Along a ray the place nearest to t, at most `kCrossingReach` voxels away, where `field` reaches `value`.
+/// The place on a ray nearest to t, at most `kCrossingReach` voxels away, where `field` reaches `value`; nullopt if
+/// none.
 template <typename Field>
 std::optional<double> crossing_near(const Field& field, const IndexRay& ray, double t, double value) {
     const double voxel = 1 / glm::length(ray.step), step = voxel / 4;
@@ -50,13 +51,13 @@ std::optional<double> crossing_near(const Field& field, const IndexRay& ray, dou
     return std::nullopt;
 }
 
-/// By how much the value of a contour at `voxel` may be wrong without the samples showing it: half a step of
-/// quantisation, or of data that say yes or no; what an edge sharper than samples can show leaves open; and what
-/// packing lost. In the volume's unit.
+/// Possible error of a contour's value at `voxel` that the samples cannot show, in the volume's unit: the larger of
+/// half a step (of quantisation or binary data) and the effect of an edge sharper than the samples resolve, plus the
+/// error of packing.
 double value_uncertainty(const Samples& samples, const glm::dvec3& voxel);
 
-/// How far along the ray another reconstruction or other rounding of the samples would put the place at t where the
-/// trilinear values cross `value`, mm.
+/// Uncertainty, mm along the ray, of the place t where the trilinear values cross `value`: how far another
+/// reconstruction or other rounding of the samples would move it.
 double contour_uncertainty(const Samples& samples, const IndexRay& ray, double t, double value);
 
 }  // namespace edgesplat::viewer

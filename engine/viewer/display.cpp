@@ -10,9 +10,9 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr int kSteps = 4096;  // of the curve's table: finer than an 8-bit step everywhere but in the darkest two
+constexpr int kSteps = 4096;  // of the curve's table: finer than an 8-bit step, except in the darkest two
 
-/// The curve over the square root of the value, where it is nearly straight.
+/// The sRGB curve as a function of the value's square root, in which it is nearly straight.
 const std::array<std::uint8_t, kSteps + 1>& curve() {
     static const auto table = [] {
         std::array<std::uint8_t, kSteps + 1> out{};
@@ -58,7 +58,7 @@ ScreenPicture sharpening_picture(const Image& image, const Image& plain) {
             sum += out.pixels[i + c];
         }
         const double grey = sum / 3.0 * 0.6;
-        const double strength = std::min(most / 64.0, 1.0);  // of a quarter of full scale
+        const double strength = std::min(most / 64.0, 1.0);  // 1 at a quarter of full scale
         const double share = std::clamp((strength - 0.125) / 0.25, 0.0, 0.85);
         const std::array<double, 3> heat{255 * std::clamp(2 * strength, 0.0, 1.0),
                                          255 * std::clamp(2 - 2 * strength, 0.0, 1.0) * std::min(1.0, 2 * strength),
@@ -69,7 +69,7 @@ ScreenPicture sharpening_picture(const Image& image, const Image& plain) {
     return out;
 }
 
-double rms_when_spread(const Image& small, const Image& large) {
+double rms_after_upscaling(const Image& small, const Image& large) {
     const ScreenPicture from = screen_picture(small), to = screen_picture(large);
     double sum = 0;
     const auto row = [&](const ScreenPicture& picture, int x, int y, std::size_t c) {

@@ -1,4 +1,4 @@
-// Pictures as a window shows them.
+// Converts pictures for display in a window.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,16 @@ struct ScreenPicture {
     std::vector<std::uint8_t> pixels;
 };
 
-/// The picture's colours, of which the background is a part already; NaN is shown as black.
+/// Converts a picture, which contains its background already, to sRGB; NaN becomes black.
 ScreenPicture screen_picture(const Image& image);
 
-/// Where edges were sharpened and how much: `image` in grey, and over it the difference to `plain` (largest of the
-/// sRGB channels), from blue (1/16 of full scale) over yellow to red (a quarter and more). Equal sizes.
+/// Shows where edges were sharpened and how much. Over `image` in grey lies the difference to `plain` (largest of the
+/// sRGB channels), from blue (1/16 of full scale) over yellow to red (1/4 and more). Throws Error unless both have the
+/// same size.
 ScreenPicture sharpening_picture(const Image& image, const Image& plain);
 
-/// RMS over pixels and colours of `small`, spread bilinearly over the size of `large`, against it, of sRGB full scale:
-/// what a picture that was drawn in haste is off by.
-double rms_when_spread(const Image& small, const Image& large);
+/// RMS difference over pixels and colours, as a share of sRGB full scale, between `large` and `small`, which is scaled
+/// bilinearly to the size of `large`: the error of a coarse picture.
+double rms_after_upscaling(const Image& small, const Image& large);
 
 }  // namespace edgesplat::viewer

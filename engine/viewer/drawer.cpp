@@ -20,10 +20,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Voxels that are estimated and collected within a picture's time.
+// Voxels that can be estimated and collected within a picture's time.
 constexpr std::size_t kQuickVoxelsSoftware = std::size_t{1} << 17U, kQuickVoxels = std::size_t{1} << 25U;
 
-/// A picture that comes this soon needs no coarser one before it, milliseconds.
+/// A picture faster than this needs no coarser one before it, milliseconds.
 constexpr double kSoon = 350;
 
 constexpr double kHalfScale = 0.5;
@@ -34,8 +34,8 @@ glm::ivec2 scaled(const glm::ivec2& size, double scale) {
     return glm::max(glm::ivec2(glm::round(glm::dvec2(size) * scale)), 1);
 }
 
-/// What may be left out of a picture that is there for a moment. At level 0 the splats are those of the best picture,
-/// so that nothing is estimated twice.
+/// Cheaper settings for a picture that is shown for a moment. At level 0 the edge estimator stays: its splats are those
+/// of the best picture and are estimated only once.
 Settings hasty(Settings settings, int level) {
     settings.sheets = SheetCut::Whole;
     settings.sheet_spacing = Settings{}.sheet_spacing;
@@ -53,7 +53,7 @@ Settings without_edges(Settings settings) {
 
 }  // namespace
 
-/// A request and what of it is still to come.
+/// A request and its remaining stages.
 struct Drawer::Job {
     struct Stage {
         Rung rung;
@@ -61,14 +61,14 @@ struct Drawer::Job {
     };
     DrawRequest request;
     std::uint64_t number = 0, view = 0;
-    bool planned = false, finished_before = false;  ///< planned; what is seen stands finished already
-    std::vector<Stage> stages;                      ///< next one last
+    bool planned = false, finished_before = false;  ///< finished_before: a finished picture of this view is shown
+    std::vector<Stage> stages;                      ///< the next one is last
 };
 
 int Drawer::coarsest_level(const Volume& volume, bool software) {
     const std::size_t most = software ? kQuickVoxelsSoftware : kQuickVoxels;
-    // In memory any level can be made; a file has those that it has.
-    constexpr int kFewest = 24;  // voxels along the longest axis, below which nothing can be made out
+    // In memory any level can be made; a file has only its stored levels.
+    constexpr int kFewest = 24;  // voxels along the longest axis; below this nothing is recognisable
     const auto has = [&](int level) {
         const glm::ivec3 dims = level_geometry(volume.geometry, level).dims;
         return volume.values.empty() ? level < level_count(volume) : std::max({dims.x, dims.y, dims.z}) >= kFewest;
@@ -84,7 +84,7 @@ Drawer::Drawer(Options options) : options_(std::move(options)), target_(options_
 }
 
 Drawer::~Drawer() {
-    ++asked_;  // whatever is being drawn is wanted no more
+    ++asked_;  // cancels the picture being drawn
     if (thread_.joinable()) thread_.request_stop();
 }
 
@@ -130,7 +130,7 @@ std::size_t Drawer::renderers() const {
 }
 
 void Drawer::run(const std::stop_token& stop) {
-    // Where drawing takes the processor the window answers first. Threads of a driver that are made here follow.
+    // If drawing uses the processor, the window has priority. Driver threads that are created here inherit this.
     setpriority(PRIO_PROCESS, 0, kNiceness);
     while (!stop.stop_requested()) {
         {
@@ -158,7 +158,7 @@ std::optional<DrawnPicture> Drawer::draw_next() {
     try {
         plan(*job);
         picture = draw(*job);
-        if (picture->stats.complete) job->stages.pop_back();  // else more of its blocks come with the next one
+        if (picture->stats.complete) job->stages.pop_back();  // else the next picture draws more blocks
         picture->finished = job->stages.empty();
     } catch (const Interrupted&) {
         job->stages.clear();
@@ -195,13 +195,13 @@ bool Drawer::casts_rays(const DrawRequest& request) {
     using Rays = Options::Rays;
     const bool wanted = options_.rays == Rays::Always || options_.rays == Rays::Cubic ||
                         (options_.rays == Rays::OnProcessor && is_processor());
-    return wanted && !request.plain && !request.volume->values.empty() && beyond_ray_casting(request.scene).empty() &&
+    return wanted && !request.plain && !request.volume->values.empty() && raycast_obstacle(request.scene).empty() &&
            request.settings.edges != EdgeEstimator::Off;
 }
 
 Rung Drawer::quick_rung(const DrawRequest& request, bool rays) {
     Rung rung = pace_of(rays).rung();
-    // In narrow passages a coarse level has the eye in matter, and shows nothing but that.
+    // In narrow passages a coarse level may put the eye inside matter and show nothing else.
     const bool outside = rung.level > 0 && !eye_in_opaque(*request.volume, request.scene, request.camera);
     while (rung.level > 0 && outside &&
            eye_in_opaque(*level_of(request.volume, rung.level), request.scene, request.camera)) {
@@ -289,7 +289,7 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     const DrawRequest& request = job.request;
     const Key key{rung.level, kind};
     Renderer& renderer = renderer_for(key, job);
-    // A picture in motion is short, and what comes after it is no better for its being left off.
+    // A picture in motion is short; cancelling it would not make the next one better.
     const bool may_stop = options_.threaded && !request.moving;
     renderer.set_interruption(may_stop ? std::function<bool()>([this, number = job.number] { return asked_ != number; })
                                        : std::function<bool()>());
@@ -303,7 +303,7 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     }
     if (kind == Kind::Plain) settings = without_edges(settings);
     const glm::ivec2 size = scaled(request.size, rung.scale);
-    if (lose_.exchange(false)) renderer.lose_device();
+    if (lose_.exchange(false)) renderer.simulate_device_loss();
     const auto filter = options_.rays == Options::Rays::Cubic ? RaycastFilter::Cubic : RaycastFilter::Trilinear;
     RenderResult result = rung.rays
                               ? renderer.raycast(scene, request.camera, settings, {.filter = filter}, size.x, size.y)
@@ -344,7 +344,7 @@ DrawnPicture Drawer::draw(const Job& job) {
         still_times_[stage.rung.scale] = out.milliseconds - out.setup;
     if (hurried && !job.request.moving && (!coarse_ || coarse_->number != job.number)) coarse_ = out;
     if (!hurried && coarse_ && coarse_->number == job.number) {
-        out.coarse_error = rms_when_spread(coarse_->color, out.color);
+        out.coarse_error = rms_after_upscaling(coarse_->color, out.color);
         out.coarse_rung = coarse_->rung;
     }
     return out;

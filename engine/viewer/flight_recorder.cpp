@@ -11,7 +11,7 @@ namespace {
 constexpr double kMostDegrees = 0.5;
 constexpr double kTargetReach = 100;  // mm from the eye to a key's target
 
-/// Whether the curve through `keys` is where it was at the recorded steps between the last two.
+/// Whether the curve through `keys` follows the recorded steps between `first` and `last`.
 bool follows(const std::vector<CameraKey>& keys, const std::vector<CameraKey>& steps, std::size_t first,
              std::size_t last, double tolerance) {
     const CameraPath path{keys, false};
@@ -45,7 +45,7 @@ CameraPath FlightRecorder::path(double tolerance) const {
     std::vector<CameraKey> kept{keys_.front()};
     std::size_t from = 0;
     while (from + 1 < keys_.size()) {
-        // The longest piece that two keys give: doubled until it fails, then halved to the last that does not.
+        // The longest piece that two keys reproduce: double its length until that fails, then halve the step.
         std::size_t good = from + 1, step = 1;
         const auto holds = [&](std::size_t to) {
             const std::vector<CameraKey> ends{keys_[from], keys_[to]};

@@ -11,10 +11,10 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr double kRoomThatCounts = 16;  // voxels: more is not sought
-constexpr double kLeastRoom = 0.3;      // voxels: added to all, so that no step costs too much
-constexpr int kEndReach = 5;            // voxels that an end may be moved
-constexpr int kRounds = 24;             // of smoothing
+constexpr double kMaxRoom = 16;     // voxels: more room does not lower the cost
+constexpr double kLeastRoom = 0.3;  // voxels: added to all rooms to limit the cost of a step
+constexpr int kEndReach = 5;        // voxels by which an end may be moved
+constexpr int kRounds = 24;         // of smoothing
 constexpr std::size_t kMostKeys = 256;
 
 bool finite(const glm::dvec3& v) {
@@ -28,15 +28,15 @@ bool free_between(const Walls& walls, const glm::dvec3& a, const glm::dvec3& b) 
     return true;
 }
 
-/// Nodes by cost, in buckets as wide as the cheapest step: within one none can make another cheaper, and the order does
-/// not matter (Dial 1969, Dinitz 1978). Costs in it differ by no more than the dearest step.
+/// Queue of nodes by cost, in buckets as wide as the cheapest step. Within a bucket no node can make another cheaper,
+/// so their order does not matter (Dial 1969, Dinitz 1978). Its costs differ by at most the most expensive step.
 class BucketQueue {
   public:
     BucketQueue(float cheapest, float dearest)
         : width_(cheapest), buckets_(static_cast<std::size_t>(dearest / cheapest) + 3) {}
 
     bool empty() const { return count_ == 0; }
-    /// Not above the cost of any node in it.
+    /// A lower bound of the costs in the queue.
     float least() const { return static_cast<float>(current_) * width_; }
     void push(float cost, std::size_t node) {
         const auto at = std::max(static_cast<std::size_t>(cost / width_), current_);
@@ -83,7 +83,8 @@ class Grid {
 
     glm::dvec3 world(std::size_t node) const { return walls_.geometry().to_world(glm::dvec3(voxel(node))); }
 
-    /// Where a path from or to a place begins on the grid: the nearest free voxel, in sight where the place is free.
+    /// The node where a path to a place enters the grid: the nearest free voxel, and from a free place one in straight
+    /// sight.
     std::optional<std::size_t> entrance(const glm::dvec3& place) const {
         const VolumeGeometry& g = walls_.geometry();
         const glm::dvec3 index = glm::clamp(g.to_index(place), glm::dvec3(0), glm::dvec3(dims_ - 1));
@@ -98,7 +99,7 @@ class Grid {
             for (i.y = low.y; i.y <= high.y; ++i.y)
                 for (i.x = low.x; i.x <= high.x; ++i.x) {
                     const double apart = glm::length(g.to_world(glm::dvec3(i)) - base);
-                    // The voxel that the place is in counts however wide voxels are along an axis.
+                    // The voxel that contains the place counts, however wide voxels are along an axis.
                     if (apart > reach && i != glm::ivec3(glm::round(index))) continue;
                     if (weights_[node(i)] > 0) near.emplace_back(apart, node(i));
                 }
@@ -109,12 +110,12 @@ class Grid {
         return std::nullopt;
     }
 
-    /// Nodes of the cheapest way, both ends included; empty where there is none. Dijkstra's search from both ends, by
-    /// turns, until they have met: of a cavity that is open the small side is gone through, not all the air around.
+    /// Nodes of the cheapest path, both ends included; empty if there is none. Dijkstra's search alternates between
+    /// both ends until they meet: if a cavity is open, only its small side is searched and not all the air around it.
     std::vector<std::size_t> way(std::size_t from, std::size_t to) const {
         const auto [shortest, longest] = std::minmax_element(
             steps_.begin(), steps_.end(), [](const Step& a, const Step& b) { return a.length < b.length; });
-        const BucketQueue none(shortest->length * weight(kRoomThatCounts), longest->length * kDearest);
+        const BucketQueue none(shortest->length * weight(kMaxRoom), longest->length * kDearest);
         Search forward(weights_.size(), from, none), backward(weights_.size(), to, none);
         float best = from == to ? 0 : kFar;
         std::size_t meeting = from;
@@ -140,7 +141,7 @@ class Grid {
     static constexpr std::uint8_t kStart = 255;
     static constexpr float kDearest = 1 / (kLeastRoom * kLeastRoom);  ///< per mm
 
-    /// What is known from one end.
+    /// State of the search from one end.
     struct Search {
         std::vector<float> cost;
         std::vector<std::uint8_t> by;  ///< the step that led to a node
@@ -154,7 +155,7 @@ class Grid {
         }
     };
 
-    /// Goes on from the cheapest node of a search; notes where the two meet.
+    /// Expands the cheapest node of a search; updates where the two searches meet.
     void expand(Search& search, const Search& other, float& best, std::size_t& meeting) const {
         const std::size_t at = search.open.pop();
         if (search.done[at]) return;
@@ -179,7 +180,7 @@ class Grid {
         }
     }
 
-    /// From a node back to where the search began.
+    /// From a node back to the start of its search.
     std::vector<std::size_t> chain(const Search& search, std::size_t at) const {
         std::vector<std::size_t> nodes{at};
         for (std::uint8_t k = search.by[at]; k != kStart; k = search.by[nodes.back()])
@@ -187,14 +188,14 @@ class Grid {
         return nodes;
     }
 
-    /// 1 / room^2, per mm of way; 0 where there is none.
+    /// 1 / room^2, per mm of path; 0 without room.
     static float weight(double room) {
         if (!(room > 0)) return 0;
-        const double counted = std::min(room, kRoomThatCounts) + kLeastRoom;
+        const double counted = std::min(room, kMaxRoom) + kLeastRoom;
         return static_cast<float>(1 / (counted * counted));
     }
 
-    /// Walls may be thinner than the grid, or cross between its nodes.
+    /// Whether a step is free: walls may be thinner than the grid, or cross between its nodes.
     bool passable(std::size_t a, std::size_t b, float length) const {
         const auto room = [&](std::size_t at) { return 1 / std::sqrt(weights_[at]) - static_cast<float>(kLeastRoom); };
         if ((room(a) + room(b)) * static_cast<float>(walls_.voxel()) > 1.2F * length) return true;
@@ -207,7 +208,7 @@ class Grid {
                static_cast<std::size_t>(i.x);
     }
     glm::ivec3 voxel(std::size_t node) const {
-        const auto at = static_cast<std::uint32_t>(node);  // walls have fewer voxels
+        const auto at = static_cast<std::uint32_t>(node);  // walls have fewer voxels than 2^32
         const glm::uvec3 n(dims_);
         return {at % n.x, at / n.x % n.y, at / (n.x * n.y)};
     }
@@ -225,7 +226,7 @@ double length_of(const std::vector<glm::dvec3>& points) {
     return length;
 }
 
-/// Points on the same polyline, `parts` equal lengths apart.
+/// The same polyline, divided into `parts` equal lengths.
 std::vector<glm::dvec3> evenly(const std::vector<glm::dvec3>& points, std::size_t parts) {
     const double part = length_of(points) / static_cast<double>(parts);
     std::vector<glm::dvec3> out{points.front()};
@@ -249,9 +250,9 @@ std::size_t parts_of(const std::vector<glm::dvec3>& points, double voxel) {
     return std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(length_of(points) / voxel)));
 }
 
-/// Straightens steps of the grid and moves towards the middle, by turns; the ends stay.
+/// Alternately straightens the grid's steps and moves points towards the middle; the ends stay.
 void smooth(std::vector<glm::dvec3>& points, const Walls& walls) {
-    const double voxel = walls.voxel(), most = kRoomThatCounts * voxel;
+    const double voxel = walls.voxel(), most = kMaxRoom * voxel;
     std::vector<double> room;
     for (const glm::dvec3& p : points)
         room.push_back(walls.distance(p));
@@ -315,13 +316,13 @@ std::optional<GuidedPath> guided_path(const Walls& walls, const glm::dvec3& from
 }
 
 CameraPath camera_path_along(const GuidedPath& path, double seconds, double fov, const glm::dvec3& up) {
-    if (path.points.size() < 2 || !(path.length > 0)) fail("guided path: it has no length");
+    if (path.points.size() < 2 || !(path.length > 0)) fail("guided path: the path has no length");
     if (!(seconds > 0 && std::isfinite(seconds))) fail("guided path seconds: {}, expected a number above 0", seconds);
     const double step = path.length / static_cast<double>(path.points.size() - 1);
-    // Wide rooms are seen from further away than narrow ones.
+    // In wide rooms the target is further ahead than in narrow ones.
     double room = 0;
     for (const double r : path.room)
-        room += std::min(r, kRoomThatCounts * step) / static_cast<double>(path.room.size());
+        room += std::min(r, kMaxRoom * step) / static_cast<double>(path.room.size());
     const double look_ahead = std::clamp(2 * room, 4 * step, 15 * step);
     const std::size_t spans = std::clamp<std::size_t>(path.points.size() / 2, 1, kMostKeys - 1);
     CameraPath out;

@@ -58,7 +58,8 @@ std::vector<Handle> clip_handles(const SceneDocument& document, const VolumeGeom
     return handles;
 }
 
-std::optional<glm::dvec2> seen_at(const Handle& handle, const Camera& camera, const glm::ivec2& size, double inset) {
+std::optional<glm::dvec2> handle_pixel(const Handle& handle, const Camera& camera, const glm::ivec2& size,
+                                       double inset) {
     const auto at = project(camera, size, handle.place);
     if (!at) return std::nullopt;
     const glm::dvec2 most = glm::max(glm::dvec2(size) - inset, glm::dvec2(size) / 2.0);
@@ -69,7 +70,7 @@ std::optional<std::size_t> handle_at(std::span<const Handle> handles, const Came
                                      const glm::dvec2& pixel, double radius, double inset) {
     std::optional<std::size_t> nearest;
     for (std::size_t i = 0; i < handles.size(); ++i) {
-        const auto at = seen_at(handles[i], camera, size, inset);
+        const auto at = handle_pixel(handles[i], camera, size, inset);
         if (!at) continue;
         const double distance = glm::length(*at - pixel);
         if (!(distance <= radius)) continue;

@@ -1,4 +1,4 @@
-// What was edited, forwards and backwards.
+// Undo and redo of a value.
 #pragma once
 
 #include <cstddef>
@@ -8,7 +8,7 @@
 
 namespace edgesplat::viewer {
 
-/// States of a value. While a hand drags, states that pass are not kept: only the one before and the last.
+/// States of a value. Intermediate states of a drag are not kept, only the state before it and its last one.
 template <typename State>
 class History {
   public:
@@ -16,7 +16,8 @@ class History {
 
     const State& now() const { return dragged_ ? *dragged_ : states_[at_]; }
 
-    /// A new state. `finished`: it is to be kept, else it is one on the way. What was undone before it is gone.
+    /// Sets a new state. `finished`: it becomes an undo step and discards the undone ones; else it is an intermediate
+    /// state.
     void change(State state, bool finished) {
         if (!finished) {
             dragged_.emplace(std::move(state));
@@ -30,8 +31,8 @@ class History {
         at_ = states_.size() - 1;
     }
 
-    /// Whether the state of now is one on the way.
-    bool on_the_way() const { return dragged_.has_value(); }
+    /// Whether the current state is an intermediate one.
+    bool has_pending_edit() const { return dragged_.has_value(); }
     bool can_undo() const { return at_ > 0 || dragged_; }
     bool can_redo() const { return at_ + 1 < states_.size() && !dragged_; }
     void undo() {

@@ -8,13 +8,13 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// The allowed value that is nearest to `value` beside `others`; none where there is no room.
+/// The allowed value nearest to `value`, given the `others`; nullopt if there is none.
 std::optional<double> free_value(const std::vector<double>& others, const Volume& volume, double value) {
     const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
     const double gap = kIsoGap * (high - low);
     if (!(gap > 0) || !std::isfinite(value)) return std::nullopt;
     const auto allowed = [&](double v) {
-        // A value that is just the gap away from another one may lie nearer by rounding.
+        // 0.99: by rounding, a value exactly one gap away from another may be nearer.
         return v > low && v <= high &&
                std::ranges::none_of(others, [&](double other) { return std::abs(v - other) < 0.99 * gap; });
     };
@@ -84,11 +84,11 @@ MaterialChoice& material_choice(SceneDocument& document, std::size_t material) {
     return material == 0 ? document.below : document.materials.at(material - 1);
 }
 
-std::size_t take_material(SceneDocument& document, const Volume& volume, std::size_t material,
-                          const ScenePreset& preset) {
+std::size_t apply_material_preset(SceneDocument& document, const Volume& volume, std::size_t material,
+                                  const ScenePreset& preset) {
     const SceneDocument& content = preset.content;
     if (content.materials.size() != 1) return material;
-    // What neither says is as it is in any material.
+    // If the preset has no value, colour and extinction stay; everything else gets its default.
     const MaterialChoice &look = content.materials.front(), now = material_choice(document, material);
     MaterialChoice taken = choice_of(Material{});
     taken.color = look.color ? look.color : now.color;

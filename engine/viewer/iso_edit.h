@@ -1,4 +1,4 @@
-// Iso-values of a scene as a hand changes them, each together with the material that begins at it.
+// Interactive changes of a scene's iso-values, each with the material that begins at it.
 #pragma once
 
 #include <optional>
@@ -8,28 +8,29 @@
 
 namespace edgesplat::viewer {
 
-/// All of these want a document with as many materials as iso-values, these ascending (Session::open sees to that), and
-/// keep it so. Iso-values stay within the volume's values, above the least of them, and so far apart:
-inline constexpr double kIsoGap = 1e-5;  ///< of the range of the volume's values
+/// All functions expect as many materials as iso-values, with ascending iso-values, and preserve this. Session::open
+/// ensures it. Iso-values stay above the volume's least value, up to its largest one, and at least this far apart:
+inline constexpr double kIsoGap = 1e-5;  ///< share of the range of the volume's values
 
-/// Adds one, or the nearest to it that is allowed. Its material has the first default colour that no other has, and is
-/// opaque above all others, else translucent, as in resolve_scene. Returns its place; none where there are
-/// kMaxIsoValues, for a constant volume, and for a value that is not finite.
+/// Adds an iso-value, or the nearest allowed one. Its material gets the first unused default colour. It is opaque if it
+/// is the highest, else translucent, as in resolve_scene. Returns its index. nullopt if there are kMaxIsoValues
+/// already, for a constant volume, and for a value that is not finite.
 std::optional<std::size_t> add_iso_value(SceneDocument& document, const Volume& volume, double value);
 
-/// Moves one, also past others; its material goes with it. Returns its new place. Does nothing for a value that is not
+/// Moves an iso-value with its material, also past others. Returns its new index. Does nothing if the value is not
 /// finite.
 std::size_t move_iso_value(SceneDocument& document, const Volume& volume, std::size_t place, double value);
 
-/// Takes one away with its material. The last one stays unless there is a transfer function. Whether it is gone.
+/// Removes an iso-value with its material. Returns whether it did: the last one stays unless there is a transfer
+/// function.
 bool remove_iso_value(SceneDocument& document, std::size_t place);
 
-/// A material by its number: 0 lies below all iso-values.
+/// The material with a number; number 0 lies below all iso-values.
 MaterialChoice& material_choice(SceneDocument& document, std::size_t material);
 
-/// Gives a material the look and the name of a preset that is one; its iso-value too, where the preset has one that
-/// occurs in the volume. Returns the material's number afterwards.
-std::size_t take_material(SceneDocument& document, const Volume& volume, std::size_t material,
-                          const ScenePreset& preset);
+/// Gives a material the look and name of a material preset. If the preset has an iso-value that occurs in the volume,
+/// the material moves there. Returns the material's new number.
+std::size_t apply_material_preset(SceneDocument& document, const Volume& volume, std::size_t material,
+                                  const ScenePreset& preset);
 
 }  // namespace edgesplat::viewer

@@ -25,7 +25,7 @@ void save_scene(SceneDocument document, const Volume& volume, const fs::path& pa
     write_files({&content, 1});
 }
 
-void save_picture(const PictureOrder& order) {
+void save_picture(const PictureJob& order) {
     constexpr std::array<std::string_view, 2> kExtensions{".png", ".exr"};
     check_output_path(order.path, kExtensions);
     const Scene scene = resolve_scene(order.document, *order.volume);

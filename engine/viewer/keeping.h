@@ -1,4 +1,4 @@
-// What is kept of a session: its scene, and pictures of it at any size.
+// Saves a session: its scene, and pictures of it at any size.
 #pragma once
 
 #include <filesystem>
@@ -12,23 +12,23 @@
 
 namespace edgesplat::viewer {
 
-/// Writes a scene file, whole or not at all. A volume's relative path is kept so that it leads there from the file's
-/// folder. Throws Error.
+/// Writes a scene file, completely or not at all. A volume's relative path is rewritten relative to the file's folder.
+/// Throws Error.
 void save_scene(SceneDocument document, const Volume& volume, const std::filesystem::path& path);
 
-/// A picture to be made in the background.
-struct PictureOrder {
+/// A request to render a picture in the background.
+struct PictureJob {
     std::shared_ptr<const Volume> volume;
-    SceneDocument document;  ///< with nothing left open (`resolved`); output.size is the picture's
+    SceneDocument document;  ///< resolved: every key has a value; output.size is the picture's size
     DeviceChoice device;
     std::filesystem::path path;  ///< .png or .exr
     std::string program;         ///< name and version, for the picture's metadata
 };
 
-/// Renders it offscreen and writes it with its metadata. Throws Error.
-void save_picture(const PictureOrder& order);
+/// Renders the picture offscreen and writes it with its metadata. Throws Error.
+void save_picture(const PictureJob& order);
 
-/// A path that stands for nothing yet, and is not `taken` either: folder/stem-1.extension, -2, ...
+/// The first path of folder/stem-1.extension, -2, ... that does not exist and is not `taken`.
 std::filesystem::path free_path(const std::filesystem::path& folder, const std::string& stem,
                                 const std::string& extension,
                                 const std::function<bool(const std::filesystem::path&)>& taken = {});

@@ -1,4 +1,4 @@
-// A volume or scene file that is read while the window stays alive.
+// Reads a volume or scene file while the window stays responsive.
 #pragma once
 
 #include <atomic>
@@ -13,11 +13,11 @@
 
 namespace edgesplat::viewer {
 
-/// What there is to look at: its samples, and the scene with what the file left open still open.
+/// An opened volume, and its scene document, in which unset keys stay unset.
 struct Opened {
-    std::string path;  ///< as it was asked for
+    std::string path;  ///< as requested
     SceneDocument document;
-    std::vector<std::filesystem::path> folders;  ///< where its volume was looked for
+    std::vector<std::filesystem::path> folders;  ///< folders that were searched for the volume
     std::shared_ptr<const Volume> volume;
 };
 
@@ -33,7 +33,7 @@ class Loading {
     double fraction() const { return fraction_; }
     std::string what() const;
     bool ready() const;
-    /// Waits for it. Throws Error; once.
+    /// Waits for the result. Call once. Throws Error.
     Opened take() { return result_.get(); }
 
   private:
@@ -41,7 +41,7 @@ class Loading {
     std::atomic<double> fraction_{0};
     mutable std::mutex mutex_;
     std::string what_;
-    std::future<Opened> result_;  ///< last: ends before what the thread writes to
+    std::future<Opened> result_;  ///< last: its thread ends before the members it writes to are destroyed
 };
 
 }  // namespace edgesplat::viewer

@@ -11,9 +11,9 @@ namespace {
 constexpr double kLongestStep = 10, kSubstep = 1.0 / 120;                                                  // s
 constexpr double kMoveTime = 0.12, kLookTime = 0.04, kOrbitTime = 0.06, kPanTime = 0.05, kZoomTime = 0.1;  // s
 constexpr double kRollRate = 1.2;                                                                          // radians/s
-constexpr double kZoomFactor = 0.85;                                                                       // a step
-constexpr double kLevelling = 2;  // of a roll, per radian orbited
-constexpr double kEyeReach = 8;   // extents of the volume that the eye may be away from it
+constexpr double kZoomFactor = 0.85;                                                                       // per step
+constexpr double kLevelling = 2;  // of a roll, per radian of orbit
+constexpr double kEyeReach = 8;   // largest distance of the eye from the volume, in extents of the volume
 constexpr double kHomeSeconds = 0.8;
 constexpr double kPole = glm::half_pi<double>();
 
@@ -50,14 +50,14 @@ bool touched(const Controls& c) {
            c.pan != glm::dvec2(0) || c.zoom != 0;
 }
 
-/// v turned right-handed about a unit axis (Rodrigues).
+/// v rotated right-handed about a unit axis (Rodrigues).
 glm::dvec3 turned(const glm::dvec3& v, double angle, const glm::dvec3& axis) {
     const double cosine = std::cos(angle), sine = std::sin(angle);
     return v * cosine + glm::cross(axis, v) * sine + axis * (glm::dot(axis, v) * (1 - cosine));
 }
 
-/// What is given at a constant rate is handed on with exponential delay: the part of it that arrives within `dt`, and
-/// in `pending` what is left, both exact.
+/// Delays an amount that is given at a constant rate, exponentially and exactly. Returns the part that arrives within
+/// `dt`; `pending` keeps the rest.
 template <typename Amount>
 Amount arriving(Amount& pending, const Amount& rate, double dt, double delay) {
     const Amount steady = rate * delay;
@@ -71,7 +71,7 @@ double smoother(double t) {
     return t * t * t * (t * (t * 6 - 15) + 10);
 }
 
-/// A camera as a turn and the place of a centre in its frame.
+/// A camera as a rotation, and the place of a centre in its frame.
 struct Pose {
     glm::dquat turn;
     glm::dvec3 center;  ///< in the camera's frame
@@ -83,7 +83,7 @@ struct Pose {
     }
 };
 
-/// From one place of a centre to another: directions and distances for themselves, so that nothing rushes by.
+/// Interpolates between two places of a centre: directions and distances separately, so that nothing rushes past.
 glm::dvec3 between(const glm::dvec3& a, const glm::dvec3& b, double s) {
     const double la = glm::length(a), lb = glm::length(b);
     if (!(la > 0 && lb > 0) || glm::dot(a, b) < -0.5 * la * lb) return glm::mix(a, b, s);
@@ -128,7 +128,7 @@ void Motion::set_mode(MotionMode mode) {
     const double away = glm::length(to_center);
     if (away > 0 && glm::dot(to_center / away, frame.forward) > 0.9998) return;
     const double limit = extent();
-    const double ahead = walls_ ? walls_->free_way(camera_.eye, frame.forward, limit) : limit;
+    const double ahead = walls_ ? walls_->free_distance(camera_.eye, frame.forward, limit) : limit;
     center_ =
         camera_.eye + frame.forward * (ahead > 0 && ahead < limit ? ahead : std::clamp(away, 1e-3 * limit, limit));
 }
@@ -168,7 +168,7 @@ void Motion::fly_to(const Camera& camera, const glm::dvec3& center, double secon
         return;
     }
     Flight flight{camera_, camera, center_, finite(center) ? center : camera.eye + frame.forward, seconds, 0};
-    // A centre that the eye does not look at would swing it about.
+    // If the eye does not look at the centre, a point ahead replaces it; otherwise the eye would swing about.
     const glm::dvec3 to_center = center_ - camera_.eye;
     if (!(glm::dot(to_center, here.forward) > 0.8 * glm::length(to_center)))
         flight.from_center = camera_.eye + here.forward * glm::length(flight.to_center - camera.eye);
@@ -265,7 +265,7 @@ void Motion::glide(const Controls& rates, double dt) {
     }
     turn(glm::dvec2(0), turned_roll);
     axis_ = glm::normalize(turned(axis_, turned_roll, frame.forward));
-    go_round(arriving(m.orbit, rates.orbit, dt, kOrbitTime));
+    orbit_about_center(arriving(m.orbit, rates.orbit, dt, kOrbitTime));
     const glm::dvec2 pan = arriving(m.pan, rates.pan, dt, kPanTime);
     const CameraFrame now = camera_frame(camera_);
     double depth = glm::dot(center_ - camera_.eye, now.forward);
@@ -292,10 +292,10 @@ void Motion::turn(const glm::dvec2& angles, double roll) {
     camera_.up = camera_frame(camera_).up;
 }
 
-void Motion::go_round(const glm::dvec2& angles) {
+void Motion::orbit_about_center(const glm::dvec2& angles) {
     if (angles == glm::dvec2(0)) return;
     const CameraFrame f = camera_frame(camera_);
-    // Over a pole the level is what the picture has.
+    // At a pole, the picture's own right axis is level.
     const glm::dvec3 across = glm::cross(f.forward, axis_);
     const bool at_pole = !(glm::length(across) > 1e-7);
     const glm::dvec3 level = at_pole ? f.right : glm::normalize(across), level_up = glm::cross(level, f.forward);
@@ -323,7 +323,7 @@ void Motion::shift(const glm::dvec3& way) {
             momentum_.velocity -= into * std::max(0.0, glm::dot(momentum_.velocity, into));
         }
     }
-    // Nobody gets lost in empty space.
+    // The eye stays within kEyeReach extents of the volume.
     const glm::dvec3 middle = walls_ ? walls_->geometry().center() : home_center_;
     const glm::dvec3 next = camera_.eye + done - middle;
     const double far = std::max(kEyeReach * extent(), glm::length(camera_.eye - middle)), length = glm::length(next);
@@ -337,7 +337,7 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
     constexpr int kMostStrides = 256, kPushes = 6;
     const double voxel = walls_->voxel(), room = kClearance * voxel, least = kLeastClearance * voxel;
     const double whole = glm::length(way);
-    /// Moves a place towards more room, by no more than a limit, and not back along a direction (0: any way).
+    /// Moves a place towards more room, by at most `limit` mm, and not backwards along `kept` (0: in any direction).
     const auto push = [&](glm::dvec3& at, double& distance, double limit, const glm::dvec3& kept) {
         for (int i = 0; i < kPushes && distance < room && limit > 0; ++i) {
             glm::dvec3 way_out = walls_->away(at);
@@ -352,8 +352,8 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
             limit -= stride;
         }
     };
-    // Where the way goes on, into a passage for example, its mouth must not push back.
-    const auto goes_on = [&](const glm::dvec3& from, const glm::dvec3& direction) {
+    // If the way ahead is free, for example into a passage, the walls of its mouth must not push the eye back.
+    const auto is_free_ahead = [&](const glm::dvec3& from, const glm::dvec3& direction) {
         return walls_->distance(from + direction * voxel) > least / 2 &&
                walls_->distance(from + direction * (1.75 * voxel)) > least / 2;
     };
@@ -371,7 +371,7 @@ glm::dvec3 Motion::collided(const glm::dvec3& way) {
         double there = walls_->distance(next);
         if (there < room) {
             const glm::dvec3 direction = rest / length;
-            push(next, there, 2 * stride, goes_on(at, direction) ? direction : glm::dvec3(0));
+            push(next, there, 2 * stride, is_free_ahead(at, direction) ? direction : glm::dvec3(0));
         }
         if (!(there >= least)) break;
         rest *= 1 - stride / length;

@@ -9,16 +9,16 @@ namespace {
 
 constexpr std::array<double, 10> kScales{0.0625, 0.09375, 0.125, 0.1875, 0.25, 0.375, 0.5, 0.625, 0.75, 1.0};
 
-// Shares of the target: what a picture should take, what sends the next one down, and what the next step up may be
-// expected to take.
+// Shares of the target: the time to aim at, the time that triggers a step down, and the largest expected time after a
+// step up.
 constexpr double kAim = 0.6, kTooLong = 0.8, kRoom = 0.65;
-constexpr int kCalm = 4;              // pictures with room before a step up
-constexpr double kLeastScale = 0.25;  // below this a coarser level shows more
-constexpr double kFinerScale = 0.5;   // from this on a finer level shows more
-constexpr int kTrial = 10;            // pictures after which a finer level is there to stay
-constexpr int kPenalty = 40;          // pictures before a failed one is tried again, doubled each time
+constexpr int kCalm = 4;              // pictures with time to spare before a step up
+constexpr double kLeastScale = 0.25;  // below this scale a coarser level shows more
+constexpr double kFinerScale = 0.5;   // from this scale on a finer level shows more
+constexpr int kTrial = 10;            // pictures until the trial of a finer level has succeeded
+constexpr int kPenalty = 40;          // pictures before a failed level is tried again; doubled with each failure
 
-/// The largest scale that is at most `scale`.
+/// The largest scale <= `scale`, or the smallest one.
 double step_at_most(double scale) {
     double found = kScales.front();
     for (const double s : kScales)
@@ -62,13 +62,13 @@ void Pace::drawn(double milliseconds, double setup, bool finer_ready) {
         finer_penalty_ = 0;
     }
     const double drawing = milliseconds - setup;
-    if (drawing > kTooLong * target_) return go_down(drawing);
-    // A setup that comes once is forgiven; under a hand that changes the scene it comes with every picture.
-    if (milliseconds > target_ && rung_.level < coarsest_) return go_down(milliseconds);
-    go_up(drawing, finer_ready);
+    if (drawing > kTooLong * target_) return step_down(drawing);
+    // Setup time counts where a coarser level exists: while the user edits the scene, every picture needs setup.
+    if (milliseconds > target_ && rung_.level < coarsest_) return step_down(milliseconds);
+    step_up(drawing, finer_ready);
 }
 
-void Pace::go_down(double milliseconds) {
+void Pace::step_down(double milliseconds) {
     calm_ = 0;
     const double wanted = rung_.scale * std::sqrt(kAim * target_ / milliseconds);
     const double lower = std::min(step_at_most(wanted), step_at_most(rung_.scale * 0.999));
@@ -82,16 +82,16 @@ void Pace::go_down(double milliseconds) {
     rung_.scale = std::max(lower, rung_.level < coarsest_ ? kLeastScale : kScales.front());
 }
 
-void Pace::go_up(double milliseconds, bool finer_ready) {
+void Pace::step_up(double milliseconds, bool finer_ready) {
     const double next = step_above(rung_.scale);
     const double grown = next / rung_.scale;
     const bool finer = rung_.level > 0 && finer_ready && finer_blocked_ == 0 && rung_.scale >= kFinerScale;
-    // A finer level has four times the splats on the same surfaces, drawn at half the width.
+    // A finer level has four times the splats on the same surfaces; its pictures have half the width.
     const double finer_cost = milliseconds * 4 * 0.5;
     const bool room =
         finer ? finer_cost < kAim * target_ : next > rung_.scale && milliseconds * grown * grown < kRoom * target_;
     if (!room) {
-        // Larger pictures of this level are better than none of the finer one.
+        // If the finer level does not fit, a larger picture of this level may still fit.
         const bool larger = next > rung_.scale && milliseconds * grown * grown < kRoom * target_;
         calm_ = larger ? calm_ + 1 : 0;
         if (calm_ < kCalm) return;

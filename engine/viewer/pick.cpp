@@ -12,7 +12,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// By what the ray came into the matter it is in.
+/// The kind of surface through which the ray entered its current matter.
 enum class Entry { Eye, Plane, Side, Contour, Gradual };
 
 struct Surface {
@@ -23,7 +23,7 @@ struct Surface {
     int material = 0;
 };
 
-/// A stretch of the ray that is in the volume and kept.
+/// A part of the ray that is inside the volume and not clipped.
 struct Stretch {
     double first = 0, last = 0;
     Entry entry = Entry::Side;
@@ -39,7 +39,7 @@ struct Cubic {
           c((18 * v0 - 45 * v1 + 36 * v2 - 9 * v3) / 2),
           d((-9 * v0 + 27 * v1 - 27 * v2 + 9 * v3) / 2) {}
     double operator()(double w) const { return a + w * (b + w * (c + w * d)); }
-    /// Places within (0, 1) between which it rises or falls only.
+    /// Roots of the derivative in (0, 1), ascending; the cubic is monotonic between them.
     std::vector<double> turns() const {
         std::vector<double> roots;
         const auto add = [&](double w) {
@@ -70,13 +70,13 @@ class March {
         std::sort(cuts_.begin(), cuts_.end());
     }
 
-    /// Goes on along a stretch; true: nothing more is wanted of the ray.
+    /// Marches along a stretch. Returns true if the rest of the ray is not needed.
     bool add(const Stretch& stretch) {
         solid_ = false;
         start_ = &stretch;
         double t = stretch.first;
         while (t < stretch.last) {
-            // To where the next plane through voxels' centres is met.
+            // Up to the next plane through voxel centres.
             double next = stretch.last;
             const glm::dvec3 ahead = ray_.at(t);
             for (int axis = 0; axis < 3; ++axis) {
@@ -93,7 +93,7 @@ class March {
     }
 
     const std::optional<Surface>& hit() const { return hit_; }
-    /// Distance between the places halfway to and halfway beyond the opacity.
+    /// Distance between the opacities halfway to `opacity` and halfway from it to 1.
     double spread() const { return std::min(reached_[2], last_matter_) - reached_[0]; }
 
   private:
@@ -109,7 +109,7 @@ class March {
         turns.push_back(1);
         double from = 0;
         for (const double to : turns) {
-            // Values that are crossed on the way, in the order in which they are.
+            // Cuts (iso-values, transfer points) between both values, in order along the ray.
             const double a = f(from), b = f(to);
             const auto low = std::upper_bound(cuts_.begin(), cuts_.end(), std::min(a, b));
             const auto high = std::lower_bound(low, cuts_.end(), std::max(a, b));
@@ -126,7 +126,7 @@ class March {
         return false;
     }
 
-    /// Between two cuts: extinction is constant, or linear in the value.
+    /// Adds a piece between two cuts, where extinction is constant or linear in the value.
     bool add_piece(const Cubic& f, double first, double last, double from, double to) {
         if (!(to > from)) return false;
         const double middle_value = f((from + to) / 2), begin = std::lerp(first, last, from);
@@ -175,7 +175,7 @@ class March {
     std::optional<Surface> hit_;
 };
 
-/// What of the ray is in the volume and not cut away, nearest first.
+/// The parts of the ray that are inside the volume and not clipped, nearest first.
 std::vector<Stretch> stretches(const Volume& volume, const Scene& scene, const IndexRay& ray) {
     const glm::dvec3 low(-0.5), high = glm::dvec3(volume.geometry.dims) - 0.5;
     Stretch whole{0, kInfinity, Entry::Eye, {}};

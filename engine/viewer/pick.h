@@ -1,4 +1,4 @@
-// What the ray through a pixel meets, and how well its place is known.
+// Finds the visible surface at a pixel, and the uncertainty of its place.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -16,27 +16,28 @@ namespace edgesplat::viewer {
 struct Pick {
     glm::dvec3 world{0};     ///< mm
     glm::dvec3 voxel{0};     ///< the same place in index space
-    double value = 0;        ///< interpolated there
+    double value = 0;        ///< interpolated at that place
     double distance = 0;     ///< mm from the eye
-    double uncertainty = 0;  ///< mm along the ray, either way
+    double uncertainty = 0;  ///< mm along the ray, in either direction
     int material = 0;        ///< of the matter behind the surface: number of iso-values <= its value
     glm::dvec3 normal{0};    ///< unit, world, towards the eye
 };
 
-/// Where the opacity accumulated along the ray first reaches `opacity`, in (0, 1); none where it never does. Values are
-/// trilinear, extinction is per mm by material or transfer function, clip planes cut.
+/// The place on the ray where the accumulated opacity first reaches `opacity`, in (0, 1); nullopt if it never does.
+/// Values are trilinear. Extinction (per mm) comes from material or transfer function. Clip planes cut.
 ///
-/// Where that happens in solid matter (half of the light is lost in one voxel, as in Walls) the place is the surface
-/// by which the ray came into it: an iso-contour, whose crossing is computed to 1e-9 of a voxel, a clip plane, or the
-/// side of the volume. Of an iso-contour the uncertainty is twice the disagreement with the cubic B-spline through
-/// the samples, and the larger of half a step of the values' quantisation and what an edge sharper than samples can
-/// show leaves open; a clip plane has none; the side of the volume, half a voxel. In other matter the place is where
-/// the opacity is reached, and the uncertainty the distance between the opacities halfway to it and halfway beyond it
-/// (0.25 and 0.75). Throws Error: opacity out of range, an invalid scene, a camera without a frame.
+/// In solid matter (one voxel absorbs half of the light, as in Walls) the place is the surface through which the ray
+/// entered that matter. The uncertainty depends on the surface. Iso-contour (computed to 1e-9 voxel): twice the
+/// disagreement with the cubic B-spline through the samples, plus the larger of half a quantisation step and the effect
+/// of an edge sharper than the samples resolve. Clip plane: 0. Side of the volume: half a voxel.
+///
+/// In other matter the place is where the opacity is reached. The uncertainty is the distance between the opacities
+/// halfway to it and halfway from it to 1 (0.25 and 0.75). Throws Error: opacity out of range, an invalid scene, a
+/// camera without a frame.
 std::optional<Pick> pick(const Volume& volume, const Scene& scene, const Camera& camera, const glm::ivec2& size,
                          const glm::dvec2& pixel, double opacity = 0.5);
 
-/// The same along any ray.
+/// The same for any ray.
 std::optional<Pick> pick(const Volume& volume, const Scene& scene, const Ray& ray, double opacity = 0.5);
 
 }  // namespace edgesplat::viewer

@@ -11,7 +11,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// Samples around a place, sorted.
+/// The 4^3 samples around a place, sorted.
 std::array<double, 64> samples_around(const Samples& samples, const glm::dvec3& voxel) {
     const glm::ivec3 low = glm::ivec3(glm::floor(voxel)) - 1;
     std::array<double, 64> values{};
@@ -21,13 +21,13 @@ std::array<double, 64> samples_around(const Samples& samples, const glm::dvec3& 
     return values;
 }
 
-/// The step that all differences of sorted values are multiples of: of quantisation, or of yes-or-no data. 0 where
-/// there is none.
+/// The common step of all differences between sorted values, from quantisation or binary data; 0 if there is none.
 double common_step(const std::array<double, 64>& values) {
     const double least = 1e-4 * (values.back() - values.front());
     double step = 0;
     for (std::size_t i = 1; i < values.size(); ++i) {
-        // Euclid's algorithm; remainders are to the nearest multiple, so that rounding does not make them whole steps.
+        // Euclid's algorithm. Remainders are to the nearest multiple, so that rounding errors do not become whole
+        // steps.
         double other = values[i] - values[i - 1];
         while (other > least) {
             const double rest = step > 0 ? std::abs(std::remainder(step, other)) : 0;
@@ -38,8 +38,8 @@ double common_step(const std::array<double, 64>& values) {
     return step;
 }
 
-/// The cubic B-spline through the samples near a place, of fourth order where trilinear interpolation is of second.
-/// What lies more than 5 voxels beyond the crossings looked for counts for less than 1/700.
+/// Cubic B-spline through the samples near a place: fourth order, where trilinear interpolation is second order.
+/// Samples more than 5 voxels beyond the crossings in question have weights below 1/700.
 class LocalSpline {
   public:
     LocalSpline(const Samples& samples, const glm::dvec3& center) {
@@ -80,8 +80,8 @@ double value_uncertainty(const Samples& samples, const glm::dvec3& voxel) {
     const std::array<double, 64> values = samples_around(samples, voxel);
     const double range = values.back() - values.front();
     if (!(range > 0)) return 0;
-    // Of an edge so sharp that half of its height and more lies between neighbouring samples they hardly tell the
-    // place: of Gaussian edges of 0.2 to 0.6 voxel's blur trilinear interpolation is off by as much as this.
+    // If half the height of an edge or more lies between neighbouring samples, they hardly tell its place. This is the
+    // error of trilinear interpolation for Gaussian edges with a blur of 0.2 to 0.6 voxel.
     const std::array<double, 8> v = samples.corners(glm::ivec3(glm::floor(voxel)));
     double steepness = 0;
     for (std::size_t k = 0; k < 8; ++k)
@@ -96,7 +96,7 @@ double contour_uncertainty(const Samples& samples, const IndexRay& ray, double t
     const double voxel = 1 / glm::length(ray.step);
     const auto linear = [&](const glm::dvec3& p) { return samples.linear(p); };
     const LocalSpline spline(samples, ray.at(t));
-    // The two agree here and there by chance: rays beside this one are asked too.
+    // On a single ray the two may agree by chance, so four parallel rays are tested, too.
     const glm::dvec3 along = ray.step * voxel;
     const glm::dvec3 other = std::abs(along.x) < 0.6 ? glm::dvec3(1, 0, 0) : glm::dvec3(0, 1, 0);
     const glm::dvec3 side = glm::normalize(glm::cross(along, other)), up = glm::cross(side, along);
@@ -112,7 +112,7 @@ double contour_uncertainty(const Samples& samples, const IndexRay& ray, double t
     constexpr double h = 0.05;  // voxels
     const double slope = std::abs(linear(ray.at(t + h * voxel)) - linear(ray.at(t - h * voxel))) / (2 * h * voxel);
     const double off = value_uncertainty(samples, ray.at(t));
-    // Twice: measured on edges of 0.6 to 1 voxel's blur, the error is within it for more than 95 rays in 100.
+    // Factor 2: measured on edges with a blur of 0.6 to 1 voxel, the error is within it for more than 95 of 100 rays.
     return 2 * disagreement + (off > 0 ? std::min(off / std::max(slope, 1e-300), 2 * voxel) : 0);
 }
 

@@ -22,7 +22,7 @@ void read(const toml::table& table, const char* key, double& out, double low, do
 }
 
 void read(const toml::table& table, const char* key, int& out, int low, int high) {
-    // A whole number written as a fraction (8e1) is not taken: toml++ casts doubles beyond the range of an integer.
+    // Only integers are accepted (8e1 is not): toml++ casts doubles beyond the range of an integer.
     const toml::value<std::int64_t>* integer = table[key].as_integer();
     const std::int64_t value = integer ? integer->get() : out;
     if (value >= low && value <= high) out = static_cast<int>(value);
@@ -90,7 +90,7 @@ void remember(Preferences& preferences, const std::string& path) {
     if (preferences.recent.size() > kMostRecent) preferences.recent.resize(kMostRecent);
 }
 
-void forget_lost(Preferences& preferences) {
+void remove_missing(Preferences& preferences) {
     std::erase_if(preferences.recent, [](const std::string& path) {
         std::error_code error;
         return !is_builtin(path) && fs::status(path, error).type() == fs::file_type::not_found;

@@ -1,4 +1,4 @@
-// What a user's window remembers from one start to the next.
+// The user's preferences of the navigation app, kept between runs.
 #pragma once
 
 #include <filesystem>
@@ -8,11 +8,11 @@
 namespace edgesplat::viewer {
 
 struct Preferences {
-    std::vector<std::string> recent;  ///< files that were opened, the last one first; at most kMostRecent
-    int width = 1280, height = 800;   ///< of the window
-    double target = 0;                ///< milliseconds a picture may take while something moves; 0: by the device
-    double turn = 1, speed = 1;       ///< factors on how fast one turns and flies
-    double text_scale = 0;            ///< of the window's text; 0: by the screen
+    std::vector<std::string> recent;  ///< opened files, most recent first; at most kMostRecent
+    int width = 1280, height = 800;   ///< of the window, pixels
+    double target = 0;                ///< time limit of a picture in motion, milliseconds; 0: chosen by the device
+    double turn = 1, speed = 1;       ///< factors on the speed of turning and flying
+    double text_scale = 0;            ///< factor on the size of text; 0: chosen by the screen
     bool collisions = true;
     bool invert_look = false;
     std::string device;  ///< see DeviceChoice
@@ -21,19 +21,19 @@ struct Preferences {
 
 inline constexpr std::size_t kMostRecent = 12;
 
-/// $XDG_CONFIG_HOME/edgesplat/fly.toml (~/.config/edgesplat/fly.toml); empty where neither is known.
+/// $XDG_CONFIG_HOME/edgesplat/fly.toml or ~/.config/edgesplat/fly.toml; empty if neither folder is known.
 std::filesystem::path preferences_path();
 
-/// Reads them; what is missing or of no use there is as in `Preferences{}`, and a file that cannot be read is as none.
+/// Reads the preferences. Missing or invalid entries have their defaults; an unreadable file counts as empty.
 Preferences read_preferences(const std::filesystem::path& path);
 
-/// Writes them, whole or not at all; makes the folder. Throws Error.
+/// Writes the preferences, completely or not at all; creates the folder. Throws Error.
 void write_preferences(const Preferences& preferences, const std::filesystem::path& path);
 
-/// Puts a path in front of the recent ones.
+/// Moves a path to the front of the recent files.
 void remember(Preferences& preferences, const std::string& path);
 
-/// Takes those of the recent ones out that stand for nothing any more.
-void forget_lost(Preferences& preferences);
+/// Removes recent files that no longer exist.
+void remove_missing(Preferences& preferences);
 
 }  // namespace edgesplat::viewer

@@ -6,7 +6,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr int kApron = 2;  // voxels around a brick, so that interpolation within it needs no other
+constexpr int kApron = 2;  // voxels around a brick, so that interpolation in it needs no other brick
 
 std::size_t offset(const glm::ivec3& i, const glm::ivec3& dims) {
     return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
@@ -24,7 +24,7 @@ double Samples::at(const glm::ivec3& i) const {
         constexpr int brick = PackedVolume::kBrick;
         const glm::ivec3 low = glm::max(c / brick * brick - kApron, glm::ivec3(0));
         const glm::ivec3 size = glm::min(c / brick * brick + brick + kApron, dims) - low;
-        box_size_ = glm::ivec3(0);  // nothing, should reading fail
+        box_size_ = glm::ivec3(0);  // the box stays empty if reading fails
         box_.resize(offset(size - 1, size) + 1);
         volume_.packed->read(0, low, size, box_);
         box_low_ = low;

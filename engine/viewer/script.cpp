@@ -15,34 +15,34 @@ namespace edgesplat::viewer {
 namespace {
 
 constexpr std::array<ScriptVerb, 28> kVerbs{{
-    {"size", "nn", "width and height of the window's content, pixels"},
-    {"step", "n", "seconds from frame to frame from here on (1/60)"},
-    {"quality", "w", "of pictures in motion: measured (by the clock), or fixed (level and size that do not change)"},
-    {"open", "t", "a volume, folder, builtin:NAME or scene file; waits until it is there"},
-    {"frames", "n", "lets so many frames pass"},
-    {"settle", "", "lets frames pass until no better picture comes"},
-    {"move", "nn", "the mouse goes to a pixel, from the window's top left corner"},
-    {"drag", "nnn", "the mouse goes to a pixel in so many frames"},
-    {"aim", "wnn", "the mouse goes to a widget, to shares of its width and height: aim scene.histogram 0.5 0.2"},
-    {"tap", "w", "left button, down and up in the middle of a widget"},
-    {"press", "b", "a mouse button goes down: left, right, middle"},
-    {"release", "b", "it comes up"},
-    {"click", "nn", "left button, down and up at a pixel"},
-    {"double", "nn", "twice"},
-    {"wheel", "n", "steps, > 0 away from the person"},
-    {"hold", "k", "a key goes down"},
-    {"let", "k", "it comes up"},
-    {"key", "k", "a key is struck; Ctrl+Z and the like too"},
-    {"sticks", "nnnnn", "a gamepad from here on: left stick right and up, right stick right and up, triggers' up"},
-    {"type", "t", "text into the field that has the cursor"},
-    {"drop", "t", "a file dropped on the window"},
-    {"wander", "nn", "flies about for so many seconds, headings from a seed, pushed against whatever is in the way"},
+    {"size", "nn", "sets width and height of the window's content, pixels"},
+    {"step", "n", "sets the time step of the frames that follow, seconds (1/60)"},
+    {"quality", "w", "sets the resolution in motion: measured (adapted to the times of pictures), or fixed (constant)"},
+    {"open", "t", "opens a volume, folder, builtin:NAME or scene file, and waits until it is loaded"},
+    {"frames", "n", "runs a number of frames"},
+    {"settle", "", "runs frames until no better picture follows"},
+    {"move", "nn", "moves the mouse to a pixel, counted from the window's top left corner"},
+    {"drag", "nnn", "moves the mouse to a pixel in a number of frames"},
+    {"aim", "wnn", "moves the mouse to shares of a widget's width and height: aim scene.histogram 0.5 0.2"},
+    {"tap", "w", "clicks the left button in the middle of a widget"},
+    {"press", "b", "presses a mouse button: left, right, middle"},
+    {"release", "b", "releases a mouse button"},
+    {"click", "nn", "clicks the left button at a pixel"},
+    {"double", "nn", "double-clicks the left button at a pixel"},
+    {"wheel", "n", "turns the wheel by a number of steps, > 0 away from the user"},
+    {"hold", "k", "presses a key"},
+    {"let", "k", "releases a key"},
+    {"key", "k", "presses and releases a key, or a combination such as Ctrl+Z"},
+    {"sticks", "nnnnn", "sets a gamepad's axes: left stick right and up, right stick right and up, triggers up"},
+    {"type", "t", "types text into the active field"},
+    {"drop", "t", "drops a file on the window"},
+    {"wander", "nn", "flies for a number of seconds in random directions, also against walls; second number: seed"},
     {"screenshot", "t", "writes the window's content to a PNG file"},
-    {"picture", "t", "writes the picture as it is shown to a PNG file"},
+    {"picture", "t", "writes the displayed picture to a PNG file"},
     {"save", "t", "writes the scene to a file"},
-    {"expect", "wct", "stops with an error unless a value (below) compares so: ==, !=, <, <=, >, >=, has"},
-    {"lose", "w", "what happens when a device is lost: window or pictures"},
-    {"report", "t", "writes what pictures took since the last report to a JSON file"},
+    {"expect", "wct", "stops with an error unless a comparison of a value (below) is true: ==, !=, <, <=, >, >=, has"},
+    {"lose", "w", "simulates the loss of a device: that of the window, or that of the pictures"},
+    {"report", "t", "writes the times of all pictures since the last report to a JSON file"},
 }};
 
 std::optional<double> number_in(std::string_view text) {
@@ -57,7 +57,7 @@ bool is_comparison(std::string_view word) {
     return std::ranges::find(kAll, word) != kAll.end();
 }
 
-/// The next word of `rest`, taken off it.
+/// Removes the next word from `rest` and returns it.
 std::string_view take_word(std::string_view& rest) {
     const auto begin = std::min(rest.find_first_not_of(" \t\r"), rest.size());
     rest.remove_prefix(begin);
@@ -78,7 +78,7 @@ void check_word(const ScriptCommand& command, char kind, const std::string& word
     const auto refuse = [&](const char* expected) {
         fail("{}: {}: '{}', expected {}", command.where, command.verb, word, expected);
     };
-    // Pixels, frames and seconds: all are counted in 32 bits somewhere.
+    // Pixels, frames and seconds are all counted in 32 bits somewhere.
     constexpr double kMost = 1e9;
     if (kind == 'n' && !number_in(word)) refuse("a number");
     if (kind == 'n' && std::abs(*number_in(word)) > kMost) refuse("a number from -1e9 to 1e9");
@@ -115,7 +115,7 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
             for (const ScriptVerb& known : kVerbs)
                 names.emplace_back(known.name);
             const std::string nearest = nearest_name(command.verb, names);
-            fail("{}: '{}' is no command{}", command.where, command.verb,
+            fail("{}: '{}' is not a command{}", command.where, command.verb,
                  nearest.empty() ? std::string() : fmt::format("; did you mean {}?", nearest));
         }
         // cppcheck-suppress derefInvalidIteratorRedundantCheck; fail() does not return
@@ -126,7 +126,7 @@ std::vector<ScriptCommand> parse_script(std::string_view text, const std::string
             command.words.push_back(word);
         }
         if (!trimmed(rest).empty() && trimmed(rest).front() != '#')
-            fail("{}: {}: '{}' is too much, expected {} words", command.where, command.verb, trimmed(rest),
+            fail("{}: {}: unexpected word '{}', expected {} words", command.where, command.verb, trimmed(rest),
                  verb->words.size());
         commands.push_back(std::move(command));
     }

@@ -12,10 +12,10 @@
 namespace edgesplat::viewer {
 namespace {
 
-// What stands for so long is drawn as well as it can be, seconds.
+// Seconds without change after which the picture is refined.
 constexpr double kQuiet = 0.15;
 
-/// How near a double click brings the eye: a voxel is so many pixels high then.
+/// A double click brings the eye so near that a voxel has this height in pixels.
 constexpr double kPixelsPerVoxel = 12;
 
 constexpr double kFlightSeconds = 0.8;
@@ -29,7 +29,7 @@ SceneDocument with_quality_of(const SceneDocument& other, SceneDocument document
     return document;
 }
 
-/// What is solid before anything is cut away.
+/// Whether both scenes have the same solid matter before clipping.
 bool same_matter(const Scene& a, const Scene& b) {
     return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer;
 }
@@ -59,14 +59,14 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     clear_picks();
     walls_.reset();
     message_.clear();
-    apply(resolved_now());
+    apply(current_scene());
     const glm::dvec3 index = opened_.volume->geometry.to_index(camera.eye);
     const bool inside = glm::all(glm::greaterThan(index, glm::dvec3(0))) &&
                         glm::all(glm::lessThan(index, glm::dvec3(opened_.volume->geometry.dims - 1)));
     motion_.set_mode(inside ? MotionMode::Fly : MotionMode::Orbit);
 }
 
-Scene Session::resolved_now() const {
+Scene Session::current_scene() const {
     return resolve_scene(document(), *opened_.volume);
 }
 
@@ -98,19 +98,19 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
 }
 
 void Session::finish_edit() {
-    if (is_open() && history_->on_the_way()) history_->change(SceneDocument(history_->now()), true);
+    if (is_open() && history_->has_pending_edit()) history_->change(SceneDocument(history_->now()), true);
 }
 
 void Session::undo() {
     if (!can_undo()) return;
     history_->undo();
-    apply(resolved_now());
+    apply(current_scene());
 }
 
 void Session::redo() {
     if (!can_redo()) return;
     history_->redo();
-    apply(resolved_now());
+    apply(current_scene());
 }
 
 void Session::set_show(Show show) {
@@ -130,7 +130,7 @@ void Session::set_best_when_still(bool on) {
 }
 
 void Session::find_walls() {
-    if (!walls_outdated_ || walls_to_come_.valid()) return;
+    if (!walls_outdated_ || pending_walls_.valid()) return;
     if (walls_ && same_matter(walls_scene_, scene_)) {
         walls_outdated_ = false;
         walls_ = std::make_shared<const Walls>(*walls_, scene_.effects.clip);
@@ -141,18 +141,18 @@ void Session::find_walls() {
     walls_outdated_ = false;
     walls_scene_ = scene_;
     walls_volume_ = opened_.volume;
-    walls_to_come_ = std::async(std::launch::async, [volume = opened_.volume, scene = scene_] {
+    pending_walls_ = std::async(std::launch::async, [volume = opened_.volume, scene = scene_] {
         return std::make_shared<const Walls>(volume, scene);
     });
 }
 
 void Session::poll() {
     find_walls();
-    if (walls_to_come_.valid() &&
-        (wait_ || walls_to_come_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+    if (pending_walls_.valid() &&
+        (wait_ || pending_walls_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
         try {
-            auto found = walls_to_come_.get();
-            if (walls_volume_ == opened_.volume) {  // and not those of what was open before
+            auto found = pending_walls_.get();
+            if (walls_volume_ == opened_.volume) {  // not the walls of the previous volume
                 walls_ = std::move(found);
                 motion_.set_walls(walls_);
             }
@@ -163,7 +163,7 @@ void Session::poll() {
         walls_volume_.reset();
     }
     if (!tour_.poll(wait_)) return;
-    message_ = tour_.failed() ? "guided path: nothing connects the two points; set them in the same cavity"
+    message_ = tour_.failed() ? "guided path: the two points are not connected; choose both in the same cavity"
                               : fmt::format("guided path: {:.1f} mm", tour_.line()->length);
     if (tour_.line()) motion_.jump(tour_.camera(motion_.camera().up));
     changed_ = true;
@@ -207,7 +207,7 @@ bool Session::fly_to(const glm::dvec2& pixel, const glm::ivec2& size) {
     const glm::dvec3 spacing = volume().geometry.spacing();
     const double voxel = std::min({spacing.x, spacing.y, spacing.z});
     const double near = voxel * size.y / (2 * std::tan(glm::radians(there.fov_y) / 2) * kPixelsPerVoxel);
-    // Whoever is nearer already comes half the way, but never into the wall.
+    // A nearer eye moves half the distance, so that it never enters the wall.
     const double distance = std::min(near, found->distance / 2);
     there.eye = found->world - distance * towards;
     there.direction = towards;
@@ -254,7 +254,7 @@ std::optional<DrawRequest> Session::next_request(const glm::ivec2& size) {
     return request;
 }
 
-SceneDocument Session::kept_document(const glm::ivec2& size) const {
+SceneDocument Session::document_to_save(const glm::ivec2& size) const {
     const SceneDocument& now = document();
     SceneDocument out = now;
     const Camera& camera = motion_.camera();

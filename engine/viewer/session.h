@@ -1,4 +1,4 @@
-// What a window shows and a person changes: everything of the navigation app that is neither window nor widget.
+// State of the navigation app without window and widgets: what is shown, and what the user changes.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +20,7 @@
 
 namespace edgesplat::viewer {
 
-/// What of the two pictures is shown.
+/// Which of the two pictures is shown.
 enum class Show {
     Edges,       ///< edge-preserved
     Plain,       ///< conventional splatting
@@ -28,30 +28,31 @@ enum class Show {
     Sharpening,  ///< where the two differ, and how much
 };
 
-/// A line between the last two picks.
+/// The distance between the last two picks.
 struct Ruler {
     double length = 0;       ///< mm
-    double uncertainty = 0;  ///< mm, of both ends together
+    double uncertainty = 0;  ///< mm, of both ends combined
 };
 
 class Session {
   public:
-    /// `wait`: what else happens on threads is done before a call returns, so that the same calls give the same states.
+    /// `wait`: calls wait for background threads, so that the same calls give the same states.
     explicit Session(bool wait = false) : wait_(wait) {}
 
-    /// Shows what was opened, from the camera that its scene says. Throws Error; the session is as before then.
+    /// Shows an opened volume from its scene's camera. Throws Error; the session is then unchanged.
     void open(Opened opened, const glm::ivec2& size);
     bool is_open() const { return history_.has_value(); }
 
     const Opened& opened() const { return opened_; }
     const Volume& volume() const { return *opened_.volume; }
     const SceneDocument& document() const { return history_->now(); }
-    /// The document's scene; of a change that cannot be drawn the last one that could.
+    /// The document's scene; if that cannot be drawn, the last one that could.
     const Scene& scene() const { return scene_; }
 
-    /// Changes the document; `finished`: undo comes back to it. A change that cannot be drawn is refused and said.
+    /// Changes the document. `finished`: makes it an undo step. A change that cannot be drawn is rejected with a
+    /// message.
     void edit(const std::function<void(SceneDocument&)>& change, bool finished = true);
-    /// Ends changes that were not finished: undo comes back to what is now. Without any, nothing happens.
+    /// Makes unfinished changes one undo step. Does nothing without any.
     void finish_edit();
     void undo();
     void redo();
@@ -71,41 +72,41 @@ class Session {
     bool best_when_still() const { return best_; }
     void set_best_when_still(bool on);
 
-    /// Time goes on: moves the eye, plays the tour, takes what threads have found.
+    /// Advances time: moves the eye, plays the tour, takes the results of threads.
     void step(const Controls& controls, double seconds);
 
-    /// The visible surface at a pixel of the picture; kept among `picks`. Whether there is one.
+    /// Picks the visible surface at a pixel of the picture and adds it to `picks`. Returns whether there is one.
     bool pick_at(const glm::dvec2& pixel, const glm::ivec2& size);
-    /// Flies there and makes it the centre that one turns about. Whether there is a surface.
+    /// Flies to the surface at a pixel and makes it the centre of orbits. Returns whether there is one.
     bool fly_to(const glm::dvec2& pixel, const glm::ivec2& size);
     const std::vector<Pick>& picks() const { return picks_; }
     void clear_picks();
-    /// The place that slices go through, world mm: the last pick, or what was set since; none where there is neither.
+    /// The point of the slices, world mm: the last pick, or the last `set_point`; nullopt without either.
     const std::optional<glm::dvec3>& point() const { return point_; }
     void set_point(const glm::dvec3& world) { point_ = world; }
     std::optional<Ruler> ruler() const;
 
-    /// What is to be drawn for a window's picture of that size; nothing if that is what was asked for last.
+    /// The request for a picture of that size; nullopt if it equals the last request.
     std::optional<DrawRequest> next_request(const glm::ivec2& size);
-    /// The next request is asked for whatever it is: what was drawn is lost.
-    void ask_again() {
+    /// Makes the next call of next_request return a request in any case: the drawn picture is lost.
+    void force_next_request() {
         changed_ = true;
         asked_view_.reset();
     }
-    /// Whether the picture is going to change by itself or under a hand.
+    /// Whether the picture changes by itself or by user input.
     bool moving() const;
 
-    /// The document with the camera as it is, and everything written out.
-    SceneDocument kept_document(const glm::ivec2& size) const;
+    /// The document with the current camera, and with all values written out.
+    SceneDocument document_to_save(const glm::ivec2& size) const;
 
-    /// The last thing there was to say; empty: nothing.
+    /// The last message; empty if there is none.
     const std::string& message() const { return message_; }
     void say(std::string text) { message_ = std::move(text); }
 
   private:
-    /// `scene`: what the document says, resolved. `seen`: not only how well it is drawn has changed.
+    /// `scene`: the document's resolved scene. `seen`: more than the drawing quality has changed.
     void apply(Scene scene, bool seen = true);
-    Scene resolved_now() const;
+    Scene current_scene() const;
     void find_walls();
     void poll();
 
@@ -113,25 +114,25 @@ class Session {
     Opened opened_;
     std::optional<History<SceneDocument>> history_;
     Scene scene_;
-    std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< another one with every scene or quality; with every scene
+    std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< change with every scene or quality; with every scene
     Motion motion_;
     Tour tour_;
     FlightRecorder recorder_;
     std::shared_ptr<const Walls> walls_;
-    std::future<std::shared_ptr<const Walls>> walls_to_come_;
-    std::shared_ptr<const Volume> walls_volume_;  ///< whose they are
-    Scene walls_scene_;                           ///< of which they were, or are being, found
+    std::future<std::shared_ptr<const Walls>> pending_walls_;
+    std::shared_ptr<const Volume> walls_volume_;  ///< whose walls are being computed
+    Scene walls_scene_;                           ///< of `walls_`, or of those being computed
     bool walls_outdated_ = false;
     std::vector<Pick> picks_;
     std::optional<glm::dvec3> point_;
     Show show_ = Show::Edges;
     double wipe_ = 0.5;
     bool best_ = false;
-    double quiet_ = 1;  ///< seconds since something last changed
+    double quiet_ = 1;  ///< seconds since the last change
     bool changed_ = true;
     bool asked_moving_ = false;
     glm::ivec2 asked_size_{0};
-    /// What the last request was to show, if nothing moved.
+    /// The view of the last request, if nothing moved.
     struct View {
         std::uint64_t number = 0;
         Camera camera;

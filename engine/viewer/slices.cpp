@@ -10,9 +10,9 @@
 namespace edgesplat::viewer {
 namespace {
 
-constexpr int kMostPixels = 1024;  // a side, of a packed volume
+constexpr int kMostPixels = 1024;  // per side, for a packed volume
 
-/// The world axis that an axis of the volume is closest to, and whether it runs against it.
+/// The world axis nearest to an axis of the volume, and whether both have opposite directions.
 struct Heading {
     int axis = 0;
     bool against = false;
@@ -37,7 +37,7 @@ Slice slice(const Volume& volume, int axis, const glm::dvec3& voxel, double low,
     Slice s;
     s.axis = axis;
     s.across = {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
-    // What runs along the world's z belongs upright, whatever the order of the volume's axes.
+    // An axis along the world's z is vertical, whatever the order of the volume's axes.
     if (heading(geometry.index_to_world_axes[s.across.x]).axis == 2) std::swap(s.across.x, s.across.y);
     const Heading right = heading(geometry.index_to_world_axes[s.across.x]),
                   down = heading(geometry.index_to_world_axes[s.across.y]);
@@ -69,7 +69,7 @@ Slice slice(const Volume& volume, int axis, const glm::dvec3& voxel, double low,
         read.resize(static_cast<std::size_t>(s.width) * static_cast<std::size_t>(s.height));
         volume.packed->read(level, first, size, read);
     }
-    // Of what was read, x is fastest too.
+    // `read` has the same order: x is fastest.
     const auto sample = [&](const glm::ivec3& i) {
         if (!volume.packed) return volume.at(i.x, i.y, i.z);
         const glm::ivec3 at = i - first;
@@ -91,7 +91,7 @@ Slice slice(const Volume& volume, int axis, const glm::dvec3& voxel, double low,
     return s;
 }
 
-// A pixel covers `voxels` voxels from the border of the volume on, half a voxel before the first one's centre; the last
+// A pixel covers `voxels` voxels, from the volume's border on (half a voxel before the first centre). The last pixel
 // may reach beyond the volume.
 glm::dvec3 voxel_at(const Slice& slice, const glm::dvec2& pixel) {
     glm::dvec3 voxel(slice.depth);

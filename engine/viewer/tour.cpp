@@ -51,7 +51,7 @@ void Tour::step(double seconds) {
 }
 
 Camera Tour::camera(const glm::dvec3& up) const {
-    if (!line_) fail("guided path: there is none yet");
+    if (!line_) fail("guided path: none has been found yet");
     Camera camera = camera_along(*line_, position_, fov, up);
     const CameraFrame frame = camera_frame(camera);
     const glm::dvec3 turned = std::cos(look.x) * frame.forward + std::sin(look.x) * frame.right;
@@ -61,7 +61,7 @@ Camera Tour::camera(const glm::dvec3& up) const {
 }
 
 CameraPath Tour::path(const glm::dvec3& up) const {
-    if (!line_) fail("guided path: there is none yet");
+    if (!line_) fail("guided path: none has been found yet");
     return camera_path_along(*line_, line_->length / speed, fov, up);
 }
 

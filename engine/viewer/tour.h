@@ -1,4 +1,4 @@
-// Travelling along the centre line of a cavity: played, scrubbed, looked around from.
+// A tour along the centre line of a cavity: playing, seeking, looking around.
 #pragma once
 
 #include <future>
@@ -12,32 +12,32 @@ namespace edgesplat::viewer {
 
 class Tour {
   public:
-    /// The ends, world mm; the line is looked for once both are there.
+    /// The ends, world mm; `find` needs both.
     std::optional<glm::dvec3> from, to;
     double speed = 20;   ///< mm/s
     double fov = 70;     ///< degrees
-    glm::dvec2 look{0};  ///< radians that one looks to the right and up of the line's direction
+    glm::dvec2 look{0};  ///< radians that the view turns to the right and up from the line's direction
     bool playing = false;
 
-    /// Looks for the line between the ends, on a thread. Does nothing without both.
+    /// Searches the line between the ends, on a thread. Does nothing without both.
     void find(std::shared_ptr<const Walls> walls);
     bool searching() const { return search_.valid(); }
-    /// Takes what was found: whether there is something new to say. `wait`: until it is.
+    /// Takes the result of a search. Returns whether there is a new one. `wait`: waits for it.
     bool poll(bool wait);
     const std::optional<GuidedPath>& line() const { return line_; }
-    /// No line connects the ends of the last search.
+    /// Whether the last search found no line.
     bool failed() const { return failed_; }
     void clear();
 
-    /// mm from the beginning, [0, length].
+    /// mm from the beginning, in [0, length].
     double position() const { return position_; }
     void set_position(double millimetres);
     void step(double seconds);
-    /// Plays, from the beginning where the end was reached, or stops. Does nothing without a line.
+    /// Starts playing (from the beginning if the end was reached) or stops. Does nothing without a line.
     void toggle();
     /// Throws Error without a line.
     Camera camera(const glm::dvec3& up) const;
-    /// The whole way at its speed, for a movie. Throws Error without a line.
+    /// The camera path of the whole line at `speed`, for a movie. Throws Error without a line.
     CameraPath path(const glm::dvec3& up) const;
 
   private:

@@ -12,11 +12,11 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// Diagonals of a cell within which surfaces are looked for themselves. Beyond, the distance to where they cross edges
-/// of the grid is too large by a tenth of a diagonal at most.
+/// Diagonals of a cell within which the surface itself is searched. Further away, the distance to its crossings with
+/// edges of the grid is at most a tenth of a diagonal too large.
 constexpr double kNear = 1.25;
 
-std::shared_ptr<const Volume> of_bounded_size(std::shared_ptr<const Volume> volume) {
+std::shared_ptr<const Volume> limited_resolution(std::shared_ptr<const Volume> volume) {
     if (!volume) fail("walls: no volume");
     if (volume->packed) {
         const int level = finest_level_within(*volume->packed, Walls::kMaxVoxelsPacked);
@@ -52,7 +52,7 @@ struct Walls::Matter {
     bool any = false, all = false;
 
     Matter(const std::shared_ptr<const Volume>& given, const Scene& scene)
-        : volume(of_bounded_size(given)),
+        : volume(limited_resolution(given)),
           geometry(volume->geometry),
           values(solid_values(scene, given->geometry.mean_spacing())),
           field(*volume) {
@@ -83,7 +83,7 @@ struct Walls::Matter {
 
     glm::dvec3 to_index(const glm::dvec3& world) const { return field.to_index * (world - geometry.origin); }
 
-    /// Of the endless matter that the outermost samples continue; `index` in the box of the volume.
+    /// Signed distance to matter that the outermost samples continue without end; `index` in the box of the volume.
     double distance(const glm::dvec3& index) const {
         if (all) return -std::numeric_limits<double>::infinity();
         const glm::dvec3 last(geometry.dims - 1), inner = glm::clamp(index, glm::dvec3(0), last);
@@ -112,7 +112,7 @@ Walls::Walls(const std::shared_ptr<const Volume>& volume, const Scene& scene) {
 
 Walls::Walls(const Walls& walls, const Clip& clip) : matter_(walls.matter_), clip_(with_unit_normals(clip)) {}
 
-/// Signed distance, mm, of what the clip planes keep: above 0 beyond it.
+/// Signed distance, mm, to the part that the clip planes keep: above 0 outside it.
 double Walls::cut(const glm::dvec3& world) const {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     double beyond = -infinity;
@@ -139,7 +139,8 @@ double Walls::distance(const glm::dvec3& world) const {
     const double outside = glm::length(m.geometry.index_to_world_axes * (index - inside));
     double d = m.distance(inside);
     if (outside > 0) {
-        // What is convex lies on the far side of the plane through its nearest point.
+        // The box is convex: all matter lies behind the plane through its nearest point, perpendicular to the way
+        // there.
         d = d > 0 ? std::hypot(outside, d) : outside;
     } else {
         const glm::dvec3 to_side = glm::min(index - first, last - index) * m.thickness;
@@ -159,7 +160,7 @@ glm::dvec3 Walls::away(const glm::dvec3& world) const {
         g[axis] = distance(world + step) - distance(world - step);
     }
     if (glm::length(g) > 0.1 * h) return glm::normalize(g);
-    // Between walls: whichever way leads furthest.
+    // Between walls: the direction with the largest distance.
     glm::dvec3 best = any;
     double most = -std::numeric_limits<double>::infinity();
     for (int k = 0; k < 27; ++k) {
@@ -172,11 +173,11 @@ glm::dvec3 Walls::away(const glm::dvec3& world) const {
     return best;
 }
 
-double Walls::free_way(const glm::dvec3& world, const glm::dvec3& direction, double limit) const {
+double Walls::free_distance(const glm::dvec3& world, const glm::dvec3& direction, double limit) const {
     if (!matter_->any || !(limit > 0)) return std::max(limit, 0.0);
     const glm::dvec3 way = unit(direction);
     const VolumeGeometry& g = matter_->geometry;
-    // Beyond this every ray has left the volume.
+    // Beyond this length every ray has left the volume.
     const double end = glm::length(world - g.center()) + glm::length(g.index_to_world_axes * glm::dvec3(g.dims));
     const double shortest = 0.1 * voxel();
     double t = 0, d = distance(world), before = 0;

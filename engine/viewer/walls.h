@@ -1,4 +1,4 @@
-// What of a volume is solid to someone who moves through it, and how far away it is.
+// Solid parts of a volume, and distances to them, for moving through it.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -11,37 +11,39 @@
 
 namespace edgesplat::viewer {
 
-/// Solid is the matter of which one voxel (the mean of the three spacings) lets at most half of the light through:
-/// extinction >= ln 2 / spacing at the interpolated value, by material or transfer function, inside the box of the
-/// volume (half a voxel beyond the outermost centres) and not cut away. Distances are in mm, negative inside. Within
-/// about two voxels of a surface they are those to the surface of the trilinear field itself; further away an exact
-/// Euclidean distance transform (Felzenszwalb and Huttenlocher 2012) to all places where that surface crosses an edge
-/// of the grid. At corners of clip planes and outside the volume they are lower bounds. Constant, and thread-safe.
+/// Matter is solid if one voxel of it (the mean of the three spacings) absorbs at least half of the light: extinction
+/// >= ln 2 / spacing at the interpolated value, by material or transfer function. It must be inside the box of the
+/// volume (half a voxel beyond the outermost centres) and not clipped.
+///
+/// Distances are in mm, negative inside. Within about two voxels of a surface they are those to the surface of the
+/// trilinear field. Further away they are an exact Euclidean distance transform (Felzenszwalb and Huttenlocher 2012) to
+/// all crossings of that surface with edges of the grid. At corners of clip planes and outside the volume they are
+/// lower bounds. Immutable and thread-safe.
 class Walls {
   public:
-    /// Voxels beyond which walls are found at a lower resolution.
+    /// Numbers of voxels beyond which walls are computed at a lower resolution.
     static constexpr std::size_t kMaxVoxelsInMemory = std::size_t{1} << 24, kMaxVoxelsPacked = std::size_t{1} << 23;
 
-    /// Keeps the volume, or a coarser one made from it. Throws Error for a volume without voxels, for an invalid scene,
-    /// and where a packed file cannot be read.
+    /// Keeps the volume, or a coarser one made from it. Throws Error: a volume without voxels, an invalid scene, an
+    /// unreadable packed file.
     Walls(const std::shared_ptr<const Volume>& volume, const Scene& scene);
     /// The same matter with other clip planes; costs nothing.
     Walls(const Walls& walls, const Clip& clip);
 
     bool solid(const glm::dvec3& world) const;
-    /// mm to the nearest surface, negative in solid matter; infinity where nothing is solid.
+    /// mm to the nearest surface, negative in solid matter; infinity if nothing is solid.
     double distance(const glm::dvec3& world) const;
-    /// Unit, world: the way to more room (out of the matter, when inside). Where all ways are alike, any.
+    /// Unit, world: the direction to more room (out of matter, when inside); arbitrary if all directions are equal.
     glm::dvec3 away(const glm::dvec3& world) const;
-    /// mm: how far a straight way in a direction (any length > 0) is free, at most `limit`; 0 from inside.
-    double free_way(const glm::dvec3& world, const glm::dvec3& direction,
-                    double limit = std::numeric_limits<double>::infinity()) const;
+    /// Free length of a straight line in a direction (any length > 0), mm, at most `limit`; 0 from inside.
+    double free_distance(const glm::dvec3& world, const glm::dvec3& direction,
+                         double limit = std::numeric_limits<double>::infinity()) const;
 
-    double voxel() const;                    ///< mm, smallest spacing of the grid below
-    bool any() const;                        ///< whether anything is solid, clip planes aside
-    glm::ivec3 dims() const;                 ///< of the grid that walls were found on: the volume's or a coarser one
+    double voxel() const;     ///< mm, smallest spacing of the grid
+    bool any() const;         ///< whether anything is solid, without clip planes
+    glm::ivec3 dims() const;  ///< of the grid on which walls were computed: the volume's or a coarser one
     const VolumeGeometry& geometry() const;  ///< of that grid
-    /// The distance at a voxel's centre of that grid, without refinement near surfaces; fast.
+    /// The distance at the centre of a voxel of that grid, without refinement near surfaces; fast.
     double distance_at(const glm::ivec3& voxel) const;
 
   private:

@@ -10,9 +10,9 @@ namespace edgesplat::viewer {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::size_t kBlock = 16;  // lines at a time: a cache line of each sample
+constexpr std::size_t kBlock = 16;  // lines at a time: their samples fill a cache line
 
-/// Calls `work(begin, end)` on as many pieces of [0, count) as there are processors.
+/// Divides [0, count) into one piece per processor and calls `work(begin, end)` on each, in parallel.
 void in_pieces(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
     const std::size_t pieces =
         std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, std::max<std::size_t>(count, 1));
@@ -22,7 +22,7 @@ void in_pieces(std::size_t count, const std::function<void(std::size_t, std::siz
     work(0, count / pieces);
 }
 
-/// How lines of a grid along an axis lie in memory: `outer` groups of `inner` neighbouring lines.
+/// Memory layout of a grid's lines along an axis: `outer` groups of `inner` neighbouring lines.
 struct Lines {
     std::size_t length, stride, inner, outer, outer_stride;
     Lines(const glm::ivec3& dims, int axis) {
@@ -34,12 +34,12 @@ struct Lines {
         outer = axis == 0 ? n.y * n.z : axis == 1 ? n.z : n.y;
         outer_stride = axis == 1 ? n.x * n.y : n.x;
     }
-    /// `work(first, count)` for up to kBlock lines that begin next to each other.
+    /// Calls `work(first, count)` for up to kBlock lines that begin next to each other.
     template <typename Work>
     void each_block(const Work& work) const {
         const std::size_t blocks = (inner + kBlock - 1) / kBlock;
         in_pieces(outer * blocks, [&](std::size_t begin, std::size_t end) {
-            auto own = work;  // with buffers of its own
+            auto own = work;  // a copy with its own buffers
             for (std::size_t k = begin; k < end; ++k) {
                 const std::size_t at = k % blocks * kBlock;
                 own(k / blocks * outer_stride + at, std::min(kBlock, inner - at));
@@ -48,7 +48,7 @@ struct Lines {
     }
 };
 
-/// Squared distances along the lines of an axis to the nearest crossing of a flip, linearly interpolated.
+/// Squared distances along the lines of an axis to the nearest crossing of a flip, by linear interpolation.
 std::vector<float> along_lines(const Volume& volume, const SolidValues& values, int axis) {
     const Lines lines(volume.geometry.dims, axis);
     const double spacing = volume.geometry.spacing()[axis];
@@ -87,7 +87,7 @@ std::vector<float> along_lines(const Volume& volume, const SolidValues& values, 
     return out;
 }
 
-/// Lower envelope of the parabolas (s (x - i))^2 + f(i), at all x: Felzenszwalb and Huttenlocher's algorithm 1.
+/// Lower envelope of the parabolas (s (x - i))^2 + f(i), for all x: Felzenszwalb and Huttenlocher's algorithm 1.
 class Envelope {
   public:
     Envelope(std::size_t length, double spacing)
@@ -152,8 +152,8 @@ void keep_less(std::vector<float>& a, const std::vector<float>& b) {
     std::transform(a.begin(), a.end(), b.begin(), a.begin(), [](float x, float y) { return std::min(x, y); });
 }
 
-/// Least length in the world of a vector whose length by spacings alone is 1: below 1 where axes are not orthogonal
-/// (Gershgorin's bound of the least singular value).
+/// Lower bound of a vector's length in the world if its length by spacings alone is 1: below 1 for axes that are not
+/// orthogonal (Gershgorin's bound of the least singular value).
 double least_stretch(const VolumeGeometry& geometry) {
     const glm::dvec3 spacing = geometry.spacing();
     double bound = 1;
@@ -172,7 +172,7 @@ double least_stretch(const VolumeGeometry& geometry) {
 
 std::vector<float> distances_to_crossings(const Volume& volume, const SolidValues& values) {
     const VolumeGeometry& geometry = volume.geometry;
-    // Crossings on edges along x and y meet before the pass along z that both need.
+    // Crossings on x and y edges are merged before the pass along z, which both need.
     std::vector<float> nearest = along_lines(volume, values, 0);
     spread(nearest, geometry, 1);
     {

@@ -1,4 +1,4 @@
-// Parts of Walls: intervals of values, distances on the grid, surfaces within its cells.
+// Parts of Walls: intervals of values, distances on the grid, surfaces in its cells.
 #pragma once
 
 #include <array>
@@ -13,10 +13,10 @@
 
 namespace edgesplat::viewer {
 
-/// The value axis, cut where matter becomes solid or stops to be.
+/// The value axis, divided into intervals that are alternately solid and not solid.
 struct SolidValues {
-    std::vector<double> flips;  ///< ascending; a flip belongs to what is above it
-    bool solid_below = false;   ///< the first flip
+    std::vector<double> flips;  ///< ascending; a flip belongs to the interval above it
+    bool solid_below = false;   ///< whether values below the first flip are solid
 
     /// Number of flips <= value.
     int interval(double value) const {
@@ -29,14 +29,14 @@ struct SolidValues {
     bool solid(double value) const { return solid_interval(interval(value)); }
 };
 
-/// Solid: extinction at least ln 2 / voxel (mm).
+/// Values are solid where extinction >= ln 2 / voxel (mm).
 SolidValues solid_values(const Scene& scene, double voxel);
 
-/// Distance in mm from every voxel's centre to the nearest place where the linear interpolation along an edge of the
-/// grid reaches a flip; infinity where there are none. Exact for orthogonal axes (Felzenszwalb and Huttenlocher 2012).
+/// Distance in mm from every voxel's centre to the nearest place where linear interpolation along an edge of the grid
+/// reaches a flip; infinity if there is none. Exact for orthogonal axes (Felzenszwalb and Huttenlocher 2012).
 std::vector<float> distances_to_crossings(const Volume& volume, const SolidValues& values);
 
-/// The trilinear field of a volume in memory in its cells, continued beyond the border by the outermost samples.
+/// The trilinear field of a volume in memory, by cell; the outermost samples continue it beyond the border.
 struct CellField {
     const Volume& volume;
     glm::dmat3 to_index;  ///< linear part
@@ -49,11 +49,11 @@ struct CellField {
     glm::dvec3 gradient(const glm::dvec3& index) const;
 };
 
-/// Cells of a grid that a surface goes through: one bit a cell, named by its lowest corner.
+/// The cells of a grid that a surface crosses: one bit per cell, indexed by its lowest corner.
 std::vector<bool> crossed_cells(const Volume& volume, const SolidValues& values);
 
-/// The point of the solid matter's surface that is nearest to a place in index space, world mm relative to the
-/// volume's origin; none further away than `radius` mm.
+/// The point of the solid matter's surface nearest to a place in index space, world mm relative to the volume's origin;
+/// nullopt if it is further away than `radius` mm.
 std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const SolidValues& values,
                                              const std::vector<bool>& crossed, const glm::dvec3& index, double radius);
 

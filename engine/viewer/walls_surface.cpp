@@ -8,14 +8,14 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// Kuhn's six tetrahedra of a cell around its diagonal 0-7; their faces match from cell to cell.
+/// Kuhn's six tetrahedra of a cell around its diagonal 0-7; their faces match between neighbouring cells.
 constexpr int kTetrahedra[6][4] = {{0, 1, 3, 7}, {0, 3, 2, 7}, {0, 2, 6, 7}, {0, 6, 4, 7}, {0, 4, 5, 7}, {0, 5, 1, 7}};
 
 glm::ivec3 corner(int k) {
     return {k & 1, (k >> 1) & 1, (k >> 2) & 1};
 }
 
-/// Closest point of a triangle to the origin (Ericson 2005, 5.1.5); degenerate ones count as their edges.
+/// Closest point of a triangle to the origin (Ericson 2005, 5.1.5); a degenerate triangle counts as its edges.
 glm::dvec3 closest_to_origin(const glm::dvec3& a, const glm::dvec3& b, const glm::dvec3& c) {
     const glm::dvec3 ab = b - a, ac = c - a;
     const double d1 = -glm::dot(ab, a), d2 = -glm::dot(ac, a);
@@ -35,7 +35,7 @@ glm::dvec3 closest_to_origin(const glm::dvec3& a, const glm::dvec3& b, const glm
     return sum > 0 ? a + ab * (vb / sum) + ac * (vc / sum) : a;
 }
 
-/// Keeps the point nearest to the origin of all triangles shown to it.
+/// Keeps the point nearest to the origin of all triangles added to it.
 struct Nearest {
     double square;
     glm::dvec3 point{0};
@@ -53,7 +53,7 @@ struct Nearest {
     }
 };
 
-/// The surface value = flip in a cell, linear in each tetrahedron. `places`: of the corners.
+/// Adds the surface value = flip of a cell, linear in each tetrahedron. `places`: of the corners.
 void add_cell(const std::array<double, 8>& values, const std::array<glm::dvec3, 8>& places, double flip,
               Nearest& nearest) {
     for (const auto& tetrahedron : kTetrahedra) {
@@ -166,7 +166,7 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
     const VolumeGeometry& geometry = field.volume.geometry;
     const glm::ivec3 dims = geometry.dims;
     const glm::dmat3 rows = glm::transpose(field.to_index);
-    // Cells beyond the border repeat the outermost samples; what they hold begins half a voxel beyond the last centre.
+    // Cells beyond the border repeat the outermost samples; one layer of them suffices.
     const glm::dvec3 reach = radius * glm::dvec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
     const glm::ivec3 low = glm::max(glm::ivec3(glm::floor(index - reach)), glm::ivec3(-1));
     const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(index + reach)), dims - 1);
@@ -189,7 +189,7 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
                     continue;
                 const glm::dvec3 gap =
                     glm::max(glm::max(glm::dvec3(c) - index, index - glm::dvec3(c + 1)), glm::dvec3(0)) * thickness;
-                // Between axes that are not orthogonal only the one that is furthest counts.
+                // If the axes are not orthogonal, only the largest gap is a lower bound.
                 const double widest = std::max({gap.x, gap.y, gap.z});
                 if ((orthogonal ? glm::dot(gap, gap) : widest * widest) > nearest.square) continue;
                 const std::array<double, 8> v = field.corners(c);
@@ -204,7 +204,7 @@ std::optional<glm::dvec3> nearest_on_surface(const CellField& field, const Solid
                     add_cell(v, places, values.flips[static_cast<std::size_t>(flip)], nearest);
             }
     if (!nearest.found) return std::nullopt;
-    // From the tetrahedra's surface to that of the trilinear field.
+    // Correct from the tetrahedra's surface to that of the trilinear field.
     const glm::dvec3 at = index + field.to_index * nearest.point, slope = field.gradient(at);
     const double steep = glm::dot(slope, slope);
     glm::dvec3 point = nearest.point;

@@ -59,7 +59,7 @@ struct Ellipsoid {
     double value;  // HU
 };
 
-// A head in a 96 x 112 x 96 grid, nose towards +y, up +z; each part is laid over those before it.
+// A head in a 96 x 112 x 96 grid, nose towards +y, up +z; later parts replace earlier ones.
 constexpr std::array<Ellipsoid, 17> kHead = {{
     {{47.5, 52, 48}, {36, 44, 42}, 40},       // skin and muscle
     {{47.5, 98, 36}, {6, 9, 8}, 40},          // nose
@@ -68,7 +68,7 @@ constexpr std::array<Ellipsoid, 17> kHead = {{
     {{42, 50, 58}, {4, 13, 6}, 8},            // ventricles
     {{53, 50, 58}, {4, 13, 6}, 8},
     {{47.5, 80, 34}, {14, 17, 15}, 500},   // facial bone
-    {{43, 82, 34}, {3.2, 19, 10}, -1000},  // nasal passages, a septum of 2.6 voxels between them
+    {{43, 82, 34}, {3.2, 19, 10}, -1000},  // nasal passages, separated by a septum of 2.6 voxels
     {{52, 82, 34}, {3.2, 19, 10}, -1000},
     {{40.6, 80, 33}, {1.2, 10, 3.5}, 60},  // turbinates
     {{54.4, 80, 33}, {1.2, 10, 3.5}, 60},
@@ -90,7 +90,7 @@ AnalyticScene phantom() {
         for (const auto& part : kHead) {
             const auto p = (x - part.center) / part.radii;
             const double k = glm::length(p), size = std::cbrt(part.radii.x * part.radii.y * part.radii.z);
-            const double s = (k - 1) * size;  // not a distance, but 0 on the surface and smooth
+            const double s = (k - 1) * size;  // not a distance, but smooth and 0 on the surface
             if (s > 9 * blur) continue;
             const double share = step(-s, blur);
             const auto slope = k > 0 ? p / part.radii * (size / k) : glm::dvec3(0);

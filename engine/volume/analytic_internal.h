@@ -1,4 +1,4 @@
-// What the builtin scenes are made of; for analytic_*.cpp alone.
+// Building blocks of the builtin scenes; internal to analytic_*.cpp.
 #pragma once
 
 #include <cmath>
@@ -12,19 +12,20 @@ namespace edgesplat::analytic {
 constexpr double kPi = 3.14159265358979323846;
 constexpr double kSqrt2 = 1.41421356237309504880;
 
-/// Distance to a surface, voxels, negative inside, and its derivative; that has unit length almost everywhere.
+/// Signed distance to a surface (voxels, negative inside) and its gradient, of unit length almost everywhere.
 struct Distance {
     double value;
     glm::dvec3 gradient;
 };
 using DistanceFunction = std::function<Distance(const glm::dvec3&)>;
 
-/// Around the origin: a ball; a torus around the z axis; a box of these half sides, its edges rounded to that radius.
+/// Distances to solids at the origin: a ball, a torus around the z axis, and a box of half sides `half` with edges
+/// rounded to radius `rounding`.
 Distance ball_distance(const glm::dvec3& p, double radius);
 Distance ring_distance(const glm::dvec3& p, double major_radius, double minor_radius);
 Distance box_distance(const glm::dvec3& p, const glm::dvec3& half, double rounding);
 
-/// Integral of a Gaussian of standard deviation `sd` from -infinity to t, and its derivative.
+/// Integral of a Gaussian of standard deviation `sd` from -infinity to t, and the integrand at t.
 inline double step(double t, double sd) {
     return 0.5 * std::erfc(-t / (kSqrt2 * sd));
 }
@@ -32,27 +33,27 @@ inline double bell(double t, double sd) {
     return std::exp(-0.5 * t * t / (sd * sd)) / (sd * std::sqrt(2 * kPi));
 }
 
-/// Throws Error unless the profile rises and is blurred or binary.
+/// Throws Error unless inside > outside, and blur > 0 or the profile is binary.
 void check(const EdgeProfile& profile);
 
-/// Values by the profile of the distance to one surface. Throws Error as `check` does.
+/// A scene with one surface: maps its signed distance through the profile. Throws Error like `check`.
 AnalyticScene solid(std::string name, const glm::ivec3& dims, const EdgeProfile& profile, DistanceFunction distance);
 
-/// Throws Error naming `what` where v has no direction.
+/// v / |v|. Throws Error naming `what` if v has no direction.
 glm::dvec3 unit(const glm::dvec3& v, const char* what);
 
-/// Of the grid, index space.
+/// Centre of the grid, index space.
 inline glm::dvec3 middle(const glm::ivec3& dims) {
     return (glm::dvec3(dims) - 1.0) * 0.5;
 }
 
-/// Plane walls of different thickness; a known sum of waves; an electron's density; a head.
+/// Plane walls of different thickness; the Marschner-Lobb test signal; an electron density; a head.
 AnalyticScene plates();
 AnalyticScene marschner_lobb();
 AnalyticScene orbital();
 AnalyticScene phantom();
 
-/// Bodies in grids of 40^3 voxels, turned out of the axes (docs/method.md, Builtin scenes).
+/// Solids in grids of 40^3 voxels, rotated away from the grid axes (docs/method.md, Builtin scenes).
 AnalyticScene ellipsoid();
 AnalyticScene box(std::string name, double rounding);  ///< `rounding`: radius of the edges, voxels; 0: sharp
 AnalyticScene tilted_torus();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kSide = 40;
 
-/// Directions of a body's own axes, out of the grid's and of each other's planes.
+/// Axes of a rotated body, so that none is aligned with the grid.
 glm::dmat3 turned(double about_x, double about_y, double about_z) {
     const auto about = [](int axis, double angle) {
         glm::dmat3 m(1);
@@ -25,7 +25,7 @@ glm::dmat3 turned(double about_x, double about_y, double about_z) {
     return about(2, about_z) * about(1, about_y) * about(0, about_x);
 }
 
-/// A distance in a body's own frame, seen from the grid's.
+/// Transforms a distance function from a body's frame to the grid's.
 DistanceFunction placed(const glm::dvec3& center, const glm::dmat3& axes, DistanceFunction own) {
     return [center, axes, own = std::move(own)](const glm::dvec3& x) {
         const Distance d = own(glm::transpose(axes) * (x - center));
@@ -33,7 +33,7 @@ DistanceFunction placed(const glm::dvec3& center, const glm::dmat3& axes, Distan
     };
 }
 
-/// Body made of bodies that do not meet.
+/// Union of disjoint bodies.
 DistanceFunction nearest_of(std::vector<DistanceFunction> parts) {
     return [parts = std::move(parts)](const glm::dvec3& x) {
         Distance nearest{INFINITY, glm::dvec3(0)};
@@ -43,10 +43,10 @@ DistanceFunction nearest_of(std::vector<DistanceFunction> parts) {
     };
 }
 
-/// The foot of the perpendicular is p_i r_i^2 / (t + r_i^2), where sum (r_i p_i / (t + r_i^2))^2 = 1. From where one
-/// term alone is 1 Newton's steps go up to the root, since the sum is convex and falls.
+/// The foot of the perpendicular is p_i r_i^2 / (t + r_i^2), where sum (r_i p_i / (t + r_i^2))^2 = 1. Newton's method
+/// starts where one term alone is 1. It increases monotonically to the root, because the sum is convex and decreasing.
 Distance ellipsoid_distance(const glm::dvec3& x, const glm::dvec3& radii) {
-    // On the shortest axes' planes the root may lie where the sum is not defined: a little beside them it does not.
+    // On the planes of the shortest axes the sum may be undefined at the root; a small offset avoids this.
     const glm::dvec3 p = glm::max(glm::abs(x), glm::dvec3(1e-9));
     const glm::dvec3 squares = radii * radii;
     const glm::dvec3 starts = radii * p - squares;
@@ -64,7 +64,7 @@ Distance ellipsoid_distance(const glm::dvec3& x, const glm::dvec3& radii) {
     return {t * glm::length(p / (t + squares)), sign * normal};
 }
 
-/// Two balls that overlap: where one's nearest surface point lies in the other, the crease between them is nearest.
+/// Two overlapping balls: if the nearest surface point of one lies in the other, the nearest point is on their crease.
 Distance two_balls(const glm::dvec3& x, const glm::dvec3& a, double ra, const glm::dvec3& b, double rb) {
     const Distance to_a = ball_distance(x - a, ra), to_b = ball_distance(x - b, rb);
     if (to_a.value >= 0 && to_b.value >= 0) return to_a.value < to_b.value ? to_a : to_b;
@@ -75,7 +75,7 @@ Distance two_balls(const glm::dvec3& x, const glm::dvec3& a, double ra, const gl
     const auto consider = [&](const Distance& d) {
         if (d.value < deepest.value) deepest = d;
     };
-    // Inside a ball its surface is met at -d; that counts only where it is no part of the other's inside.
+    // Inside a ball, -d leads to its surface; the point counts only if it is outside the other ball.
     if (to_a.value < 0 && glm::length(x - to_a.value * to_a.gradient - b) >= rb) consider(to_a);
     if (to_b.value < 0 && glm::length(x - to_b.value * to_b.gradient - a) >= ra) consider(to_b);
     if (deepest.value < 0) return deepest;
@@ -88,7 +88,7 @@ Distance two_balls(const glm::dvec3& x, const glm::dvec3& a, double ra, const gl
     return {-d, d > 0 ? to_crease / d : axis};
 }
 
-/// Middle line of the tube, along x, and its derivatives.
+/// Centre line of the tube, along x, and its derivatives.
 struct Winding {
     glm::dvec3 at, slope, bend;
 };
@@ -100,8 +100,8 @@ Winding winding(double u) {
             {0, -kWide * kTurn * kTurn * std::sin(a), -kHigh * kTurn2 * kTurn2 * std::cos(b)}};
 }
 
-/// Distance to the middle line and the way from it. No point of the line that is further along x can be nearer than
-/// the one across x; every least distance of a row of points in between is followed to its bottom.
+/// Distance to the centre line and its gradient. Only points of the line whose x differs by at most the distance to the
+/// point at x can be nearest. Every local minimum among samples of that range is refined.
 Distance from_winding(const glm::dvec3& x) {
     constexpr int kPoints = 24;
     const double reach = glm::length(x - winding(x.x).at) + 1e-3, width = 2 * reach / (kPoints - 1);
@@ -136,7 +136,7 @@ Distance from_winding(const glm::dvec3& x) {
     return {d, d > 0 ? away / d : glm::dvec3(0, 0, 1)};
 }
 
-/// (|f| - c) / g with g = |grad f| on the surface: a distance to first order.
+/// (|f| - c) / g with g = |grad f| on the surface: a first-order distance.
 Distance gyroid_distance(const glm::dvec3& p, double wave_number, double c) {
     const double k = wave_number;
     const glm::dvec3 s = glm::sin(k * p), o = glm::cos(k * p);
@@ -146,7 +146,7 @@ Distance gyroid_distance(const glm::dvec3& p, double wave_number, double c) {
     const glm::dmat3 hessian =
         k * k *
         glm::dmat3(-s.x * o.y - s.z * o.x, xy, xz, xy, -s.x * o.y - s.y * o.z, yz, xz, yz, -s.y * o.z - s.z * o.x);
-    // The second term keeps g from 0 at the crests of f, and is 0 on the surface.
+    // The second term keeps g above 0 at the extrema of f and is 0 on the surface.
     const double off = f * f - c * c;
     const double g = std::sqrt(glm::dot(slope, slope) + k * k * off * off);
     const glm::dvec3 rate = (hessian * slope + 2 * k * k * off * f * slope) / g;
@@ -216,7 +216,7 @@ AnalyticScene vessels() {
         rings.push_back(placed({19.6 + 0.2 * n, 19.3 - 0.3 * n, 19.5 + 6.4 * n}, turned(0.06 - 0.02 * n, 0.05 * n, 0),
                                [radius = kRadii[i]](const glm::dvec3& p) { return ring_distance(p, 12.2, radius); }));
     }
-    // All of them together out of the grid's axes.
+    // The whole tree is rotated away from the grid axes.
     const glm::dvec3 center(19.5);
     return solid(
         "vessels", glm::ivec3(kSide), {},
@@ -234,7 +234,7 @@ AnalyticScene specks() {
     std::vector<Speck> specks;
     std::uint64_t state = 20;
     const auto next = [&state] {
-        // Knuth's MMIX generator; its upper 32 bits.
+        // Knuth's MMIX generator, upper 32 bits.
         state = state * 6364136223846793005ULL + 1442695040888963407ULL;
         return static_cast<double>(state >> 32U) / 4294967296.0;
     };

@@ -84,7 +84,7 @@ namespace {
 
 using namespace analytic;
 
-// Cube with a hole along z, exact everywhere: beyond the hole's mouth the nearest solid is its rim.
+// Cube with a hole along z, exact everywhere: beyond the hole's opening the nearest point is on its rim.
 Distance cube_hole_distance(const glm::dvec3& p, double half, double hole) {
     const double r = std::hypot(p.x, p.y);
     const glm::dvec3 radial = r > 0 ? glm::dvec3(p.x / r, p.y / r, 0) : glm::dvec3(1, 0, 0);
@@ -142,7 +142,7 @@ AnalyticScene slabs(std::string name, const glm::ivec3& dims, std::vector<Slab> 
 
 }  // namespace
 
-// Walls of 0.5 to 4 voxels, leaning a little so that they cut the grid everywhere else.
+// Walls of 0.5 to 4 voxels, slightly tilted so that they cut the grid at varying positions.
 AnalyticScene analytic::plates() {
     const auto normal = glm::normalize(glm::dvec3(1, 0.2, 0.1));
     const glm::ivec3 dims(96, 48, 48);

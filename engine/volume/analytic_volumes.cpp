@@ -11,7 +11,7 @@
 namespace edgesplat {
 namespace {
 
-/// A name and the scene it stands for, with its default grid.
+/// A scene's name and the function that makes it with its default grid.
 struct Entry {
     std::string_view name;
     AnalyticScene (*make)();
@@ -71,7 +71,7 @@ constexpr std::array<std::string_view, kScenes.size()> names_of_scenes() {
 }
 constexpr auto kNames = names_of_scenes();
 
-// Nearly normal noise (sum of 12 uniforms) in integers, so that every machine makes the same.
+// Approximately normal noise (sum of 12 uniforms) from integers, identical on every machine.
 double noise_of(std::uint64_t index, std::uint32_t seed) {
     std::uint64_t sum = 0;
     std::uint64_t state = (index + 1) * 0x9e3779b97f4a7c15ULL + seed * 0xd1b54a32d192ed03ULL;
@@ -86,7 +86,7 @@ double noise_of(std::uint64_t index, std::uint32_t seed) {
     return static_cast<double>(sum) / 65536.0 - 6.0 * 65535.0 / 65536.0;
 }
 
-/// One number of voxels, or three with x between; nothing for other texts.
+/// Parses one number of voxels, or three separated by x; nullopt for other texts.
 std::optional<glm::ivec3> grid_of(std::string_view text) {
     std::array<int, 3> dims{};
     int count = 0;
@@ -106,7 +106,7 @@ std::optional<glm::ivec3> grid_of(std::string_view text) {
     return count == 1 ? glm::ivec3(dims[0]) : glm::ivec3(dims[0], dims[1], dims[2]);
 }
 
-/// The whole text as a number; nothing for other texts.
+/// Parses the whole text as a number; nullopt for other texts.
 template <typename Number>
 std::optional<Number> number_of(std::string_view text) {
     Number value{};
@@ -116,13 +116,13 @@ std::optional<Number> number_of(std::string_view text) {
     return value;
 }
 
-/// What stands behind a name, between colons: a grid, noise=SHARE or seed=NUMBER. `path` is for messages.
+/// Applies one field of a path after the name: a grid, noise=SHARE or seed=NUMBER. `path` is for messages.
 void apply_field(AnalyticScene& scene, std::string_view path, std::string_view text) {
     if (text.starts_with("noise=")) {
         const auto share = number_of<double>(text.substr(6));
-        // Written so that NaN fails it.
+        // Written so that NaN fails.
         if (!share || !(*share >= 0 && *share <= 10))
-            fail("builtin:{}: noise: '{}': expected a share of the step from 0 to 10, such as noise=0.02", path,
+            fail("builtin:{}: noise: '{}': expected a share of the step from 0 to 10, for example noise=0.02", path,
                  text.substr(6));
         scene.noise = *share * scene.rise;
     } else if (text.starts_with("seed=")) {
@@ -149,7 +149,7 @@ std::span<const std::string_view> analytic_scene_names() {
 AnalyticScene analytic_scene(std::string_view name) {
     for (const Entry& entry : kScenes)
         if (entry.name == name) return entry.make();
-    fail("no built-in volume '{}'; there are {}", name, fmt::join(kNames, ", "));
+    fail("no built-in volume '{}'; expected one of: {}", name, fmt::join(kNames, ", "));
 }
 
 AnalyticScene resized(const AnalyticScene& scene, const glm::ivec3& dims) {

@@ -1,5 +1,5 @@
-// Volumes whose value, gradient and edges are known exactly: test input, and pictures without any file.
-// Positions are in index space: the centre of voxel (0,0,0) is the origin, one unit is one voxel.
+// Volumes whose value, gradient and edges are known exactly: for tests, and for pictures without a file. Positions are
+// in index space: the centre of voxel (0,0,0) is the origin, one unit is one voxel.
 #pragma once
 
 #include <cstdint>
@@ -14,72 +14,72 @@
 
 namespace edgesplat {
 
-/// How a solid becomes values: full inside, `outside` beyond its edge, in between an edge of this profile.
+/// Maps the signed distance of a solid to values: `inside`, `outside` and a blurred step between them.
 struct EdgeProfile {
     double inside = 1;
     double outside = 0;
     double blur = 0.7;    ///< standard deviation of the Gaussian that blurs the step, voxels, > 0
-    bool binary = false;  ///< a step: `inside` where the signed distance is <= 0; the gradient is then 0 everywhere
+    bool binary = false;  ///< sharp step: `inside` where the signed distance is <= 0; the gradient is then 0 everywhere
     double iso_value() const { return 0.5 * (inside + outside); }
 };
 
-/// A scene. The functions may be called from several threads at once.
+/// An analytic scene. Its functions may be called from several threads at once.
 struct AnalyticScene {
     std::string name;
-    glm::ivec3 dims{64};                                    ///< voxels of the grid it is meant to be sampled on
+    glm::ivec3 dims{64};                                    ///< voxels of the default grid
     glm::dvec3 spacing{1};                                  ///< mm per voxel, axis-aligned
-    std::vector<double> iso_values;                         ///< where its edges are, ascending; never empty
+    std::vector<double> iso_values;                         ///< iso-values of its edges, ascending; never empty
     std::function<double(const glm::dvec3&)> value;         ///< f(x)
     std::function<glm::dvec3(const glm::dvec3&)> gradient;  ///< df/dx per voxel; 0 in binary scenes
-    /// Distance to the nearest edge of iso_values[0], voxels, negative inside (value >= iso). Empty where the scene has
-    /// no closed form (marschner-lobb, orbital, phantom). Exact, but for gyroid: there it is 0 on the surface, with a
-    /// slope of unit length, and wrong by a few per cent a voxel away.
+    /// Distance to the nearest edge of iso_values[0], voxels, negative inside (value >= iso). Empty for scenes without
+    /// a closed form (marschner-lobb, orbital, phantom). Exact except for gyroid: there it is 0 on the surface, has
+    /// unit slope there, and is wrong by a few per cent one voxel away.
     std::function<double(const glm::dvec3&)> signed_distance;
-    double rise = 1;               ///< what noise is given as a share of: inside less outside, else the range of values
-    double noise = 0;              ///< standard deviation added by `sample`, in the unit of the value
+    double rise = 1;               ///< reference for relative noise: inside - outside, else the value range
+    double noise = 0;              ///< standard deviation of the noise that `sample` adds, in the unit of the value
     std::uint32_t noise_seed = 1;  ///< the same seed gives the same samples on every machine
 };
 
-/// Names that `analytic_scene` knows (docs/method.md, Builtin scenes, says what each is).
+/// Names of the builtin scenes (described in docs/method.md, Builtin scenes).
 std::span<const std::string_view> analytic_scene_names();
 
-/// The scene of that name with its default grid. Throws Error listing the names.
+/// The scene with that name and its default grid. Throws Error listing the names.
 AnalyticScene analytic_scene(std::string_view name);
 
-/// The same scene stretched to another grid, each axis by its own factor: positions and gradient follow; the signed
-/// distance is dropped unless all three factors are equal. Throws Error unless all dims >= 2.
+/// The same scene stretched to another grid, each axis by its own factor; value and gradient are transformed. The
+/// signed distance is removed unless all three factors are equal. Throws Error unless all dims >= 2.
 AnalyticScene resized(const AnalyticScene& scene, const glm::ivec3& dims);
 
-/// Half space: inside where (x - point) . normal <= 0. `normal` need not be unit length, but not 0.
+/// Half space: inside where (x - point) . normal <= 0. `normal` has any length > 0.
 AnalyticScene plane_scene(const glm::ivec3& dims, const glm::dvec3& normal, const glm::dvec3& point,
                           const EdgeProfile& profile = {});
-/// Ball. The blur is along the radius, so the edge (value = iso) stays exactly at the radius.
+/// Ball. The blur is applied along the radius, so the edge (value = iso) stays exactly at the radius.
 AnalyticScene sphere_scene(const glm::ivec3& dims, const glm::dvec3& center, double radius,
                            const EdgeProfile& profile = {});
 /// Torus around the z axis through `center`.
 AnalyticScene torus_scene(const glm::ivec3& dims, const glm::dvec3& center, double major_radius, double minor_radius,
                           const EdgeProfile& profile = {});
 /// Slab of a thickness (voxels) centred at `point`: the exact Gaussian blur of a slab, a difference of two erfs. A slab
-/// thinner than about 1.35 blur never reaches iso; signed_distance is that of the unblurred slab.
+/// thinner than about 1.35 blur never reaches the iso-value; signed_distance is that of the unblurred slab.
 AnalyticScene slab_scene(const glm::ivec3& dims, const glm::dvec3& normal, const glm::dvec3& point, double thickness,
                          const EdgeProfile& profile = {});
 /// Cube of `side` voxels with a cylindrical hole of `hole_radius` along z (side 12 in the paper), centred in the grid.
 AnalyticScene cube_hole_scene(const glm::ivec3& dims, double side, double hole_radius, const EdgeProfile& profile);
 
-/// The sample at a voxel centre of the scene's grid, with its noise.
+/// The sample at a voxel centre of the scene's grid, including noise.
 float sample_at(const AnalyticScene& scene, const glm::ivec3& voxel);
 
-/// Samples the scene at the voxel centres of its grid, adds its noise, and finishes the volume.
+/// Samples the scene at the voxel centres of its grid, adds its noise and finishes the volume.
 Volume sample(const AnalyticScene& scene);
 
 /// Whether the path has the form "builtin:NAME" (NAME may be unknown).
 bool is_builtin(std::string_view path);
 
-/// The scene of "builtin:NAME", followed by any of ":64" or ":64x48x32" (another grid), ":noise=0.02" (standard
-/// deviation as a share of `rise`, 0 to 10, in place of the scene's own) and ":seed=3" (noise_seed). Throws Error.
+/// The scene of "builtin:NAME". Optional suffixes: ":64" or ":64x48x32" (another grid), ":noise=0.02" (standard
+/// deviation as a share of `rise`, 0 to 10, replaces the scene's own) and ":seed=3" (noise_seed). Throws Error.
 AnalyticScene builtin_scene(std::string_view path);
 
-/// Samples such a scene. Throws Error.
+/// Samples the scene of such a path. Throws Error.
 Volume builtin_volume(std::string_view path);
 
 }  // namespace edgesplat

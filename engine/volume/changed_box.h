@@ -1,4 +1,4 @@
-// Where two volumes differ, so that what was found of the one need not be found again for the other.
+// Finds the box in which two volumes differ, so that only edges near it are estimated again.
 #pragma once
 
 #include <optional>
@@ -8,9 +8,8 @@
 
 namespace edgesplat {
 
-/// The smallest box that holds every sample in which `now` is not what `before` was, empty if there is none.
-/// Nothing where all may differ: grids are not the same, ranges of values are not (to which samples are scaled), or
-/// either's samples are not in memory.
+/// The smallest box that contains every differing sample; empty if there is none. nullopt if the volumes cannot be
+/// compared: grids or value ranges differ (samples are scaled by the range), or samples are not in memory.
 std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now);
 
 }  // namespace edgesplat

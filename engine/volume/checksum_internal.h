@@ -1,4 +1,4 @@
-// What finishing a volume and packing one have in common. Internal to engine/volume; nothing here is installed.
+// The checksum and axis checks that `finish_volume` and the packer share. Internal to engine/volume, not installed.
 #pragma once
 
 #include <bit>
@@ -9,12 +9,12 @@
 
 namespace edgesplat::detail {
 
-/// The checksum of a volume, for samples that come a few at a time: FNV-1a on 32-bit words instead of bytes, four times
-/// as fast, and only ever compared with itself.
+/// Incremental checksum of a volume's samples. FNV-1a on 32-bit words instead of bytes: four times as fast, and only
+/// compared with checksums of the same kind.
 class VolumeChecksum {
   public:
     explicit VolumeChecksum(const VolumeGeometry& geometry);
-    /// The next samples, x fastest.
+    /// Adds the next samples, x fastest.
     void add(std::span<const float> samples) {
         for (const float value : samples)
             add(std::bit_cast<std::uint32_t>(value));
@@ -27,7 +27,7 @@ class VolumeChecksum {
     std::uint64_t hash_ = 0xcbf29ce484222325ULL;
 };
 
-/// Throws Error unless the volume's axes and origin are finite and the axes span space.
+/// Throws Error unless the volume's axes and origin are finite and the axes are linearly independent.
 void check_axes(const Volume& volume);
 
 }  // namespace edgesplat::detail

@@ -22,14 +22,15 @@ Volume like(const Volume& volume) {
 
 using detail::bin_of;
 
-/// Lines side by side: the first sample of each, one behind the other, then the second of each.
+/// Interleaved lines: first the first sample of each line, then the second of each, and so on.
 struct Lines {
     float* samples;
     std::size_t count;
-    std::size_t stride;  ///< from a line's sample to its next
+    std::size_t stride;  ///< between successive samples of a line
 };
 
-/// Samples become the coefficients of the spline through them: c[i-1] + 4 c[i] + c[i+1] = 6 f[i], at either end c = f.
+/// Replaces samples by the coefficients of the interpolating spline: c[i-1] + 4 c[i] + c[i+1] = 6 f[i], with c = f at
+/// both ends.
 void solve_lines(const Lines& lines, int length) {
     const int last = length - 1;
     std::vector<float> kept(static_cast<std::size_t>(length), 0.0F);
@@ -53,7 +54,7 @@ void solve_lines(const Lines& lines, int length) {
 }  // namespace
 
 Volume box_filter(const Volume& volume) {
-    need_samples(volume, "the box filter");
+    require_samples(volume, "the box filter");
     const auto& dims = volume.geometry.dims;
     Volume result = like(volume);
     const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
@@ -74,7 +75,7 @@ Volume box_filter(const Volume& volume) {
 }
 
 Volume threshold(const Volume& volume, double iso_value) {
-    need_samples(volume, "the threshold");
+    require_samples(volume, "the threshold");
     Volume result = like(volume);
     std::transform(volume.values.begin(), volume.values.end(), result.values.begin(),
                    [&](float value) { return static_cast<double>(value) >= iso_value ? 1.0F : 0.0F; });
@@ -95,7 +96,7 @@ double scaled_iso_value(const Volume& volume, double iso_value) {
 }
 
 Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high) {
-    need_samples(volume, "cropping");
+    require_samples(volume, "cropping");
     const glm::ivec3 dims = volume.geometry.dims;
     if (glm::any(glm::lessThan(low, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(high, dims)) ||
         glm::any(glm::lessThan(high - low, glm::ivec3(1))))
@@ -114,7 +115,7 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
 }
 
 std::vector<float> scaled_field(const Volume& volume) {
-    need_samples(volume, "the scaled field");
+    require_samples(volume, "the scaled field");
     std::vector<float> field(volume.values.size());
     std::transform(volume.values.begin(), volume.values.end(), field.begin(),
                    [&](float value) { return static_cast<float>(scaled_value(volume, static_cast<double>(value))); });
@@ -122,7 +123,7 @@ std::vector<float> scaled_field(const Volume& volume) {
 }
 
 std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box) {
-    need_samples(volume, "the scaled field");
+    require_samples(volume, "the scaled field");
     std::vector<float> field;
     field.reserve(box.count());
     for (int z = box.low.z; z <= box.high.z; ++z)
@@ -160,7 +161,7 @@ SplineTaps spline_taps(double place, int size) {
         taps.places[static_cast<std::size_t>(k)] = std::clamp(cell + k - 1, 0, last);
     for (std::array<double, 4>* w : {&taps.weights, &taps.slopes}) {
         auto& [before, first, second, behind] = *w;
-        // A coefficient beyond a border goes on straight from the two before it.
+        // Coefficients beyond a border are extrapolated linearly from the outermost two.
         if (cell == 0) {
             first += 2 * before;
             second -= before;
@@ -195,7 +196,7 @@ Histogram histogram(const Volume& volume, int bins) {
     const double range = result.high - result.low;
     const double scale = range > 0 ? bins / range : 0.0;
     if (volume.packed) {
-        // Its own bins are finer. Where they do not fit into these, one goes where its middle lies.
+        // The stored bins are finer. A bin that overlaps two is counted where its centre lies.
         const Histogram& stored = volume.packed->histogram();
         for (std::size_t bin = 0; bin < stored.counts.size(); ++bin)
             result.counts[(2 * bin + 1) * result.counts.size() / (2 * stored.counts.size())] += stored.counts[bin];

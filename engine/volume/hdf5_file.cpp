@@ -14,8 +14,8 @@ namespace {
 
 static_assert(sizeof(hid_t) == sizeof(std::int64_t) && sizeof(hsize_t) == sizeof(std::uint64_t));
 
-/// Alone with HDF5, and without the stack of lines that it prints about every failure: messages are ours. What it did
-/// before is set again afterwards, because ITK's MINC reader tells failures by what is printed.
+/// Holds the HDF5 lock and disables HDF5's error printing, because the messages here replace it. Restores the printing
+/// afterwards: ITK's MINC reader detects failures by it.
 class Quiet {
   public:
     Quiet() : lock_(hdf5_mutex()) {
@@ -32,7 +32,7 @@ class Quiet {
     void* data_ = nullptr;
 };
 
-/// What HDF5 says was wrong where it began.
+/// HDF5's description of the innermost error.
 std::string reason() {
     std::string text;
     const auto keep_first = [](unsigned, const H5E_error2_t* error, void* data) -> herr_t {
@@ -41,7 +41,7 @@ std::string reason() {
         return 0;
     };
     H5Ewalk2(H5E_DEFAULT, H5E_WALK_UPWARD, keep_first, &text);
-    // Of what the system said, its words: the rest are times, offsets and addresses.
+    // For system errors, only the system's message; the rest is times, offsets and addresses.
     constexpr std::string_view kNumber = "errno = ";
     if (const std::size_t at = text.find(kNumber); at != std::string::npos) {
         int number = 0;
@@ -103,7 +103,7 @@ hid_t file_type(SampleType type) {
     return -1;
 }
 
-/// False for what is no number of ours.
+/// False for unsupported types.
 bool sample_type_of(hid_t type, SampleType& result) {
     const H5T_class_t kind = H5Tget_class(type);
     const bool is_signed = kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
@@ -130,7 +130,7 @@ Hdf5Extent extent_of(hid_t space) {
     return {sizes.begin(), sizes.end()};
 }
 
-/// The dataset's space with a box of it selected.
+/// The dataset's dataspace with a box selected.
 Hdf5Id selection(hid_t dataset, const Hdf5Extent& low, const Hdf5Extent& size) {
     Hdf5Id file_space(H5Dget_space(dataset), H5Sclose);
     const std::vector<hsize_t> start(low.begin(), low.end()), count(size.begin(), size.end());
@@ -139,7 +139,8 @@ Hdf5Id selection(hid_t dataset, const Hdf5Extent& low, const Hdf5Extent& size) {
     return file_space;
 }
 
-/// Locks fail on read-only and some network file systems; a file that is written is locked by who made its name.
+/// Disables file locks: they fail on read-only and some network file systems. The creator of the temporary name already
+/// locks a written file.
 Hdf5Id without_locks() {
     Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
 #if H5_VERSION_GE(1, 10, 7)
@@ -183,7 +184,7 @@ void Hdf5Dataset::finish() const {
 Hdf5File Hdf5File::open(const std::string& path) {
     const Quiet quiet;
     const Hdf5Id access = without_locks();
-    if (H5Fis_hdf5(path.c_str()) <= 0) fail("{}: not an HDF5 file, or one cut off in its first bytes", path);
+    if (H5Fis_hdf5(path.c_str()) <= 0) fail("{}: not an HDF5 file, or truncated in its first bytes", path);
     Hdf5File file;
     file.path_ = path;
     file.id_ = Hdf5Id(H5Fopen(path.c_str(), H5F_ACC_RDONLY, access.get()), H5Fclose);
@@ -314,7 +315,7 @@ void Hdf5File::set_whole_number(const std::string& name, std::uint64_t value) {
 
 bool Hdf5File::has(const std::string& path) const {
     const Quiet quiet;
-    // H5Lexists wants every group on the way to exist.
+    // H5Lexists requires that every parent group exists.
     for (auto end = path.find('/', 1);; end = path.find('/', end + 1)) {
         if (H5Lexists(id_.get(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;
@@ -328,12 +329,12 @@ Hdf5Dataset Hdf5File::dataset(const std::string& path, std::size_t cache) const 
     result.file_ = path_;
     result.name_ = path;
     const Hdf5Id access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose);
-    constexpr std::size_t kSlots = 12421;  // of its hash table: a prime, many times the chunks
+    constexpr std::size_t kSlots = 12421;  // slots of the cache's hash table: a prime, many times the number of chunks
     if (cache > 0) H5Pset_chunk_cache(access.get(), kSlots, cache, 1.0);
     result.id_ = Hdf5Id(H5Dopen2(id_.get(), path.c_str(), access.get()), H5Dclose);
     if (!result.id_) fail("{}: {}: not a dataset, or damaged: {}", path_, path, reason());
     const Hdf5Id type(H5Dget_type(result.id_.get()), H5Tclose), extent(H5Dget_space(result.id_.get()), H5Sclose);
-    if (!sample_type_of(type.get(), result.type_)) fail("{}: {}: does not hold numbers", path_, path);
+    if (!sample_type_of(type.get(), result.type_)) fail("{}: {}: does not contain numbers", path_, path);
     result.extent_ = extent_of(extent.get());
     return result;
 }
@@ -342,9 +343,9 @@ Hdf5Dataset Hdf5File::create_dataset(const std::string& path, const Hdf5Layout& 
     const Quiet quiet;
     const Hdf5Id links(H5Pcreate(H5P_LINK_CREATE), H5Pclose), creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
     H5Pset_create_intermediate_group(links.get(), 1);
-    H5Pset_obj_track_times(creation.get(), false);  // the same volume is the same file
+    H5Pset_obj_track_times(creation.get(), false);  // equal volumes give equal files
     if (layout.chunk > 0) {
-        std::vector<hsize_t> sides;  // not beyond the dataset's, which HDF5 refuses
+        std::vector<hsize_t> sides;  // clamped: HDF5 refuses chunks larger than the dataset
         for (const auto side : layout.extent)
             sides.push_back(std::min(side, layout.chunk));
         H5Pset_chunk(creation.get(), static_cast<int>(sides.size()), sides.data());

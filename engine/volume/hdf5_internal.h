@@ -1,5 +1,5 @@
-// HDF5 as far as packed volumes need it: files, attributes of the root, boxes of 3-D datasets. Every failure is an
-// Error that names the file and the field. Internal to engine/volume; nothing here is installed.
+// A minimal HDF5 wrapper for packed volumes: files, root attributes, boxes of 3-D datasets. Every failure is an Error
+// that names the file and the field. Internal to engine/volume, not installed.
 #pragma once
 
 #include <array>
@@ -13,11 +13,11 @@
 
 namespace edgesplat::detail {
 
-/// The library keeps its state in the process and is not everywhere built for threads: held around every use of it, by
-/// ITK's MINC reader too. May be taken again by the thread that has it.
+/// HDF5 keeps global state and may be built without thread safety. Lock this mutex around every use of it, including
+/// ITK's MINC reader. Recursive.
 std::recursive_mutex& hdf5_mutex();
 
-/// An identifier of HDF5, given back when this dies.
+/// Owns an HDF5 identifier and closes it in the destructor.
 class Hdf5Id {
   public:
     using Close = int (*)(std::int64_t);
@@ -30,7 +30,7 @@ class Hdf5Id {
         return *this;
     }
     ~Hdf5Id() { (void)close(); }
-    /// False where HDF5 says so: what was to be written is not there.
+    /// False if HDF5 reports a failure: the data may not have been written.
     bool close();
     std::int64_t get() const { return id_; }
     explicit operator bool() const { return id_ >= 0; }
@@ -40,18 +40,19 @@ class Hdf5Id {
     Close close_ = nullptr;
 };
 
-/// Slowest axis first, as HDF5 counts: of samples (z, y, x).
+/// Slowest axis first, the order of HDF5: (z, y, x) for samples.
 using Hdf5Extent = std::vector<std::uint64_t>;
 
 class Hdf5Dataset {
   public:
     const Hdf5Extent& extent() const { return extent_; }
-    /// As stored; int8 to float64, in any byte order.
+    /// The stored type: int8 to float64, any byte order.
     SampleType type() const { return type_; }
-    /// Boxes: `low` and `size` have as many axes as the dataset. Converted from and to the type in memory.
+    /// Read or write a box. `low` and `size` have as many entries as the dataset has axes. Samples are converted from
+    /// and to the type in memory.
     void read(const Hdf5Extent& low, const Hdf5Extent& size, SampleType memory_type, void* out) const;
     void write(const Hdf5Extent& low, const Hdf5Extent& size, SampleType memory_type, const void* data) const;
-    /// After the last `write`: that there was no room for what HDF5 kept till now is said here and nowhere else.
+    /// Call after the last `write`: flushes the data that HDF5 has buffered. A full disk is reported only here.
     void finish() const;
 
   private:
@@ -62,24 +63,24 @@ class Hdf5Dataset {
     SampleType type_ = SampleType::Float32;
 };
 
-/// How a new dataset is laid out.
+/// Layout of a new dataset.
 struct Hdf5Layout {
     SampleType type = SampleType::Float32;
     Hdf5Extent extent;
-    std::uint64_t chunk = 0;  ///< voxels along each side of a chunk; 0: in one piece
-    bool compress = false;    ///< shuffle and deflate 1; needs chunks
+    std::uint64_t chunk = 0;  ///< side of a chunk, voxels; 0: contiguous
+    bool compress = false;    ///< shuffle filter and deflate level 1; needs chunks
 };
 
 class Hdf5File {
   public:
-    /// For reading. Whether it is HDF5 at all is said first.
+    /// Opens a file for reading. Checks first that it is HDF5.
     static Hdf5File open(const std::string& path);
-    /// Made empty, whatever is there; messages name it `shown_path`.
+    /// Creates an empty file and replaces an existing one; messages use the name `shown_path`.
     static Hdf5File create(const std::string& path, const std::string& shown_path);
-    /// What is still to be written goes nowhere. To be called where writing failed, before anything else is given back:
-    /// HDF5 keeps what it cannot write on a full disk, and ends the program when it tries again at its end.
+    /// Discards all unwritten data. Call it after a failed write, before any other identifier is closed: HDF5 keeps
+    /// data that it cannot write on a full disk and aborts the program when it retries at exit.
     void abandon() noexcept;
-    /// Everything to disk; a file that is written must be closed by this, which fails where the disk is full.
+    /// Writes everything to disk; fails if the disk is full. Required for every written file.
     void close();
 
     bool has_attribute(const std::string& name) const;
@@ -92,11 +93,11 @@ class Hdf5File {
     void set_number(const std::string& name, SampleType type, double value) { set_numbers(name, type, {}, &value); }
     void set_whole_number(const std::string& name, std::uint64_t value);
 
-    /// "/levels/0/samples": whether there is such a group or dataset.
+    /// Whether the group or dataset exists, e.g. "/levels/0/samples".
     bool has(const std::string& path) const;
-    /// `cache`: bytes of chunks that are kept, unpacked, for the next read; 0: as HDF5 would.
+    /// `cache`: bytes of unpacked chunks to keep for later reads; 0: HDF5's default.
     Hdf5Dataset dataset(const std::string& path, std::size_t cache = 0) const;
-    /// Groups on the way are made.
+    /// Creates missing parent groups.
     Hdf5Dataset create_dataset(const std::string& path, const Hdf5Layout& layout);
 
   private:

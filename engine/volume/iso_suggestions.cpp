@@ -1,4 +1,4 @@
-// Which values have surfaces that are worth looking at: strong ones, smooth ones, and those that are seen from outside.
+// Suggests iso-values: surfaces that are strong, smooth and visible from outside.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,12 +12,12 @@ namespace {
 
 using detail::bin_of;
 
-constexpr std::size_t kBins = 256;  ///< values that are looked at, evenly between the smallest and the largest
-constexpr int kMostRays = 256;      ///< along each side of a face of the volume
-/// How much smoothness counts: noise is as strong as a surface, but its normals point anywhere.
+constexpr std::size_t kBins = 256;  ///< number of candidate values, evenly spaced from the smallest to the largest
+constexpr int kMostRays = 256;      ///< rays along each side of a face of the volume
+/// Weight of smoothness: noise has gradients as strong as a surface, but random normals.
 constexpr int kSmoothnessPower = 6;
 
-// Few distinct values: masks and label volumes. Their surfaces lie halfway between neighbouring values.
+// For few distinct values (masks, label volumes): surfaces lie halfway between neighbouring values.
 std::vector<IsoSuggestion> between_values(const std::vector<std::size_t>& counts, double low, double width) {
     std::vector<IsoSuggestion> result;
     std::size_t last = counts.size();
@@ -32,7 +32,7 @@ std::vector<IsoSuggestion> between_values(const std::vector<std::size_t>& counts
     return result;
 }
 
-/// Walks the samples of a volume along its axes.
+/// Accesses the samples of a volume along its axes.
 class Walker {
   public:
     explicit Walker(const Volume& volume)
@@ -46,7 +46,7 @@ class Walker {
     }
     std::ptrdiff_t stride(int axis) const { return strides_.at(static_cast<std::size_t>(axis)); }
 
-    /// Central differences, one-sided at the border; per mm along the volume's axes.
+    /// Gradient by central differences, one-sided at the border; per mm along the volume's axes.
     glm::vec3 gradient(const glm::ivec3& voxel) const {
         const float* here = at(voxel);
         glm::vec3 g(0);
@@ -65,8 +65,8 @@ class Walker {
     glm::dvec3 spacing_;
 };
 
-/// What fills the corners around a measured cylinder: many voxels of the smallest value, none of the values above it,
-/// and beside them one thing only, which is much of what was measured (air).
+/// Detects padding around a measured cylinder. Criteria: many voxels have the smallest value, no voxels have values
+/// just above it, and it borders on one common value only (air).
 bool has_padding(const Volume& volume, const Walker& walker) {
     constexpr double kFewest = 0.01, kMeasured = 0.3, kGap = 0.02, kAlike = 0.1, kCommon = 0.2;
     const float pad = volume.min_value, high = volume.max_value;
@@ -99,13 +99,13 @@ bool has_padding(const Volume& volume, const Walker& walker) {
            static_cast<double>(alike) >= kCommon * (all - padded);
 }
 
-/// What rays that enter from outside meet first, by the value that is looked for.
+/// Statistics of the first surfaces that rays meet from outside, per candidate value.
 struct FirstSurfaces {
-    std::array<double, kBins + 1> count{}, strength{}, smoothness{};  ///< first as steps, then added up
+    std::array<double, kBins + 1> count{}, strength{}, smoothness{};  ///< first differences, then prefix sums
     double rays = 0;
 };
 
-/// One ray: each sample that is above all before it is where the values between begin.
+/// Follows one ray. At each sample above all earlier ones, the ray first meets the values in between.
 void follow(const Volume& volume, const Walker& walker, glm::ivec3 voxel, int axis, int direction,
             std::optional<float> padding, FirstSurfaces& out) {
     const float low = volume.min_value;
@@ -121,7 +121,7 @@ void follow(const Volume& volume, const Walker& walker, glm::ivec3 voxel, int ax
         const float from = before;
         before = *sample;
         if (padding && from == *padding) continue;
-        // Value i is in the middle of bin i.
+        // Value i is the centre of bin i.
         const auto first = static_cast<std::size_t>((from - low) * per_bin + 0.5F);
         const auto last = static_cast<std::size_t>((before - low) * per_bin + 0.5F);
         if (first == last) continue;
@@ -164,12 +164,12 @@ FirstSurfaces first_surfaces(const Volume& volume) {
     return out;
 }
 
-/// Share of the rays that meet a surface, times its mean gradient, times its smoothness to a power.
+/// Score: share of the rays that meet a surface, times its mean gradient, times a power of its smoothness.
 std::array<double, kBins> scores(const FirstSurfaces& found) {
     std::array<double, kBins> result{};
     for (std::size_t bin = 0; bin < kBins; ++bin) {
         const double count = found.count[bin];
-        // A handful of voxels is no surface.
+        // Ignores surfaces of a few voxels.
         if (count < 0.002 * found.rays || count < 4) continue;
         result[bin] = found.strength[bin] / found.rays * std::pow(found.smoothness[bin] / count, kSmoothnessPower);
     }
@@ -178,12 +178,12 @@ std::array<double, kBins> scores(const FirstSurfaces& found) {
 
 std::vector<IsoSuggestion> peaks(const std::array<double, kBins>& score, double low, double width) {
     constexpr std::ptrdiff_t kApart = 10;
-    constexpr double kWeakest = 0.01;  // of the strongest
+    constexpr double kWeakest = 0.01;  // relative to the strongest
     const auto at = [&](std::ptrdiff_t bin) { return score[static_cast<std::size_t>(bin)]; };
     std::vector<IsoSuggestion> result;
     for (std::ptrdiff_t bin = 0; bin < std::ptrdiff_t{kBins}; ++bin) {
         const double here = at(bin);
-        // Where no sample has a value between two, all between them have the same surface: its middle stands for it.
+        // All values in a gap between samples have the same surface: the middle of the gap represents them.
         const double alike = here * (1 - 1e-9);
         std::ptrdiff_t last = bin;
         while (last + 1 < std::ptrdiff_t{kBins} && at(last + 1) >= alike && at(last + 1) <= here)
@@ -208,7 +208,7 @@ std::vector<IsoSuggestion> peaks(const std::array<double, kBins>& score, double 
 
 std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
     if (volume.packed)
-        return suggest_iso_values(load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsLookedAt)), count);
+        return suggest_iso_values(load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsAnalysed)), count);
     const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
     if (!(range > 0) || count < 1) return {};
     std::vector<std::size_t> counts(kBins, 0);
@@ -217,7 +217,7 @@ std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
     const auto occupied = std::ranges::count_if(counts, [](std::size_t n) { return n > 0; });
     std::vector<IsoSuggestion> result;
     if (occupied > 40) result = peaks(scores(first_surfaces(volume)), low, range / kBins);
-    // Few values, or no surface that can be met from outside.
+    // Few values, or no surface visible from outside.
     if (result.empty()) result = between_values(counts, low, range / kBins);
     if (result.size() > static_cast<std::size_t>(count)) result.resize(static_cast<std::size_t>(count));
     return result;

@@ -9,10 +9,10 @@
 namespace edgesplat {
 namespace {
 
-// Of the voxels between two of far apart values, those that may lie between them: corners where labels meet.
+// Maximum share of in-between values among voxels with two distant neighbours; they occur at corners between labels.
 constexpr double kMostBetween = 0.1;
 
-/// The values, ascending; empty where they are not whole numbers or too many.
+/// The distinct values, ascending; empty if they are not whole numbers or too many.
 std::vector<float> few_whole_numbers(const std::vector<float>& samples) {
     std::vector<float> found;
     float last = std::nanf("");
@@ -21,7 +21,7 @@ std::vector<float> few_whole_numbers(const std::vector<float>& samples) {
         last = sample;
         const auto at = std::ranges::lower_bound(found, sample);
         if (at != found.end() && *at == sample) continue;
-        if (sample != std::round(sample) || found.size() == kMostLabels) return {};
+        if (sample != std::round(sample) || found.size() == kMaxLabels) return {};
         found.insert(at, sample);
     }
     return found;
@@ -54,8 +54,8 @@ std::vector<float> labels_of(const Volume& volume) {
 
 namespace {
 
-/// The label of most voxels of the volume's six sides.
-std::size_t label_around(const Volume& volume, const std::vector<float>& labels) {
+/// The most frequent label on the volume's six sides.
+std::size_t background_label(const Volume& volume, const std::vector<float>& labels) {
     std::vector<std::size_t> count(labels.size(), 0);
     const glm::ivec3 dims = volume.geometry.dims;
     for (int z = 0; z < dims.z; ++z)
@@ -73,13 +73,13 @@ std::size_t label_around(const Volume& volume, const std::vector<float>& labels)
 
 Volume drawn_labels(const Volume& volume) {
     const std::vector<float> labels = labels_of(volume);
-    if (labels.empty() || labels.size() > kMostDrawnLabels + 1)
+    if (labels.empty() || labels.size() > kMaxDrawnLabels + 1)
         fail("{}: volume.labels: expected a segmentation of 2 to {} whole numbers without transitions", volume.name,
-             kMostDrawnLabels + 1);
-    const std::size_t around = label_around(volume, labels);
+             kMaxDrawnLabels + 1);
+    const std::size_t around = background_label(volume, labels);
     bool numbered = true;
     for (std::size_t i = 0; i < labels.size(); ++i)
-        numbered = numbered && (i == around || (labels[i] >= 1 && labels[i] <= float{kMostDrawnLabels}));
+        numbered = numbered && (i == around || (labels[i] >= 1 && labels[i] <= float{kMaxDrawnLabels}));
     std::vector<float> drawn(labels.size(), 0.0F);
     std::size_t rank = 0;
     for (std::size_t i = 0; i < labels.size(); ++i) {

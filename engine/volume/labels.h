@@ -1,4 +1,4 @@
-// Segmentations: volumes whose samples name things instead of measuring them.
+// Segmentations: volumes whose samples are labels, not measurements.
 #pragma once
 
 #include <cstddef>
@@ -8,23 +8,23 @@
 
 namespace edgesplat {
 
-/// The most values that a segmentation is taken to have.
-inline constexpr std::size_t kMostLabels = 256;
+/// Maximum number of labels in a segmentation.
+inline constexpr std::size_t kMaxLabels = 256;
 
-/// The labels of a segmentation, ascending: at least two whole numbers, few of them, and no partial volume: where two
-/// voxels that have one between them differ by more than a step from value to value, that one is hardly ever of a
-/// value between theirs. Empty for any other volume, and for one that is not in memory.
+/// The labels of a segmentation, ascending: 2 to kMaxLabels whole numbers without partial-volume values. The test for
+/// these: if the two outer voxels of three in a row differ by more than one step between values, the middle voxel
+/// almost never has a value between theirs. Empty for other volumes and for volumes that are not in memory.
 std::vector<float> labels_of(const Volume& volume);
 
-/// Voxels of the numbers that things have are drawn as this above 1, so that the surface of all things together is at
-/// about 0.5 whatever their numbers are.
+/// Labels are drawn as 1 + kLabelStep * number, so that the common surface of all labels lies at about 0.5 for every
+/// number.
 inline constexpr double kLabelStep = 1.0 / 1024;
-/// The most things that are drawn each in a colour of its own.
-inline constexpr std::size_t kMostDrawnLabels = 250;
+/// Maximum number of labels that get their own colour.
+inline constexpr std::size_t kMaxDrawnLabels = 250;
 
-/// A segmentation as it is drawn: 0 where nothing is, which is the label that most voxels at the volume's border have,
-/// else 1 + kLabelStep times the thing's number. That is its label where all are whole numbers from 1 to
-/// kMostDrawnLabels, else its rank, from 1. Throws Error where `labels_of` finds none or too many.
+/// The volume that is drawn for a segmentation: 0 for the background (the most frequent label at the volume's border),
+/// else 1 + kLabelStep * number. The number is the label if all labels are from 1 to kMaxDrawnLabels, else its rank,
+/// from 1. Throws Error if `labels_of` finds none or too many.
 Volume drawn_labels(const Volume& volume);
 
 }  // namespace edgesplat

@@ -1,4 +1,4 @@
-// A zip archive of one volume: its files are unpacked into a folder that is read like any other, or are one file.
+// Reads a zip archive of one volume: unpacks it to a folder, which is read like any other; or reads its only file.
 #include <archive.h>
 #include <archive_entry.h>
 
@@ -13,16 +13,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Files that an archive of a series may have; each takes a place in a folder.
+// Maximum number of files in an archive.
 constexpr std::size_t kMostFiles = 65535;
 
 struct Unpacked {
     std::size_t files = 0;
-    std::string last;  // where it is
+    std::string last;  // path of the last file
 };
 
-// Names in the folder are the entries' last parts, behind their number where there is one like it: none leads out of
-// it.
+// Files get the last part of their entry's name, so that no path leads out of the folder. A number is prepended if a
+// name occurs twice.
 Unpacked unpack(const std::string& path, const fs::path& folder, const LoadOptions& options) {
     const std::unique_ptr<archive, int (*)(archive*)> in(archive_read_new(), &archive_read_free);
     archive_read_support_format_zip(in.get());
@@ -40,8 +40,8 @@ Unpacked unpack(const std::string& path, const fs::path& folder, const LoadOptio
         const char* full_name = archive_entry_pathname(entry);
         const std::string name = full_name == nullptr ? "" : fs::path(full_name).filename().string();
         if (archive_entry_filetype(entry) != AE_IFREG || name.empty() || name.starts_with(".")) continue;
-        if (archive_entry_is_encrypted(entry) != 0) fail("{}: {} in it is encrypted", path, full_name);
-        if (++out.files > kMostFiles) fail("{}: more than {} files in it", path, kMostFiles);
+        if (archive_entry_is_encrypted(entry) != 0) fail("{}: its file {} is encrypted", path, full_name);
+        if (++out.files > kMostFiles) fail("{}: it contains more than {} files", path, kMostFiles);
         const std::string kept = name.substr(name.size() - std::min<std::size_t>(200, name.size()));
         out.last = folder / kept;
         if (fs::exists(out.last)) out.last = folder / fmt::format("{:05}_{}", out.files, kept);
@@ -73,7 +73,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
 Volume load_archive(const std::string& path, const LoadOptions& options,
                     const std::function<Volume(const std::string&, const LoadOptions&)>& load) {
     const TemporaryFolder folder;
-    // The user never saw the folder.
+    // The user does not know the temporary folder.
     const std::string place = folder.path().string();
     const auto as_seen = [&](const std::string& text) { return replaced(text, place, path); };
     try {

@@ -1,5 +1,6 @@
-// Is all of the file there? Libraries that go on with what memory held (netCDF, NIfTI) or abort the program on an
-// assertion (GDCM as Debian builds it) are only given files whose structure ends where the file does.
+// Checks that a file is complete. Some libraries read uninitialised memory instead of missing data (netCDF, NIfTI) or
+// abort the program on an assertion (GDCM as Debian builds it). They get only files whose structure ends at the end of
+// the file.
 #include <algorithm>
 #include <cstdint>
 #include <fstream>
@@ -41,7 +42,7 @@ class Bytes {
         at_ += count;
         return value;
     }
-    [[noreturn]] void truncated() const { fail("{}: truncated: its data go on after the end of the file", path_); }
+    [[noreturn]] void truncated() const { fail("{}: truncated: its data continue beyond the end of the file", path_); }
 
   private:
     std::ifstream file_;
@@ -51,7 +52,7 @@ class Bytes {
 
 constexpr std::uint32_t kUndefined = 0xffffffff;
 constexpr std::uint32_t kItem = 0xfffee000, kItemEnd = 0xfffee00d, kSequenceEnd = 0xfffee0dd;
-// Not a fault: a file whose structure this walk does not understand is left to GDCM.
+// Thrown for a file of unknown structure, which is left to GDCM.
 struct NotUnderstood {};
 
 struct Dataset {
@@ -62,7 +63,7 @@ struct Dataset {
         const auto group = bytes.number(2, big);
         return static_cast<std::uint32_t>(group << 16 | bytes.number(2, big));
     }
-    // Length of the value after the tag; `vr` is empty where there is none.
+    // Length of the value after the tag; `vr` is empty if there is none.
     std::uint32_t length(std::string& vr) {
         vr.clear();
         if (!explicit_vr) return static_cast<std::uint32_t>(bytes.number(4, big));
@@ -74,7 +75,7 @@ struct Dataset {
         bytes.skip(2);
         return static_cast<std::uint32_t>(bytes.number(4, big));
     }
-    // Elements up to `end`, or up to the end-of-item tag.
+    // Skips elements up to `end` or the end-of-item tag.
     void elements(std::uint64_t end, int depth) {
         std::string vr;
         while (bytes.at() < end) {
@@ -90,7 +91,7 @@ struct Dataset {
                 items(here == 0x7fe00010, depth + 1);
         }
     }
-    // Items of a sequence of undefined length, or the fragments of compressed pixels.
+    // Skips the items of a sequence of undefined length, or the fragments of compressed pixels.
     void items(bool fragments, int depth) {
         if (depth > 32) throw NotUnderstood{};
         while (true) {
@@ -106,7 +107,7 @@ struct Dataset {
     }
 };
 
-/// Whether the first element of a file without preamble says what it holds.
+/// Whether the first element of a file without preamble has a value representation.
 bool has_representations(Bytes& bytes) {
     bytes.skip(4);
     const std::string vr = bytes.text(2);
@@ -164,7 +165,7 @@ void check_dicom_is_whole(const std::string& path) {
     const bool preamble = bytes.size() >= 132 && (bytes.skip(128), bytes.text(4)) == "DICM";
     if (!preamble) {
         bytes.rewind();
-        // Old files begin with their data.
+        // Old files begin with the data set.
         if (bytes.size() >= 8 && bytes.number(2, false) != 2) {
             bytes.rewind();
             try {
@@ -211,7 +212,7 @@ void check_netcdf_is_whole(const std::string& path) {
     try {
         bytes.skip(4);
         const auto axes = bytes.number(4, true);
-        if (axes > bytes.left() / 8) bytes.truncated();  // each takes a name and a length
+        if (axes > bytes.left() / 8) bytes.truncated();  // each takes at least a name and a length
         std::vector<std::uint64_t> dims(axes);
         for (auto& dim : dims) {
             bytes.skip(padded(bytes.number(4, true)));

@@ -1,7 +1,6 @@
-// A DICOM series: files in any order, sorted by where their slices lie. GDCM (through ITK) decodes each file and
-// applies its slope and intercept. Slices whose stack leans (gantry tilt) need no resampling: the lean is the third
-// axis of index_to_world. Slices that are not evenly spaced are refused, or made even by a resampling that is asked
-// for.
+// Reads a DICOM series: files in any order, sorted by the positions of their slices. GDCM (through ITK) decodes each
+// file and applies slope and intercept. Sheared stacks (gantry tilt) need no resampling: the shear is in the third axis
+// of index_to_world. Unevenly spaced slices are refused, or resampled on request.
 #include <itkGDCMImageIO.h>
 
 #include <algorithm>
@@ -45,7 +44,7 @@ itk::GDCMImageIO::Pointer opened(const std::string& file, std::string& chatter) 
         chatter = capture.text();
     }
     if (!reason.empty()) fail("{}: cannot be read as DICOM: {}", file, tidy(reason + " " + chatter));
-    // GDCM fills missing pixels with what was in memory, and only prints that it did.
+    // GDCM leaves missing pixels uninitialised and only prints a message.
     if (chatter.find("Incomplete Pixel Data") != std::string::npos)
         fail("{}: truncated: the pixel data end before the last pixel", file);
     return io;
@@ -110,7 +109,7 @@ void read_voxels(const Slice& slice, std::size_t component, float* target, std::
         }
         if (!reason.empty()) reason += " " + capture.text();
     }
-    if (!reason.empty()) fail("{}: its pixels cannot be decoded: {}", slice.file, tidy(reason));
+    if (!reason.empty()) fail("{}: cannot decode its pixels: {}", slice.file, tidy(reason));
     convert_samples(type, buffer.data(), component, slice.components, voxels, target);
 }
 
@@ -154,7 +153,7 @@ void check_alike(const std::string& name, const std::vector<Slice>& slices) {
                  file_name(slice), slice.dims[0], slice.dims[1]);
         for (int axis = 0; axis < 2; ++axis) {
             const auto a = first.geometry.index_to_world_axes[axis], b = slice.geometry.index_to_world_axes[axis];
-            // Over a whole row the slices may part by a hundredth of a pixel per pixel at most.
+            // Across a whole row, slices may diverge by a hundredth of a pixel per pixel at most.
             if (!(glm::length(a - b) <=
                   1e-2 * glm::length(a) / std::max(1.0, std::sqrt(static_cast<double>(first.dims[0])))))
                 fail("{}: {} and {} differ in orientation or pixel spacing: {} and {} per pixel of axis {}", name,
@@ -163,7 +162,7 @@ void check_alike(const std::string& name, const std::vector<Slice>& slices) {
     }
 }
 
-// Sorts by instance number where the files say nothing of positions (e.g. secondary captures).
+// Sorts by instance number, for files without positions (e.g. secondary captures).
 glm::dvec3 step_by_instance(const std::string& name, std::vector<Slice>& slices, std::vector<std::string>& notes) {
     std::sort(slices.begin(), slices.end(), [](const Slice& a, const Slice& b) { return a.instance < b.instance; });
     for (std::size_t i = 0; i < slices.size(); ++i) {
@@ -185,14 +184,14 @@ glm::dvec3 step_by_instance(const std::string& name, std::vector<Slice>& slices,
     return spacing * glm::normalize(glm::cross(axes[0], axes[1]));
 }
 
-// How the slices of a series follow each other.
+// Spacing of the slices of a series.
 struct Stack {
-    glm::dvec3 step{0};           // from one to the next, mm
-    std::vector<double> heights;  // along the normal, mm from the first; empty: evenly spaced
-    std::size_t count = 0;        // of steps' ends that the heights give way to
+    glm::dvec3 step{0};           // step from one slice to the next, mm
+    std::vector<double> heights;  // height of each slice along the normal, mm from the first; empty: evenly spaced
+    std::size_t count = 0;        // number of slices after resampling
 };
 
-// What two neighbours that are unevenly far apart are refused with.
+// Throws the error for two slices with uneven spacing.
 [[noreturn]] void refuse_spacing(const std::string& name, const std::vector<Slice>& slices,
                                  const std::vector<double>& gaps, double usual) {
     const auto odd = static_cast<std::size_t>(
@@ -210,7 +209,7 @@ struct Stack {
         gaps[odd], rest, gaps[odd] > 1.5 * usual ? " (a slice may be missing)" : "");
 }
 
-// Sorts along the normal and checks that the positions are points of one line, evenly spaced unless that is mended.
+// Sorts along the normal and checks that the positions lie on one line, evenly spaced unless `resample` is set.
 Stack stack_by_position(const std::string& name, std::vector<Slice>& slices, bool resample,
                         std::vector<std::string>& notes) {
     const auto& axes = slices[0].geometry.index_to_world_axes;
@@ -227,7 +226,7 @@ Stack stack_by_position(const std::string& name, std::vector<Slice>& slices, boo
     for (std::size_t i = 1; i < slices.size(); ++i)
         gaps.push_back(heights[i] - heights[i - 1]);
     auto sorted = gaps;
-    // The lower of two in the middle: what is missing makes gaps wider.
+    // The lower median: missing slices make gaps wider.
     const std::size_t middle = (sorted.size() - 1) / 2;
     std::nth_element(sorted.begin(), sorted.begin() + static_cast<std::ptrdiff_t>(middle), sorted.end());
     const double usual = sorted[middle];
@@ -237,8 +236,9 @@ Stack stack_by_position(const std::string& name, std::vector<Slice>& slices, boo
         const auto where = fmt::format("{} at {} and {} at {}", file_name(before), text_of(before.geometry.origin),
                                        file_name(here), text_of(here.geometry.origin));
         if (!(gaps[i - 1] > 1e-3 * std::max(usual, 1e-3)))
-            fail("{}: two slices at the same place: {}; a series with several frames, echoes or phases must be split",
-                 name, where);
+            fail(
+                "{}: two slices at the same position: {}; a series with several frames, echoes or phases must be split",
+                name, where);
         const double ideal = total * static_cast<double>(i) / static_cast<double>(gaps.size());
         even = even && std::abs(gaps[i - 1] - usual) <= 0.01 * usual && std::abs(heights[i] - ideal) <= 0.05 * usual;
         const auto aside = here.geometry.origin - slices.front().geometry.origin - way * (heights[i] / total);
@@ -260,8 +260,8 @@ Stack stack_by_position(const std::string& name, std::vector<Slice>& slices, boo
     if (glm::length(lean) > 1e-3 * spacing) {
         const double degrees = std::atan2(glm::length(lean), spacing) * 180 / 3.14159265358979323846;
         notes.push_back(
-            fmt::format("The stack of slices leans by {:.2f} degrees ({:.4g} mm along rows, {:.4g} mm along "
-                        "columns per slice: gantry tilt). It is kept exactly, in the direction matrix.",
+            fmt::format("The stack of slices is sheared by {:.2f} degrees ({:.4g} mm along rows, {:.4g} mm along "
+                        "columns per slice: gantry tilt). It is kept exactly in the direction matrix.",
                         degrees, glm::dot(lean, row), glm::dot(lean, glm::normalize(axes[1]))));
         stack.step = step;
     } else {
@@ -282,7 +282,7 @@ bool is_dicom(const std::string& path) {
 
 namespace {
 
-// A file whose pixels cannot be decoded, though its header could be read.
+// Thrown for a file whose header is readable but whose pixels are not.
 struct BrokenSlice {
     std::string file, reason;
 };
@@ -307,8 +307,8 @@ void read_stack(const std::string& name, std::vector<Slice>& slices, const LoadO
     } else if (depth == 1) {
         volume.notes.push_back("One DICOM file with one slice; give the folder to read a whole series.");
     } else {
-        volume.notes.push_back(fmt::format("A multi-frame DICOM file: {} frames, {:.4g} mm apart as GDCM says.", depth,
-                                           volume.geometry.spacing().z));
+        volume.notes.push_back(fmt::format("A multi-frame DICOM file: {} frames, {:.4g} mm apart according to GDCM.",
+                                           depth, volume.geometry.spacing().z));
     }
     const std::size_t even = stack.heights.empty() ? depth : stack.count;
     checked_bytes(name, {first.dims[0], first.dims[1], depth == even ? depth : depth + even}, sizeof(float));
@@ -329,8 +329,8 @@ void read_stack(const std::string& name, std::vector<Slice>& slices, const LoadO
     if (stack.heights.empty()) return;
     volume.values = resampled_slices(volume.values, stack.heights, even);
     volume.warnings.push_back(
-        fmt::format("{}: {} unevenly spaced slices were resampled to {}, {:.6g} mm apart, by cubics along them.", name,
-                    depth, even, stack.heights.back() / static_cast<double>(even - 1)));
+        fmt::format("{}: {} unevenly spaced slices were resampled to {}, {:.6g} mm apart, by cubic interpolation.",
+                    name, depth, even, stack.heights.back() / static_cast<double>(even - 1)));
 }
 
 }  // namespace
@@ -357,7 +357,7 @@ Volume load_dicom(const std::string& name, const std::vector<std::string>& files
             volume.name = name;
             volume.notes = notes;
             for (const std::string& reason : left_out)
-                volume.warnings.push_back(reason + ". The file was left out.");
+                volume.warnings.push_back(reason + ". The file was skipped.");
             try {
                 read_stack(name, slices, options, volume);
                 return volume;
@@ -368,7 +368,7 @@ Volume load_dicom(const std::string& name, const std::vector<std::string>& files
         }
     } catch (const Error& error) {
         if (left_out.empty()) throw;
-        fail("{}; left out: {}", error.what(), fmt::join(left_out, "; "));
+        fail("{}; skipped: {}", error.what(), fmt::join(left_out, "; "));
     }
 }
 

@@ -1,4 +1,4 @@
-// Stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
+// Reads stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -24,7 +24,7 @@ std::unique_ptr<PictureReader> opened(const std::string& path) {
     return input;
 }
 
-/// Whether its samples are bits; OpenImageIO does not say so of portable bitmaps.
+/// Whether the samples are single bits; OpenImageIO does not report this for portable bitmaps.
 bool holds_bits(const PicturePage& page, const std::string& path) {
     std::ifstream file(path, std::ios::binary);
     char head[2] = {};
@@ -32,7 +32,7 @@ bool holds_bits(const PicturePage& page, const std::string& path) {
     return page.bits == 1 || (head[0] == 'P' && (head[1] == '1' || head[1] == '4'));
 }
 
-// The number nearest to the end of a name, and the name without it.
+// The last number in a file name, and the name without it.
 struct NumberedName {
     std::string file, stem;
     std::optional<unsigned long long> number;
@@ -82,7 +82,7 @@ std::vector<std::string> ordered_slices(const std::string& name, std::vector<std
         const auto here = *names[i].number - *names[i - 1].number;
         if (here == 0) fail("{}: {} and {} have the same number", name, names[i - 1].file, names[i].file);
         if (here != step)
-            fail("{}: the numbers of {} and {} are {} apart, those before {}: a slice is missing", name,
+            fail("{}: the numbers of {} and {} differ by {}, the earlier ones by {}: a slice is missing", name,
                  names[i - 1].file, names[i].file, here, step);
     }
     if (step > 1) notes.push_back(fmt::format("The slices are numbered in steps of {}.", step));
@@ -135,7 +135,7 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
                 component = chosen_component(name, options, static_cast<std::size_t>(channels));
                 checked_bytes(name, {static_cast<std::size_t>(width), static_cast<std::size_t>(height), slices},
                               sizeof(float));
-                // One page is unpacked at a time, with all its channels.
+                // Only one page is unpacked at a time, with all its channels.
                 const std::size_t page_bytes = static_cast<std::size_t>(width) * static_cast<std::size_t>(height) *
                                                static_cast<std::size_t>(channels) * size_of(here_type);
                 check_memory(name, fmt::format("pages of {} x {} pixels, {} channels", width, height, channels),
@@ -160,7 +160,7 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
             if (!read) fail("{}: truncated or damaged: {}", here, tidy(reason));
             convert_samples(*type, buffer.data(), component, static_cast<std::size_t>(channels), pixels,
                             volume.values.data() + depth * pixels);
-            // OpenImageIO scales every number of bits up to whole bytes; a mask is 0 and 1.
+            // OpenImageIO scales bits to whole bytes; a mask becomes 0 and 1.
             if (holds_bits(spec, files[i]))
                 for (float& value : std::span(volume.values).subspan(depth * pixels, pixels))
                     value = value > 0 ? 1.0F : 0.0F;
@@ -169,10 +169,10 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
     }
     volume.stored_type = name_of(*type);
     volume.geometry.dims = {width, height, static_cast<int>(depth)};
-    if (depth == 1) volume.notes.push_back("The file holds one image: it is taken as a volume of one slice.");
+    if (depth == 1) volume.notes.push_back("The file holds one image: it is read as a volume of one slice.");
     if (!options.spacing)
         volume.notes.push_back(
-            "Images do not say how far apart their slices are: spacing 1 x 1 x 1 mm is assumed; give "
+            "Images do not contain a slice spacing: 1 x 1 x 1 mm is assumed; give "
             "--spacing X Y Z.");
     return volume;
 }

@@ -1,4 +1,4 @@
-// What the format families share. Internal to engine/volume; nothing here is installed.
+// Helpers that the readers of all formats share. Internal to engine/volume, not installed.
 #pragma once
 
 #include <cstddef>
@@ -14,46 +14,46 @@
 
 namespace edgesplat::detail {
 
-/// The type of a name such as "uint8"; false when there is none.
+/// Finds the type with a name such as "uint8"; returns false if there is none.
 bool sample_type_named(std::string_view name, SampleType& type);
 /// target[i] = source[first + i * stride] for i < count, in host byte order.
 void convert_samples(SampleType type, const void* source, std::size_t first, std::size_t stride, std::size_t count,
                      float* target);
 
-/// Fails when the volume, or all that must be read to get at it, is beyond the limits of load_volume.h. `dims` as the
-/// file says, any number of axes; `bytes` of one voxel with all its components. Returns the bytes of all of it.
+/// Fails if the volume, or all data that must be read for it, exceeds the limits of load_volume.h. `dims` as in the
+/// file, any number of axes; `bytes` per voxel with all components. Returns the total bytes.
 std::size_t checked_bytes(const std::string& path, const std::vector<std::size_t>& dims, std::size_t bytes);
-/// Fails when `bytes` are more than reading one volume may take (load_volume.h); `what` of the file says so.
+/// Fails if `bytes` exceed the memory limit for reading (load_volume.h); `what` names the data in the message.
 void check_memory(const std::string& path, std::string_view what, std::size_t bytes);
-/// Of what is not compressed ("1 " may be a double), of deflate at its best, and more than compression of pictures is
-/// seen to do.
+/// Maximum ratio of voxel bytes to stored bytes: uncompressed (the text "1 " may be a double), deflate at its best, and
+/// a bound for image compression.
 inline constexpr std::size_t kPlainRatio = 8, kBestDeflateRatio = 1040, kBestPictureRatio = std::size_t{1} << 16;
-/// Fails when `needed` bytes cannot come out of `stored` bytes even by that ratio, 4 kB of which are given.
+/// Fails if `needed` > `ratio` * `stored` + 4 kB: the file is too small for its voxels.
 void check_stored_size(const std::string& path, std::size_t needed, std::size_t stored,
                        std::size_t ratio = kBestDeflateRatio);
 
-/// Fail with "truncated" when the structure of the file goes on after its end; files they do not understand pass.
+/// Fails with "truncated" if the file's structure continues beyond its end. Files with unknown structure pass.
 void check_dicom_is_whole(const std::string& path);
-/// Whether a file without DICOM's preamble begins as one with it goes on: with elements of group 2 or 8 in order.
+/// Whether a file without DICOM preamble begins with DICOM elements: group 2 or 8, in order.
 bool begins_with_dicom_elements(const std::string& path);
 void check_netcdf_is_whole(const std::string& path);
 
-/// Which component and frame to take of those the file has; fails with how to choose where it is not said.
+/// The component and frame to read. Fails with the option to use if the file has several and none is chosen.
 std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count);
 std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count);
 
-/// Without white space at the ends.
+/// The text without white space at both ends.
 std::string trimmed(const std::string& text);
 
 void report(const LoadOptions& options, double fraction, std::string_view what);
-/// Replaces the lengths of the axes by options.spacing, where given.
+/// Scales the axes to options.spacing, if given.
 void apply_spacing(Volume& volume, const LoadOptions& options);
-/// What a finished volume must say of values that are not as in the file.
+/// Adds notes about values of a finished volume that differ from the file.
 void add_value_notes(Volume& volume);
-/// A long message of a library on one line, without addresses of objects and source lines.
+/// Shortens a library's message to one line, without object addresses and source lines.
 std::string tidy(std::string_view message);
 
-/// A new folder in the system's place for temporary files, removed with all it holds.
+/// Creates a folder in the system's temporary folder and removes it with its content.
 class TemporaryFolder {
   public:
     TemporaryFolder();
@@ -66,15 +66,15 @@ class TemporaryFolder {
     std::filesystem::path path_;
 };
 
-/// While it lives, what the process writes to stdout and stderr is kept instead: the image libraries print their
-/// troubles, some of which they do not report in any other way. One at a time; process-wide.
+/// Captures what the process writes to stdout and stderr while it exists. The image libraries print some errors that
+/// they report in no other way. One at a time; process-wide.
 class OutputCapture {
   public:
     OutputCapture();
     ~OutputCapture();
     OutputCapture(const OutputCapture&) = delete;
     OutputCapture& operator=(const OutputCapture&) = delete;
-    /// Everything so far.
+    /// Everything captured so far.
     std::string text();
 
   private:
@@ -82,21 +82,21 @@ class OutputCapture {
 };
 
 enum class ItkFormat { Nrrd, Meta, Nifti, Vtk, Minc, Gipl };
-/// How a file is handed to ITK and what is said of it.
+/// Input of `load_through_itk`.
 struct ItkRequest {
     ItkFormat format = ItkFormat::Nrrd;
-    std::string path;                              ///< what the user gave: the name in messages
-    std::string read_path;                         ///< what ITK opens; empty: `path`
+    std::string path;                              ///< the user's path, used in messages
+    std::string read_path;                         ///< the file that ITK opens; empty: `path`
     std::string stored_type;                       ///< empty: as ITK says
-    std::size_t stored_bytes = 0;                  ///< size of the data on disk; 0: not to be checked
+    std::size_t stored_bytes = 0;                  ///< size of the data on disk; 0: not checked
     std::size_t stored_ratio = kBestDeflateRatio;  ///< see check_stored_size
-    /// Called with the bytes and samples that will be read, before they are; may throw.
+    /// Called before reading, with the bytes and samples to be read; may throw.
     std::function<void(std::size_t bytes, std::size_t samples)> check_data;
-    bool bits_are_floats = false;     ///< integers are the bit patterns of floats (see load_nifti.cpp)
+    bool bits_are_floats = false;     ///< the integers are bit patterns of floats (see load_nifti.cpp)
     double slope = 1, intercept = 0;  ///< applied to those floats
 };
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options);
-/// What the header says, without voxels: the type of a sample, or nothing where it is not one scalar volume.
+/// Reads the header only. Returns the sample type, or nullopt if the file is not one scalar volume.
 std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description);
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options);
@@ -106,22 +106,22 @@ Volume load_vti(const std::string& path, const LoadOptions& options);
 /// "64x64x64:uint8:little[:sx,sy,sz[:skip]]": dims, type, byte order, spacing in mm, bytes before the first voxel.
 Volume load_raw(const std::string& path, const LoadOptions& options);
 
-/// Slices at ascending `heights` of at least two, the first at 0, as `count` >= 2 evenly spaced from the first to the
-/// last.
+/// Resamples slices at ascending `heights` (at least two, the first at 0) to `count` >= 2 evenly spaced slices from the
+/// first to the last height.
 std::vector<float> resampled_slices(const std::vector<float>& slices, const std::vector<double>& heights,
                                     std::size_t count);
 
 bool is_dicom(const std::string& path);
 Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);
 
-/// A zip archive of one file or of a folder's, with `load` for what comes out of it.
+/// Reads a zip archive of one file or one folder; `load` reads the unpacked content.
 Volume load_archive(const std::string& path, const LoadOptions& options,
                     const std::function<Volume(const std::string&, const LoadOptions&)>& load);
 
 bool is_image_file(const std::string& path);
-/// Slices in this order; one file may hold a stack. `name` is what the user gave.
+/// Reads slices in this order; one file may contain a stack. `name` is the user's path.
 Volume load_images(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);
-/// Files of a folder sorted by the last number in their names; fails where a number is missing. Adds to `notes`.
+/// Sorts the files of a folder by the last number in their names; fails if a number is missing. Adds to `notes`.
 std::vector<std::string> ordered_slices(const std::string& name, std::vector<std::string> files,
                                         std::vector<std::string>& notes);
 

@@ -1,5 +1,5 @@
-// One file through one ITK image IO, without ITK's pixel-type templates and factories: the IO object is asked for what
-// the file holds, reads it, and the voxels are converted to float here.
+// Reads one file through an ITK ImageIO, without ITK's pixel-type templates and factories: the ImageIO reads header and
+// data, and the voxels are converted to float here.
 #include <itkGiplImageIO.h>
 #include <itkMINCImageIO.h>
 #include <itkMetaDataObject.h>
@@ -46,7 +46,7 @@ itk::ImageIOBase::Pointer image_io(ItkFormat format) {
             return itk::MetaImageIO::New().GetPointer();
         case ItkFormat::Nifti: {
             auto io = itk::NiftiImageIO::New();
-            // Without this an Analyze file is read all the same, with a warning that it should not be.
+            // Without this, ITK reads an Analyze file but prints a warning.
             io->SetLegacyAnalyze75Mode(itk::NiftiImageIOEnums::Analyze75Flavor::AnalyzeITK4);
             return io.GetPointer();
         }
@@ -60,8 +60,7 @@ itk::ImageIOBase::Pointer image_io(ItkFormat format) {
     return {};
 }
 
-// Runs a call into ITK with its chatter kept away. Some IOs print a failure and go on: with `strict`, anything printed
-// is one.
+// Calls ITK and captures its output. Some ImageIOs print an error and continue: with `strict`, any output is an error.
 template <typename Call>
 void guarded(const ItkRequest& request, bool strict, Call&& call) {
     std::string reason, chatter;
@@ -83,7 +82,7 @@ void guarded(const ItkRequest& request, bool strict, Call&& call) {
     auto text = tidy(reason);
     if (text.empty()) return;
     if (reason != chatter && !tidy(chatter).empty()) text += " (" + tidy(chatter) + ")";
-    // The user never saw our temporary files.
+    // The user does not know the temporary files.
     if (!request.read_path.empty() && request.read_path != request.path)
         for (auto at = text.find(request.read_path); at != std::string::npos; at = text.find(request.read_path))
             text.replace(at, request.read_path.size(), "the file");
@@ -166,7 +165,7 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
     return geometry;
 }
 
-/// Whether the file says where the patient's left, back and top are; ITK has then turned it to these axes.
+/// Whether the file defines the patient's axes; ITK then converts to LPS.
 static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
     std::string space;
     itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "NRRD_space", space);
@@ -174,7 +173,7 @@ static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
            space.find("right") != std::string::npos;
 }
 
-/// The reader with the file's header in it.
+/// An ImageIO that has read the file's header.
 static itk::ImageIOBase::Pointer header_of(const ItkRequest& request) {
     auto io = image_io(request.format);
     guarded(request, false, [&] {
@@ -230,7 +229,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
     volume.geometry = geometry_of(*io);
     volume.in_patient = in_patient(*io, request.format);
     if (dims.size() == 2)
-        volume.notes.push_back("The file holds a 2-D image: it is taken as a volume of one slice, 1 mm thick.");
+        volume.notes.push_back("The file holds a 2-D image: it is read as a volume of one slice, 1 mm thick.");
 
     try {
         volume.values.resize(volume.geometry.voxel_count());

@@ -1,6 +1,6 @@
-// MetaImage through ITK, with its header looked at first: MetaIO takes what it needs from a header that contradicts
-// itself and says nothing. Compressed voxels are unpacked here: MetaIO stops at CompressedDataSize, which some files
-// state too small (VTK's frogtissue.mhd), and leaves the voxels after it as they were in memory.
+// Reads MetaImage files through ITK, after checking the header: MetaIO accepts contradictory headers silently.
+// Compressed voxels are unpacked here: MetaIO stops at CompressedDataSize, which is too small in some files (VTK's
+// frogtissue.mhd), and leaves the remaining voxels uninitialised.
 #include <zlib.h>
 
 #include <algorithm>
@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Data files after "LIST", without blank lines at the end.
+// Data files after "LIST", without trailing blank lines.
 struct ListedFiles {
     std::size_t count = 0;
-    std::size_t first_bad = std::string::npos, bad_length = 0;  // the first line that is blank or too long
+    std::size_t first_bad = std::string::npos, bad_length = 0;  // first line that is blank or too long
 
     void add(std::size_t line, std::size_t length) {
         if (length > 0) count = line + 1;
@@ -29,8 +29,9 @@ struct ListedFiles {
     }
 };
 
-// MetaIO copies each word into 80 bytes and counts words by blanks, a line of a list into 1024 bytes; it gives the
-// pattern to printf as it is, and reads fewer files than there are slices without a word.
+// Checks a list or pattern of data files. MetaIO copies each word into 80 bytes, counts words by blanks, and copies a
+// line of a list into 1024 bytes. It passes the pattern to printf unchecked, and silently reads fewer files than there
+// are slices.
 void check_several(const std::string& path, const std::string& value, const ListedFiles& listed, std::size_t slices) {
     std::istringstream fits(value);
     for (std::string word; fits >> word;)
@@ -46,7 +47,7 @@ void check_several(const std::string& path, const std::string& value, const List
         std::istringstream words(value);
         std::string pattern;
         long long first = 0, last = 0, step = 0;
-        // MetaIO takes a step that is no number, or none, for 0 and divides by it.
+        // MetaIO treats a missing or invalid step as 0 and divides by it.
         const bool numbers = static_cast<bool>(words >> pattern >> first >> last >> step);
         const auto percent = pattern.find('%');
         auto end = percent + 1;
@@ -63,18 +64,18 @@ void check_several(const std::string& path, const std::string& value, const List
 }
 
 struct MetaHeader {
-    std::vector<std::string> lines;  // all but those about compression and the data file
+    std::vector<std::string> lines;  // all lines except compression and data file
     std::vector<std::size_t> dims;
     std::size_t axes = 0, spacings = 0, channels = 1;
     bool compressed = false, in_patient = false;
     std::string data_file;
     ListedFiles listed;
-    std::size_t data_offset = 0;  // of data in the header's own file
+    std::size_t data_offset = 0;  // offset of data in the header's own file
     bool big_endian = false;
-    bool plain = true;  // nothing said that makes voxels more than bytes one after the other from there
+    bool plain = true;  // true: voxels are stored contiguously and unmodified
 };
 
-// MetaIO copies keys and values into buffers of its own and does not look how long they are.
+// MetaIO copies keys and values into fixed buffers without checking their length.
 void check_line(const std::string& path, int number, const std::string& line) {
     const auto equals = line.find('=');
     const bool blank = line.find_first_not_of(" \t\r") == std::string::npos;
@@ -122,7 +123,7 @@ MetaHeader meta_header(const std::string& path) {
     fail("{}: not a MetaImage header: it has no line 'ElementDataFile = ...'", path);
 }
 
-// Unpacks zlib or gzip data up to their end, at most `limit` bytes.
+// Unpacks zlib or gzip data, at most `limit` bytes.
 void inflate_file(const std::string& path, const fs::path& source, std::size_t offset, std::size_t limit,
                   const fs::path& target, const LoadOptions& options) {
     std::ifstream in(source, std::ios::binary);
@@ -167,7 +168,8 @@ bool has_several_files(const MetaHeader& header) {
     return header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
 }
 
-// Said twice, or not as often as there are axes: MetaIO goes on with what memory held. It has room for ten axes.
+// Checks that the number of dims matches the axes: otherwise MetaIO reads uninitialised memory. It supports at most ten
+// axes.
 void check_axes(const std::string& path, const MetaHeader& header) {
     if (header.axes < 1 || header.axes > 10) fail("{}: NDims = {}, expected 1 to 10", path, header.axes);
     if (header.dims.size() != header.axes)
@@ -198,7 +200,7 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
     ItkRequest request{.format = ItkFormat::Meta, .path = path};
     check_axes(path, header);
     if (several) {
-        // "LIST 3" and the like say how many axes a file has; without it each holds all but the last.
+        // "LIST 3" gives the number of axes per file; without a number each file has all axes except the last.
         std::size_t axes = header.axes - 1, slices = 1;
         if (header.data_file.rfind("LIST", 0) == 0) std::istringstream(header.data_file.substr(4)) >> axes;
         for (std::size_t axis = std::max<std::size_t>(axes, 2); axis < header.axes; ++axis)
@@ -215,7 +217,8 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
     std::optional<TemporaryFolder> folder;
     if (header.compressed && !several) {
         const auto limit = checked_bytes(path, header.dims, 8 * std::clamp<std::size_t>(header.channels, 1, 64));
-        check_stored_size(path, checked_bytes(path, header.dims, 1), request.stored_bytes);  // a byte each, at least
+        // at least one byte per voxel
+        check_stored_size(path, checked_bytes(path, header.dims, 1), request.stored_bytes);
         folder.emplace();
         inflate_file(path, data, local ? header.data_offset : 0, limit, folder->path() / "data.raw", options);
         const auto patched = folder->path() / "header.mhd";
@@ -230,7 +233,7 @@ Volume load_meta(const std::string& path, const LoadOptions& options) {
     auto volume = load_through_itk(request, options);
     volume.in_patient = header.in_patient;
     if (header.axes > 0 && header.spacings > 0 && header.spacings != header.axes)
-        volume.notes.push_back(fmt::format("The header says NDims = {} but gives {} spacings; NDims was believed.",
+        volume.notes.push_back(fmt::format("The header says NDims = {} but gives {} spacings; NDims was used.",
                                            header.axes, header.spacings));
     return volume;
 }

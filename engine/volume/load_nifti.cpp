@@ -1,10 +1,9 @@
-// NIfTI-1/2 and Analyze through ITK. Three of its habits are worked around by handing it a temporary file with the same
-// header, slightly edited, and the same bytes:
-//  - it does not notice that voxels are missing at the end of a file: the bytes are counted on their way;
-//  - its NIfTI library replaces NaN and infinity by 0 without a word: floats travel as integers of the same size and
-//    become floats again here, after which slope and intercept are applied;
-//  - with a vector intent and a slope it writes past its buffers (heap corruption, ITK 5.2.1), and 4-D files are read
-//    whole: of data with more than three axes only the chosen 3-D block travels.
+// Reads NIfTI-1/2 and Analyze through ITK. ITK gets a temporary copy with an edited header, to work around three bugs:
+//  - ITK does not detect missing voxels at the end of a file. The copy counts the bytes.
+//  - Its NIfTI library silently replaces NaN and infinity by 0. Floats are passed as integers of the same size and
+//    converted back here; then slope and intercept are applied.
+//  - ITK writes beyond its buffers if a header has a vector intent and a slope (heap corruption, ITK 5.2.1), and reads
+//    4-D files whole. Only the chosen 3-D block of data with more than three axes is copied.
 #include <zlib.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where the fields lie; the same names as in nifti1.h and nifti2.h.
+// Byte offsets of the fields, named as in nifti1.h and nifti2.h.
 struct Layout {
     std::size_t header_size, dim, dim_size, intent_code, intent_size, datatype, vox_offset, scl_slope, scl_inter,
         pixdim, qform_code, quatern_b, srow_x;
@@ -59,7 +58,7 @@ struct Header {
     }
 };
 
-// Reads through zlib, which takes plain files as they are.
+// Reads through zlib, which also reads uncompressed files.
 class Stream {
   public:
     Stream(const std::string& name, const std::string& file) : name_(name), file_(gzopen(file.c_str(), "rb")) {
@@ -83,7 +82,7 @@ class Stream {
             fail("{}: truncated: no data at byte {}", name_, offset);
     }
 
-    // A gzip file ends with a sum of all it held: worth reading on for, in what is left of it.
+    // Reads the rest of a gzip file to verify its final checksum.
     void check_end() {
         std::vector<char> rest(1 << 18);
         if (gzdirect(file_) != 0) return;
@@ -91,7 +90,7 @@ class Stream {
         }
         int code = Z_OK;
         (void)gzerror(file_, &code);
-        if (code == Z_BUF_ERROR) fail("{}: truncated: its gzip data have no end", name_);
+        if (code == Z_BUF_ERROR) fail("{}: truncated: its gzip data are incomplete", name_);
     }
 
   private:
@@ -99,7 +98,7 @@ class Stream {
     gzFile file_;
 };
 
-// ITK's linear algebra ends the program where a number is not finite as a float.
+// Checks the position fields: ITK's linear algebra aborts the program if a number is not finite as a float.
 void check_place(const std::string& path, const Header& header) {
     const Layout& at = *header.layout;
     const auto check = [&](const char* field, std::size_t first, std::size_t count) {
@@ -153,13 +152,13 @@ Header parse(const std::string& path, const std::string& header_file) {
     }
     const double offset = at.wide ? static_cast<double>(header.get<std::int64_t>(at.vox_offset))
                                   : static_cast<double>(header.get<float>(at.vox_offset));
-    if (!(offset >= 0 && offset < 1e15)) fail("{}: vox_offset {} in its header is no place in a file", path, offset);
+    if (!(offset >= 0 && offset < 1e15)) fail("{}: vox_offset {} in its header is not a valid offset", path, offset);
     header.offset = static_cast<std::size_t>(offset);
     if (header.dim[0] < 1 || header.dim[0] > 7)
-        fail("{}: its header says {} axes; 1 to 7 are possible", path, header.dim[0]);
+        fail("{}: its header says {} axes, expected 1 to 7", path, header.dim[0]);
     for (std::size_t axis = 1; axis < 8; ++axis) {
         if (static_cast<long long>(axis) > header.dim[0]) header.dim[axis] = 1;
-        if (axis > 3 && header.dim[axis] == 0) header.dim[axis] = 1;  // Analyze writers leave them so
+        if (axis > 3 && header.dim[axis] == 0) header.dim[axis] = 1;  // some Analyze writers leave them 0
         if (axis > 3 && header.dim[axis] > 65535)
             fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
         if (header.dim[axis] < 1) fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
@@ -168,8 +167,8 @@ Header parse(const std::string& path, const std::string& header_file) {
     return header;
 }
 
-// NIfTI-1 says the same in fewer bits, and is all that ITK's NIfTI library knows: places become floats, and an axis of
-// more than 32767 voxels has no room.
+// Converts a NIfTI-2 header to NIfTI-1, the only version that ITK's NIfTI library reads. Positions become floats, and
+// an axis has at most 32767 voxels.
 Header as_nifti1(const std::string& path, const Header& wide) {
     Header header = wide;
     header.layout = &kNifti1;
@@ -222,13 +221,13 @@ const VoxelType& voxel_type(const std::string& path, int datatype) {
     fail("{}: voxels of NIfTI type {} cannot be read", path, datatype);
 }
 
-// "x.hdr.gz", ".hdr" -> "x.img.gz", ".img": the one of the pair that exists.
+// "x.hdr.gz", ".hdr" -> "x.img.gz", ".img": the existing file of the pair.
 std::string partner(const std::string& path, const std::string& from, const std::string& to) {
     const auto at = path.rfind(from);
     const std::string stem = path.substr(0, at) + to;
     for (const std::string& name : {stem, stem + ".gz"})
         if (fs::is_regular_file(name)) return name;
-    fail("{}: its other half {} (or {}.gz) is missing", path, stem, stem);
+    fail("{}: its second file {} (or {}.gz) is missing", path, stem, stem);
 }
 
 bool has_extension(const std::string& path, const std::string& extension) {
@@ -247,9 +246,9 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
     const auto& dim = header.dim;
     const auto unsigned_dim = [&](std::size_t axis) { return static_cast<std::size_t>(dim[axis]); };
 
-    // Axis 5 holds components, all other axes beyond the third frames.
+    // Axis 5 is components; the other axes beyond the third are frames.
     const std::vector<std::size_t> block{unsigned_dim(1), unsigned_dim(2), unsigned_dim(3)};
-    // As the NIfTI library does it, which does not look at bitpix.
+    // Size from the data type, as the NIfTI library does it; it ignores bitpix.
     const VoxelType& type = voxel_type(path, header.datatype);
     const std::size_t bytes = checked_bytes(path, block, type.bytes);
     const std::size_t stored = fs::file_size(data_file);
@@ -276,7 +275,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
         const std::size_t t = frame % unsigned_dim(4), rest_of_frame = frame / unsigned_dim(4);
         index = t + unsigned_dim(4) * (index + unsigned_dim(5) * rest_of_frame);
     }
-    // Also keeps the product below from overflowing.
+    // Also prevents an overflow of the product below.
     if (static_cast<double>(index) * static_cast<double>(bytes) > 1040.0 * static_cast<double>(stored) + 4096)
         fail("{}: truncated: the chosen frame lies beyond the end of the file", path);
     const Layout& at = *header.layout;
@@ -287,7 +286,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
                                                                                           : 1));
     header.set<float>(at.vox_offset, static_cast<float>(data_offset));
     if (!header.analyze) header.set<std::int16_t>(at.intent_code, 0);
-    // The standard has no scale for colours, and ITK reads beyond its buffers where it is told one.
+    // The standard defines no scale for colours, and ITK overruns its buffers if one is given.
     if (!header.analyze && (floats || header.datatype == 128)) {
         header.set<float>(at.scl_slope, 0);
         header.set<float>(at.scl_inter, 0);
@@ -330,7 +329,7 @@ Volume load_nifti(const std::string& path, const LoadOptions& options) {
     request.stored_bytes = 0;
     auto volume = load_through_itk(request, rest);
     if (header.analyze)
-        volume.notes.push_back("Analyze files do not say which side is left: the axes are taken as they are stored.");
+        volume.notes.push_back("Analyze files do not define which side is left: the axes are used as stored.");
     return volume;
 }
 

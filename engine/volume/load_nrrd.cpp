@@ -1,8 +1,8 @@
-// NRRD through ITK, with what ITK's copy of the NRRD library lacks put in front of it:
-//  - bzip2 data are unpacked first (ITK builds it without bzip2);
-//  - 4-D data whose fourth axis has no direction ("none") get the kind "list", without which ITK refuses them;
-//  - what the header says of files and skips is checked, so that the message names it.
-// ITK then reads a small detached header beside which nothing is copied: it points into the original file.
+// Reads NRRD through ITK. This code adds what ITK's copy of the NRRD library lacks:
+//  - it unpacks bzip2 data (ITK is built without bzip2);
+//  - it adds the kind "list" to a fourth axis without direction ("none"), which ITK refuses otherwise;
+//  - it checks the header's files and skips, so that the message names the field.
+// ITK then reads a small detached header that refers to the original data file; voxels are not copied.
 #include <bzlib.h>
 
 #include <algorithm>
@@ -25,10 +25,10 @@ constexpr std::size_t kMaxHeader = 1 << 20;
 
 struct NrrdHeader {
     std::string magic;
-    std::vector<std::pair<std::string, std::string>> fields;  // key as written, value
-    std::map<std::string, std::string> values;                // key lower-case without blanks -> value
+    std::vector<std::pair<std::string, std::string>> fields;  // key as in the file, value
+    std::map<std::string, std::string> values;                // lower-case key without blanks -> value
     std::vector<std::string> listed_files;                    // lines after "data file: LIST"
-    int line_count = 0;                                       // lines before the data, the blank one included
+    int line_count = 0;                                       // lines before the data, including the blank one
     std::size_t data_offset = 0;
 
     bool has(const std::string& key) const { return values.count(key) > 0; }
@@ -43,7 +43,7 @@ std::vector<std::string> words_of(const std::string& text) {
     std::istringstream stream(text);
     std::vector<std::string> words;
     for (std::string word; stream >> word;) {
-        // "(1, 0, 0)" is one word, whatever its blanks
+        // "(1, 0, 0)" is one word despite its blanks
         while (word.front() == '(' && word.back() != ')') {
             std::string more;
             if (!(stream >> more)) break;
@@ -96,7 +96,7 @@ long long number(const std::string& path, const std::string& what, const std::st
     return value;
 }
 
-// Every file the data are in, in order; the header itself where they are attached.
+// All data files, in order; the header itself if the data are attached.
 std::vector<fs::path> data_files(const std::string& path, const NrrdHeader& header) {
     if (!header.detached()) return {path};
     const auto folder = fs::path(path).parent_path();
@@ -104,18 +104,19 @@ std::vector<fs::path> data_files(const std::string& path, const NrrdHeader& head
     std::vector<fs::path> files;
     const auto words = words_of(value);
     if (value.rfind("LIST", 0) == 0) {
-        if (header.listed_files.empty()) fail("{}: NRRD field 'data file': LIST, and no file is listed", path);
+        if (header.listed_files.empty()) fail("{}: NRRD field 'data file': LIST without any file", path);
         for (const auto& name : header.listed_files)
             files.push_back(folder / name);
     } else if (words.size() >= 4 && value.find('%') != std::string::npos) {
         const long long first = number(path, "data file", words[1]), last = number(path, "data file", words[2]),
                         step = number(path, "data file", words[3]);
-        // Their differences must not overflow.
+        // Bounded so that their differences do not overflow.
         constexpr long long kMost = 1'000'000'000;
         const auto sane = [](long long n) { return n >= -kMost && n <= kMost; };
         if (!sane(first) || !sane(last) || !sane(step) || step == 0 || (last - first) / step < 0 ||
             (last - first) / step > 1'000'000)
-            fail("{}: NRRD field 'data file': {} to {} in steps of {} is no range of files", path, first, last, step);
+            fail("{}: NRRD field 'data file': {} to {} in steps of {} is not a valid range of files", path, first, last,
+                 step);
         for (long long i = first; step > 0 ? i <= last : i >= last; i += step) {
             std::vector<char> name(words[0].size() + 64);
             std::snprintf(name.data(), name.size(), fmt::format("{}", words[0]).c_str(), static_cast<int>(i));
@@ -132,7 +133,7 @@ std::vector<fs::path> data_files(const std::string& path, const NrrdHeader& head
     return files;
 }
 
-// A pattern is given to printf: it must hold one whole-number conversion and nothing else that printf acts on.
+// The pattern is passed to printf: it must contain one integer conversion and nothing else that printf interprets.
 void check_pattern(const std::string& path, const std::string& value) {
     const auto pattern = words_of(value).empty() ? std::string() : words_of(value)[0];
     const auto percent = pattern.find('%');
@@ -177,7 +178,7 @@ std::size_t bytes_of_type(const std::string& type) {
     return 4;
 }
 
-// The kinds with which ITK takes `list_axis` for components; an existing kind that says so already is kept.
+// The kinds that make ITK read `list_axis` as components; an existing list kind is kept.
 std::string kinds_with_list(const NrrdHeader& header, std::size_t axes, std::size_t list_axis) {
     auto kinds = words_of(header.value("kinds"));
     kinds.resize(axes, "domain");
@@ -197,7 +198,7 @@ std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& descripti
     const bool plain = header.value("encoding") == "raw" && sizes.size() == 3 && of_one_file &&
                        header.value("spacedirections").find("none") == std::string::npos &&
                        (!header.has("lineskip") || header.value("lineskip") == "0");
-    // Whether a first axis of 2 to 4 is colour or space is for load_nrrd to ask.
+    // load_nrrd asks the user whether a first axis of 2 to 4 is colour or space.
     if (!plain || (sizes[0].size() == 1 && sizes[0][0] <= '4')) return std::nullopt;
     const auto type = describe_through_itk({.format = ItkFormat::Nrrd, .path = path}, description);
     if (!type) return std::nullopt;
@@ -225,7 +226,7 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
     }
     if (sizes.size() > 4) fail("{}: NRRD data with {} axes: at most 4 can be read", path, sizes.size());
     const std::size_t item = bytes_of_type(header.value("type"));
-    if (!sizes.empty()) checked_bytes(path, sizes, item);  // ITK says as much of it, in ten lines
+    if (!sizes.empty()) checked_bytes(path, sizes, item);  // replaces ITK's message of ten lines
     check_pattern(path, header.value("datafile"));
     const auto files = data_files(path, header);
     std::size_t stored = 0;
@@ -247,7 +248,7 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
     const bool colour_sized = sizes.size() == 3 && sizes[0] >= 2 && sizes[0] <= 4;
     const bool says_nothing = !header.has("kinds") && !header.has("spacings") && !header.has("spacedirections");
     if (colour_sized && says_nothing && sizes[1] > 8 && sizes[2] > 8) {
-        // A volume of three planes, or a colour picture? Taking it for either in silence would be a guess.
+        // Ambiguous: a volume of three planes, or a colour picture.
         if (!options.component)
             fail(
                 "{}: its header does not say whether the first axis of {} is colour or space: choose a colour with "
@@ -258,7 +259,7 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options) {
         const auto axis = static_cast<std::size_t>(none - directions.begin());
         const bool time = axis >= list.size() || list[axis] == "time" || list[axis] == "domain" || list[axis] == "???";
         kinds = kinds_with_list(header, 4, axis);
-        // To ITK the axis is one of components; to the user it is time unless the header says otherwise.
+        // For ITK the axis is components; for the user it is time unless the header says otherwise.
         if (time) {
             rest.component = static_cast<int>(chosen_frame(path, options, sizes[axis]));
             rest.frame.reset();

@@ -1,4 +1,4 @@
-// Header-less files, described on the command line.
+// Reads raw files, described on the command line.
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -68,7 +68,7 @@ RawForm form_of(const std::string& path, const LoadOptions& options) {
     return form;
 }
 
-/// `bytes` of all voxels.
+/// `bytes`: size of all voxels.
 FileLayout layout_of(const RawForm& form, std::size_t bytes, const std::string& path, const LoadOptions& options,
                      Volume& volume) {
     const std::size_t size = std::filesystem::file_size(path);

@@ -1,4 +1,4 @@
-// Limits, choices, conversion, temporary files and captured output for all format families.
+// Limits, choices, sample conversion, temporary files and captured output for all formats.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@ namespace {
 constexpr std::array<std::string_view, 10> kTypeNames = {"int8",   "uint8", "int16",  "uint16",  "int32",
                                                          "uint32", "int64", "uint64", "float32", "float64"};
 constexpr std::array<std::size_t, 10> kTypeSizes = {1, 1, 2, 2, 4, 4, 8, 8, 4, 8};
-/// All frames and components of a file that can only be read as a whole.
+/// Maximum bytes of all frames and components of a file that can only be read as a whole.
 constexpr std::size_t kMaxBytes = std::size_t{1} << 34;
 constexpr const char* kMemoryVariable = "EDGESPLAT_READ_MEMORY";
 
@@ -177,7 +177,7 @@ std::string tidy(std::string_view message) {
     static const std::regex noise(
         R"((^|\n)[^\n]*\.(cxx|hxx|txx|h|cpp):\d+:|\b(itk::|ITK )?ERROR: |\w+ ?\(0x[0-9a-f]+\): )"
         R"(|(^|\n)(Warning|WARNING): In [^\n]*|\x1b\[[0-9;]*m|\d{4}-\d\d-\d\d [^\n|]*\| *)");
-    // Libraries repeat what they were given, and an expression takes stack with every character.
+    // Limits the length: libraries repeat their input, and std::regex uses stack for every character.
     std::string text = std::regex_replace(std::string(message.substr(0, 2000)), noise, "\n");
     std::string line;
     for (const char c : text) {

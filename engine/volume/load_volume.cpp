@@ -1,4 +1,4 @@
-// Which family reads it: told by what the path is, then by the file's first bytes, then by its name.
+// Selects the reader: by the kind of path, then by the file's first bytes, then by its name.
 #include "engine/volume/load_volume.h"
 
 #include <glob.h>
@@ -36,7 +36,7 @@ bool ends_with_any(const std::string& path, std::initializer_list<const char*> e
     return std::any_of(endings.begin(), endings.end(), [&](const char* ending) { return lower.ends_with(ending); });
 }
 
-// Opening a FIFO or a device would wait for ever, so the kind of file comes first.
+// Checks the kind of file first: opening a FIFO or a device would block.
 void check_readable_file(const std::string& path) {
     std::error_code error;
     const auto status = fs::status(path, error);
@@ -62,8 +62,8 @@ Volume load_vtk(const std::string& path, const std::string& head, const LoadOpti
     const auto at = upper.find("\nDATASET");
     if (at != std::string::npos && upper.find("STRUCTURED_POINTS", at) == std::string::npos)
         fail("{}: a VTK file, but not image data (DATASET STRUCTURED_POINTS)", path);
-    // ITK's reader leaves what a short file lacks as it was in memory. The values begin after the line that names their
-    // table, or the one that names them where they have none.
+    // ITK's reader leaves missing values of a short file uninitialised. The values begin after the line that names
+    // their lookup table, or after the line that names the values if there is no table.
     std::size_t begin = 0;
     for (const char* key : {"\nLOOKUP_TABLE", "\nSCALARS", "\nCOLOR_SCALARS", "\nVECTORS", "\nTENSORS"}) {
         const auto found = upper.find(key);
@@ -93,7 +93,7 @@ Volume load_minc(const std::string& path, const LoadOptions& options) {
     return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)}, options);
 }
 
-// ITK's reader takes voxels that are not there for 0.
+// ITK's reader reads missing voxels as 0.
 Volume load_gipl(const std::string& path, const LoadOptions& options) {
     constexpr std::size_t kHeader = 256;
     const auto check_data = [&](std::size_t bytes, std::size_t) {
@@ -133,7 +133,7 @@ Volume load_file(const std::string& path, const LoadOptions& options);
 Volume load_unpacked(const std::string& path, const LoadOptions& options) {
     if (fs::is_directory(path)) return load_folder(path, options);
     check_readable_file(path);
-    // They can be made to hold themselves.
+    // Refused, because archives can be nested without end.
     if (is_archive(first_bytes(path))) fail("{}: an archive in an archive", path);
     return load_file(path, options);
 }
@@ -159,15 +159,14 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
     if (is_image_file(path)) return load_images(path, {path}, options);
-    fail("{}: not a volume this program knows. It reads {}", path,
-         fmt::format(kFormats, can_read_vti() ? "VTI, " : ""));
+    fail("{}: unknown volume format. Supported are {}", path, fmt::format(kFormats, can_read_vti() ? "VTI, " : ""));
 }
 
 Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
     std::vector<std::string> dicom, images;
     std::size_t others = 0, folders = 0;
-    report(options, 0.0, "looking through the folder");
+    report(options, 0.0, "searching the folder");
     std::error_code error;
     for (const auto& entry : fs::directory_iterator(path, error)) {
         const auto file = entry.path().string();
@@ -188,7 +187,7 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
             "as slice_%03d.png",
             path, dicom.size(), images.size());
     std::vector<std::string> notes;
-    if (others > 0) notes.push_back(fmt::format("{} other files in the folder were left alone.", others));
+    if (others > 0) notes.push_back(fmt::format("{} other files in the folder were ignored.", others));
     Volume volume;
     if (!dicom.empty()) {
         volume = load_dicom(path, dicom, options);
@@ -206,7 +205,7 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     return volume;
 }
 
-// What a pattern found: a DICOM series, which says itself where its slices lie, or images in order of their numbers.
+// Reads the files that match a pattern: a DICOM series (sorted by position) or images (sorted by number).
 Volume load_slices(const std::string& path, std::vector<std::string> files, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a pattern", path);
     if (files.empty()) fail("{}: no file matches this pattern", path);
@@ -226,7 +225,7 @@ Volume load_slices(const std::string& path, std::vector<std::string> files, cons
     return volume;
 }
 
-// "slice_%03d.tif": the files of the folder that match, in order of their numbers.
+// "slice_%03d.tif": reads the matching files of the folder, sorted by number.
 Volume load_pattern(const std::string& path, const LoadOptions& options) {
     const auto name = fs::path(path).filename().string();
     const auto percent = name.find('%');
@@ -251,7 +250,7 @@ Volume load_pattern(const std::string& path, const LoadOptions& options) {
     return load_slices(path, files, options);
 }
 
-// "*.dcm", "slice_??.png": the files that match.
+// "*.dcm", "slice_??.png": reads the matching files.
 Volume load_glob(const std::string& path, const LoadOptions& options) {
     glob_t found{};
     const int result = glob(path.c_str(), GLOB_NOSORT, nullptr, &found);
@@ -270,7 +269,7 @@ void detail::add_value_notes(Volume& volume) {
     if (volume.stored_type.find("int") != std::string::npos && wide && largest > 16777216.0F)
         volume.notes.push_back("Samples beyond 2^24 are rounded to 24 significant bits.");
     if (volume.non_finite_count > 0)
-        volume.notes.push_back(fmt::format("{} samples are not finite; {} stands in for them.", volume.non_finite_count,
+        volume.notes.push_back(fmt::format("{} samples are not finite; {} replaces them.", volume.non_finite_count,
                                            static_cast<double>(volume.min_value)));
     if (const std::size_t count = labels_of(volume).size(); count > 0)
         volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));

@@ -1,4 +1,4 @@
-// VTK's XML image data, through VTK where the build has it.
+// Reads VTK's XML image data through VTK, if the build has it.
 #include "engine/volume/load_internal.h"
 
 #ifdef EDGESPLAT_HAS_VTK
@@ -96,7 +96,7 @@ Volume load_vti(const std::string& path, const LoadOptions& options) {
     if (array == nullptr && image->GetPointData()->GetNumberOfArrays() > 0) {
         array = image->GetPointData()->GetArray(0);
         if (array != nullptr)
-            volume.notes.push_back(fmt::format("No array is marked as scalars: '{}' was taken.", array->GetName()));
+            volume.notes.push_back(fmt::format("No array is marked as scalars: '{}' was used.", array->GetName()));
     }
     if (array == nullptr)
         fail("{}: no values at its points ({} arrays of cells)", path, image->GetCellData()->GetNumberOfArrays());
@@ -118,7 +118,7 @@ Volume load_vti(const std::string& path, const LoadOptions& options) {
                 direction->GetElement(row, column) * image->GetSpacing()[column] + 0.0;
     const double* origin = image->GetOrigin();
     const glm::dvec3 corner(extent[0], extent[2],
-                            extent[4]);  // VTK's origin is that of index 0, wherever the extent begins
+                            extent[4]);  // VTK's origin belongs to index 0, also if the extent begins elsewhere
     volume.geometry.origin = glm::dvec3(origin[0], origin[1], origin[2]) + volume.geometry.index_to_world_axes * corner;
     volume.values.resize(voxels);
     report(options, 0.7, "converting voxels");

@@ -15,7 +15,7 @@
 namespace edgesplat::detail {
 namespace {
 
-/// Calls work(first, last) for parts of 0..count, one a core.
+/// Calls work(first, last) for parts of 0..count, one per core.
 template <typename Work>
 void in_parallel(int count, const Work& work) {
     const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, std::max(count, 1));
@@ -88,7 +88,7 @@ class FileSource final : public PackSource {
     void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
         const glm::i64vec3 dims(description.geometry.dims);
         const bool whole_rows = size.x == dims.x;
-        const int rows = whole_rows ? size.y : 1;  // that lie one after the other
+        const int rows = whole_rows ? size.y : 1;  // contiguous in the file
         const auto run = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(rows);
         std::vector<char> bytes(run * size_of(layout_.type));
         float* to = out.data();

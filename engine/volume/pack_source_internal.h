@@ -1,4 +1,4 @@
-// Samples of a volume read box by box, for packing volumes larger than memory. Internal to engine/volume.
+// Reads a volume box by box, to pack volumes larger than memory. Internal to engine/volume.
 #pragma once
 
 #include <memory>
@@ -17,35 +17,34 @@ class PackSource {
     PackSource(const PackSource&) = delete;
     PackSource& operator=(const PackSource&) = delete;
 
-    /// Everything but samples and what follows from them.
+    /// Everything except the samples and values derived from them.
     Volume description;
-    /// Whether samples come from elsewhere than from memory.
+    /// Whether samples are read from elsewhere than memory.
     virtual bool streamed() const { return true; }
-    /// A box inside the volume, x fastest, as the volume has them: those that are not finite too.
+    /// Reads a box inside the volume, x fastest; non-finite samples are not replaced.
     virtual void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const = 0;
 };
 
-/// Where the samples of a file lie, one after the other, x fastest.
+/// Position and type of a file's samples, stored contiguously, x fastest.
 struct FileLayout {
-    std::string file;        ///< which may not be the one that was named
-    std::size_t offset = 0;  ///< bytes before the first
+    std::string file;        ///< the data file; may differ from the named file
+    std::size_t offset = 0;  ///< bytes before the first sample
     SampleType type = SampleType::UInt8;
-    bool swapped = false;  ///< not in the byte order of this machine
+    bool swapped = false;  ///< stored in the other byte order than this machine's
 };
 
-/// Where the voxels are that --raw describes; `description` gets what it says of them.
+/// Layout of a file that --raw describes; fills `description`.
 FileLayout raw_layout(const std::string& path, const LoadOptions& options, Volume& description);
-/// Likewise for files with a header, where they hold one volume as it is, uncompressed and in one piece; nothing for
-/// all others, whatever is wrong with them.
+/// Layout of a file with a header that stores one uncompressed volume contiguously; nullopt for all other files,
+/// including invalid ones.
 std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& description);
 std::optional<FileLayout> meta_layout(const std::string& path, Volume& description);
 
-/// Fails where the file ends before the last sample.
+/// Fails if the file ends before the last sample.
 std::unique_ptr<PackSource> file_source(const FileLayout& layout, const Volume& description);
-/// `volume` must outlive it.
+/// `volume` must outlive the source.
 std::unique_ptr<PackSource> memory_source(const Volume& volume);
-/// Builtin scenes and files that hold their samples as they are, uncompressed, are read where they lie; all others
-/// through load_volume.
+/// Reads builtin scenes and uncompressed files box by box; loads all others through load_volume.
 std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptions& options);
 
 }  // namespace edgesplat::detail

@@ -1,5 +1,5 @@
-// Packing: once or twice through all samples to know their range and type, once to write them as bricks, then each
-// level from the one before. No step holds more than one box of samples.
+// Packs a volume. One or two passes over all samples find range and type, one writes the bricks of level 0, then each
+// level is computed from the previous one. Every step has only one box of samples in memory.
 #include "engine/volume/pack_volume.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using namespace detail;
 
 constexpr int kBrick = PackedVolume::kBrick;
-/// Samples in a row of a box: 16 MB a box of bricks at most, 32 MB the one that a box of the next level is made from.
+/// Maximum length of a box in samples: 16 MB for a box of bricks, 32 MB for the box that is averaged to the next level.
 constexpr int kRow = 4096, kCoarseRow = 1024;
 constexpr std::size_t kFirstBytes = 4096;
 constexpr std::size_t kScanned = std::size_t{1} << 20;
@@ -27,11 +27,11 @@ std::size_t voxels_of(const glm::ivec3& size) {
     return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z);
 }
 
-/// How samples become what is stored, and back.
+/// Conversion of samples to stored values and back.
 struct Coding {
     SampleType type = SampleType::Float32;
-    double slope = 1, intercept = 0, most = 0;  ///< most: largest stored value where it is quantised
-    float stand_in = 0;                         ///< for samples that are not finite
+    double slope = 1, intercept = 0, most = 0;  ///< most: largest stored value if quantised, else 0
+    float stand_in = 0;                         ///< replaces non-finite samples
 
     bool quantised() const { return most > 0; }
     float stored(float value) const {
@@ -46,7 +46,7 @@ struct Coding {
 
 struct Scan {
     float low = INFINITY, high = -INFINITY;
-    bool integers = true;  ///< no fractions, and no negative zeros, which integers cannot say
+    bool integers = true;  ///< no fractions and no negative zeros
     std::size_t bad = 0;
     double sum = 0, error = 0;
     std::uint64_t checksum = 0;
@@ -59,7 +59,7 @@ class Progress {
     void add(std::size_t voxels, std::string_view what) {
         done_ += static_cast<double>(voxels);
         if (options_.progress && !options_.progress(std::min(1.0, done_ / all_), what))
-            fail("{}: stopped, it was not written", output_);
+            fail("{}: stopped; the file was not written", output_);
     }
 
   private:
@@ -68,7 +68,7 @@ class Progress {
     double done_ = 0, all_ = 0;
 };
 
-/// In the order of the checksum. With `coding`: of the samples as they will be read from the packed file.
+/// Scans all samples in the order of the checksum. With `coding`, uses the samples as read back from the packed file.
 Scan scan(const PackSource& source, const Coding* coding, Progress& progress) {
     const VolumeGeometry& geometry = source.description.geometry;
     const glm::ivec3& dims = geometry.dims;
@@ -98,7 +98,7 @@ Scan scan(const PackSource& source, const Coding* coding, Progress& progress) {
                 result.sum += static_cast<double>(value);
             }
             checksum.add(values);
-            progress.add(values.size(), "looking at all samples");
+            progress.add(values.size(), "scanning all samples");
         }
     result.checksum = checksum.value();
     if (result.bad == geometry.voxel_count()) result.low = result.high = 0;
@@ -141,7 +141,7 @@ class LevelWriter {
         low_.assign(voxels_of(bricks_), INFINITY);
         high_.assign(voxels_of(bricks_), -INFINITY);
     }
-    /// A box that begins where a brick does; what is to be stored.
+    /// Writes stored values of a box that starts at a brick.
     void write(const glm::ivec3& low, const glm::ivec3& size, const std::vector<float>& stored) {
         samples_.write(extent_of(low), extent_of(size), SampleType::Float32, stored.data());
         std::size_t at = 0;
@@ -195,7 +195,7 @@ void each_box(const glm::ivec3& dims, int row, const Work& work) {
                 work(glm::ivec3(x, y, z), glm::min(glm::ivec3(row, kBrick, kBrick), dims - glm::ivec3(x, y, z)));
 }
 
-/// Means over 2 x 2 x 2 of `fine`, over those that exist at its upper ends; `size` is that of the result.
+/// Means over 2 x 2 x 2 samples of `fine` (fewer at its upper ends); `size` is that of the result.
 std::vector<float> means(const std::vector<float>& fine, const glm::ivec3& fine_size, const glm::ivec3& size,
                          bool whole) {
     std::vector<float> result(voxels_of(size));
@@ -218,7 +218,7 @@ std::vector<float> means(const std::vector<float>& fine, const glm::ivec3& fine_
     return result;
 }
 
-/// Level 0 and the histogram.
+/// Writes level 0 and the histogram.
 void write_finest(Hdf5File& file, LevelWriter& writer, const PackSource& source, const Scan& scan, const Coding& coding,
                   Progress& progress) {
     const double low = static_cast<double>(scan.low), range = static_cast<double>(scan.high) - low;
@@ -286,7 +286,7 @@ void check_dims(const Volume& volume) {
     check_axes(volume);
 }
 
-/// How small deflate will make it is not known beforehand: then only a full disk stops it.
+/// Checks the free disk space. The deflated size is unknown beforehand, so compressed files are not checked.
 void check_space(const std::string& output, const std::vector<VolumeGeometry>& levels, const Coding& coding) {
     double bytes = 1e6;
     for (const VolumeGeometry& level : levels)
@@ -301,7 +301,7 @@ void check_space(const std::string& output, const std::vector<VolumeGeometry>& l
              output, bytes / 1e6, static_cast<double>(space.available) / 1e6);
 }
 
-/// Calls `step`, which writes `output`.
+/// Calls `step`, which writes `output`, and converts its errors.
 template <typename Step>
 auto writing(const std::string& output, const Step& step) {
     try {
@@ -320,7 +320,7 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
     Progress progress(options, output);
     const std::size_t voxels = volume.geometry.voxel_count();
     progress.expect(2 * voxels + (levels.size() > 1 ? voxels / 7 : 0));
-    // What is hopeless is refused before hours of looking at samples: less than a byte each they never take.
+    // Fails before the long scan if there is no space even for one byte per sample.
     if (!options.compress) check_space(output, levels, {.type = SampleType::UInt8});
     Scan found = scan(source, nullptr, progress);
     const Coding coding = coding_for(found, options.quantise);
@@ -340,7 +340,7 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
 
     TemporaryFile temporary = writing(output, [&] {
         TemporaryFile made(output);
-        made.write(std::string(kFirstBytes, '\0'));  // HDF5 cannot let go of a file that it cannot begin
+        made.write(std::string(kFirstBytes, '\0'));  // HDF5 cannot close a file whose first bytes it cannot write
         made.sync();
         return made;
     });
@@ -376,7 +376,7 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
 }  // namespace
 
 PackSummary pack_volume(const Volume& volume, const std::string& output, const PackOptions& options) {
-    need_samples(volume, "packing");
+    require_samples(volume, "packing");
     return pack(*memory_source(volume), output, options);
 }
 

@@ -1,4 +1,4 @@
-// The layout of a packed volume's file, for those that write and read it. Internal to engine/volume.
+// Layout of a packed volume's file, shared by its writer and reader. Internal to engine/volume.
 #pragma once
 
 #include "engine/volume/hdf5_internal.h"
@@ -9,10 +9,10 @@ namespace edgesplat::detail {
 inline constexpr const char* kPackedFormat = "edgesplat packed volume";
 inline constexpr std::uint64_t kPackedVersion = 1;
 inline constexpr std::uint64_t kPackedBins = 4096;
-/// Levels are made until no axis has more voxels.
+/// Levels are added until no axis has more voxels.
 inline constexpr int kCoarsestSide = 64;
 
-/// (x, y, z) as HDF5 counts.
+/// (x, y, z) in the axis order of HDF5.
 Hdf5Extent extent_of(const glm::ivec3& v);
 /// Bricks along each axis.
 glm::ivec3 bricks_of(const glm::ivec3& dims);
@@ -20,7 +20,7 @@ glm::ivec3 bricks_of(const glm::ivec3& dims);
 std::string level_path(int level, std::string_view name);
 /// The geometry of every level of a volume.
 std::vector<VolumeGeometry> level_geometries(const VolumeGeometry& finest);
-/// The bin of a value, as `histogram` counts.
+/// Index of the bin that contains a value, as in `histogram`.
 std::size_t bin_of(float value, double low, double scale, std::size_t bins);
 
 }  // namespace edgesplat::detail

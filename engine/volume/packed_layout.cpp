@@ -1,4 +1,4 @@
-// What writer and reader of packed volumes must agree on.
+// The layout of packed volumes, shared by writer and reader.
 #include <algorithm>
 
 #include "engine/volume/packed_internal.h"
@@ -24,7 +24,7 @@ std::vector<VolumeGeometry> level_geometries(const VolumeGeometry& finest) {
         VolumeGeometry next;
         next.dims = (levels.back().dims + 1) / 2;
         next.index_to_world_axes = finest.index_to_world_axes * factor;
-        // Where the centre of the averaged box lies.
+        // The centre of the averaged box.
         next.origin = finest.to_world(glm::dvec3((factor - 1) / 2));
         levels.push_back(next);
     }

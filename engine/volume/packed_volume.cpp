@@ -31,7 +31,8 @@ struct PackedVolume::State {
 
 namespace {
 
-/// Of each level. A box that is a little larger than a brick touches 27 of them, and the next one most of these again.
+/// Chunk cache per level. A box slightly larger than a brick touches 27 bricks, and the next box touches most of them
+/// again.
 constexpr std::size_t kCache = std::size_t{1} << 26;
 
 std::string shown(const Hdf5Extent& extent) {
@@ -79,7 +80,7 @@ VolumeGeometry read_geometry(const Hdf5File& file, const std::string& path) {
     return geometry;
 }
 
-/// Everything about the volume that is not in its samples.
+/// The volume's description without samples.
 Volume read_description(const Hdf5File& file, const std::string& path) {
     Volume volume;
     volume.name = path;
@@ -106,7 +107,7 @@ Histogram read_histogram(const Hdf5File& file, const std::string& path, const Vo
     dataset.read({0}, {kPackedBins}, SampleType::UInt64, counts.data());
     const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (total != volume.geometry.voxel_count())
-        fail("{}: /histogram: counts {} samples of {}", path, total, volume.geometry.voxel_count());
+        fail("{}: /histogram: counts {} samples, expected {}", path, total, volume.geometry.voxel_count());
     return {
         static_cast<double>(volume.min_value), static_cast<double>(volume.max_value), {counts.begin(), counts.end()}};
 }
@@ -138,7 +139,8 @@ std::vector<PackedVolume::Range> read_ranges(const Hdf5File& file, const std::st
 }
 
 void check_box(const PackedVolume& volume, int level, const glm::ivec3& low, const glm::ivec3& size) {
-    if (level < 0 || level >= volume.levels()) fail("{}: level {}: it has {}", volume.path(), level, volume.levels());
+    if (level < 0 || level >= volume.levels())
+        fail("{}: level {}: it has {} levels", volume.path(), level, volume.levels());
     const glm::ivec3& dims = volume.geometry(level).dims;
     for (int axis = 0; axis < 3; ++axis)
         if (low[axis] < 0 || size[axis] < 1 || low[axis] > dims[axis] - size[axis])
@@ -171,7 +173,8 @@ std::shared_ptr<const PackedVolume> PackedVolume::open(const std::string& path) 
         check_extent(path, name, next.samples.extent(), extent_of(geometry.dims));
         const std::string type(name_of(next.samples.type()));
         if (level == 0) state->sample_type = type;
-        if (type != state->sample_type) fail("{}: {}: {}, but level 0 is {}", path, name, type, state->sample_type);
+        if (type != state->sample_type)
+            fail("{}: {}: type {}, but level 0 has {}", path, name, type, state->sample_type);
         next.ranges = read_ranges(file, path, level, next.bricks);
         state->levels.push_back(std::move(next));
     }
@@ -182,7 +185,7 @@ int PackedVolume::levels() const {
     return static_cast<int>(state_->levels.size());
 }
 const VolumeGeometry& PackedVolume::geometry(int level) const {
-    if (level < 0 || level >= levels()) fail("{}: level {}: it has {}", state_->path, level, levels());
+    if (level < 0 || level >= levels()) fail("{}: level {}: it has {} levels", state_->path, level, levels());
     return state_->levels[static_cast<std::size_t>(level)].geometry;
 }
 const std::string& PackedVolume::path() const {
@@ -229,7 +232,7 @@ void PackedVolume::read(int level, const glm::ivec3& low, const glm::ivec3& size
     check_box(*this, level, low, size);
     const auto extent = extent_of(size);
     if (out.size() != extent[0] * extent[1] * extent[2])
-        fail("{}: room for {} samples of a box of {}", state_->path, out.size(), shown(extent));
+        fail("{}: buffer for {} samples, box of {}", state_->path, out.size(), shown(extent));
     state_->levels[static_cast<std::size_t>(level)].samples.read(extent_of(low), extent, SampleType::Float32,
                                                                  out.data());
     if (state_->slope == 1 && state_->intercept == 0) return;
@@ -252,8 +255,7 @@ Volume load_level(const Volume& volume, int level) {
     const glm::ivec3& dims = result.geometry.dims;
     const std::size_t voxels = result.geometry.voxel_count();
     if (voxels > kMaxVoxels)
-        fail("{}: level {}: {} x {} x {} voxels are too many to be held in memory", volume.name, level, dims.x, dims.y,
-             dims.z);
+        fail("{}: level {}: {} x {} x {} voxels are too many for memory", volume.name, level, dims.x, dims.y, dims.z);
     check_memory(volume.name, fmt::format("level {} with {} x {} x {} voxels", level, dims.x, dims.y, dims.z),
                  voxels * sizeof(float));
     result.in_patient = volume.in_patient;
@@ -280,7 +282,7 @@ float value_at(const Volume& volume, const glm::ivec3& voxel) {
     return value;
 }
 
-void need_samples(const Volume& volume, std::string_view what) {
+void require_samples(const Volume& volume, std::string_view what) {
     if (volume.packed)
         fail("{}: {} needs all samples in memory; packed volumes are drawn by splatting only", volume.name, what);
 }

@@ -1,4 +1,5 @@
-// Volumes larger than memory: one HDF5 file, in bricks and at several resolutions (docs/packed_volumes.md).
+// Reads packed volumes: one HDF5 file with bricks at several resolutions, for volumes larger than memory
+// (docs/packed_volumes.md).
 #pragma once
 
 #include <cstddef>
@@ -15,20 +16,20 @@
 
 namespace edgesplat {
 
-/// Voxels a packed volume may have, along an axis and in all.
+/// Maximum number of voxels of a packed volume, along an axis and in total.
 inline constexpr std::size_t kMaxPackedVoxelsPerAxis = std::size_t{1} << 20;
 inline constexpr std::size_t kMaxPackedVoxels = std::size_t{1} << 40;
-/// What `load_level` takes where all samples must be looked at once, to suggest iso-values for example.
-inline constexpr std::size_t kMaxVoxelsLookedAt = std::size_t{1} << 24;
+/// Level size for tasks that need all samples at once, e.g. suggesting iso-values.
+inline constexpr std::size_t kMaxVoxelsAnalysed = std::size_t{1} << 24;
 
-/// A volume in a file, in bricks and at several resolutions; samples are read when asked for. Level 0 is the volume
-/// itself; a voxel of level n + 1 is the mean of 2 x 2 x 2 of level n. Held in memory: the range of each brick, and up
-/// to 64 MB of the bricks last read of each level.
+/// A volume in a file, in bricks and at several resolutions; samples are read on demand. Level 0 is the original; a
+/// voxel of level n + 1 is the mean of 2 x 2 x 2 voxels of level n. Kept in memory: the value range of each brick, and
+/// up to 64 MB of recently read bricks per level.
 class PackedVolume {
   public:
     static constexpr int kBrick = 32;  ///< voxels along a side
 
-    /// Reads what the file says of itself, and no samples. Throws Error naming the file and the field that is wrong.
+    /// Reads the file's description without samples. Throws Error naming the file and the invalid field.
     static std::shared_ptr<const PackedVolume> open(const std::string& path);
 
     PackedVolume(const PackedVolume&) = delete;
@@ -41,22 +42,22 @@ class PackedVolume {
     struct Range {
         float low = 0, high = 0;
     };
-    /// Bounds of all samples in the box, from the bricks it touches: conservative, without disk access. The box lies
-    /// inside the level and has at least a voxel.
+    /// Bounds of all samples in the box, from the ranges of its bricks: conservative, without disk access. The box lies
+    /// inside the level and has at least one voxel.
     Range range(int level, const glm::ivec3& low, const glm::ivec3& size) const;
-    /// Samples of a box, x fastest, in the file's unit; the box lies inside the level, `out` has one place a voxel.
-    /// May be called from several threads, which wait for each other. Throws Error where the file is damaged.
+    /// Reads the samples of a box, x fastest, in the file's unit. The box lies inside the level; `out` has one element
+    /// per voxel. Thread-safe: calls are serialised. Throws Error if the file is damaged.
     void read(int level, const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const;
 
     const std::string& path() const;
     const std::string& sample_type() const;  ///< as stored: uint8, int16, uint16 or float32
     const std::string& source() const;       ///< name of the volume that was packed
     double mean() const;                     ///< of level 0
-    /// Largest difference from the volume that was packed; 0 unless it was quantised.
+    /// Largest difference from the original samples; 0 unless quantised.
     double quantisation_error() const;
-    /// Counts of all samples of level 0, in the bins of the file.
+    /// Counts of all level-0 samples in the file's bins.
     const Histogram& histogram() const;
-    /// What the volume says of itself, without `packed`.
+    /// The volume's description, without `packed`.
     const Volume& description() const;
 
   private:
@@ -65,20 +66,20 @@ class PackedVolume {
     std::unique_ptr<State> state_;
 };
 
-/// Opens it as a volume without samples in memory: `packed` is set, all else is as it was when it was packed.
+/// Opens the file as a volume without samples in memory: `packed` is set; everything else is as in the original.
 Volume open_packed(const std::string& path);
 
-/// A whole level of a packed volume in memory: an ordinary, finished volume with the level's geometry. Throws Error
-/// where there is no such level or it has more than `kMaxVoxels`.
+/// Loads a whole level into memory: an ordinary, finished volume with the level's geometry. Throws Error if the level
+/// does not exist or has more than `kMaxVoxels`.
 Volume load_level(const Volume& packed, int level);
 
-/// The finest level of at most so many voxels; the coarsest where none is.
+/// The finest level of at most `voxels` voxels; the coarsest level if there is none.
 int finest_level_within(const PackedVolume& packed, std::size_t voxels);
 
-/// The sample of a voxel, in the file's unit, from memory or from the file.
+/// The sample of a voxel, in the file's unit, read from memory or from the file.
 float value_at(const Volume& volume, const glm::ivec3& voxel);
 
-/// Fails for a packed volume: `what` needs all samples in memory.
-void need_samples(const Volume& volume, std::string_view what);
+/// Fails for a packed volume; the message says that `what` needs all samples in memory.
+void require_samples(const Volume& volume, std::string_view what);
 
 }  // namespace edgesplat

@@ -1,5 +1,5 @@
-// Slices at uneven heights, made even: along them a cubic through four slices, whose slopes are those of parabolas
-// through three. Quadratic courses come out exactly.
+// Resamples slices at uneven heights to even ones: cubic interpolation of four slices whose slopes come from parabolas
+// through three. Exact for quadratic functions.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,7 +9,7 @@
 namespace edgesplat::detail {
 namespace {
 
-/// Of up to four slices, beginning with `first`.
+/// Weights of up to four slices from `first` on.
 struct Weights {
     std::size_t first = 0, count = 0;
     std::array<double, 4> of{};
@@ -24,7 +24,7 @@ void add_slope(const std::vector<double>& heights, std::size_t i, double factor,
         out.of[1] += factor / gap;
         return;
     }
-    // The parabola through the slice and its neighbours; at an end, through the first or last three.
+    // The parabola through the slice and its neighbours; at an end, through the outermost three.
     const std::size_t a = std::min(i == 0 ? 0 : i - 1, last - 2);
     const double x = heights[i];
     for (std::size_t j = a; j <= a + 2; ++j) {

@@ -23,7 +23,7 @@ void check_geometry(const Volume& volume) {
 namespace detail {
 
 void VolumeChecksum::add(double value) {
-    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 and 0 are the same place
+    const auto bits = std::bit_cast<std::uint64_t>(value + 0.0);  // -0 and 0 are equal
     add(static_cast<std::uint32_t>(bits));
     add(static_cast<std::uint32_t>(bits >> 32));
 }
@@ -46,7 +46,7 @@ void check_axes(const Volume& volume) {
         if (!std::isfinite(length) || !std::isfinite(geometry.origin[axis]))
             fail("{}: the spacing, direction or origin of axis {} is not finite", volume.name, axis);
         if (!(length > 0)) fail("{}: the spacing of axis {} is 0", volume.name, axis);
-        // Beyond, the squares of lengths leave what a float holds.
+        // Outside this range, squared lengths overflow or underflow a float.
         if (length < 1e-9 || length > 1e9)
             fail("{}: the spacing of axis {} is {} mm, expected 1e-9 to 1e9; give --spacing in another unit",
                  volume.name, axis, length);

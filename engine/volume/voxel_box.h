@@ -1,4 +1,4 @@
-// A box of voxels.
+// An axis-aligned box of voxels.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 
 namespace edgesplat {
 
-/// Both ends inclusive; empty to begin with.
+/// Both ends are inclusive; empty by default.
 struct VoxelBox {
     glm::ivec3 low{0}, high{-1};
 
@@ -16,11 +16,11 @@ struct VoxelBox {
         const glm::u64vec3 n(size());
         return n.x * n.y * n.z;
     }
-    /// Of one z.
+    /// The slice of the box at one z.
     VoxelBox slice(int z) const { return {{low.x, low.y, z}, {high.x, high.y, z}}; }
     VoxelBox widened(int by) const { return {low - by, high + by}; }
 
-    /// Becomes the smallest box that holds the other one, too.
+    /// Extends this box so that it contains `other`.
     void add(const VoxelBox& other) {
         if (other.empty()) return;
         low = empty() ? other.low : glm::min(low, other.low);

@@ -1,4 +1,4 @@
-// The smallest program that renders with the library: a volume, a scene, a camera; a picture and what it cost.
+// The smallest program that renders with the library: volume, scene and camera in; picture and number of splats out.
 #include <cstdio>
 #include <exception>
 #include <memory>

@@ -1,10 +1,10 @@
-"""Edgesplat from Python: volumes in, pictures out, edges sharp.
+"""Edgesplat for Python: renders volumes to pictures with sharp edges.
 
 >>> import edgesplat
 >>> edgesplat.render("builtin:sphere", camera={"view": "oblique"}).save("sphere.png")
 
-Lengths are mm, angles degrees, colours linear light from 0 to 1. Arrays of volumes are indexed [z, y, x], pictures
-[row, column, channel]; positions, spacings and sizes are x, y, z and width, height, as on the command line.
+Lengths are in mm, angles in degrees, colours in linear light from 0 to 1. Volume arrays are indexed [z, y, x], pictures
+[row, column, channel]. Positions and spacings are x, y, z and sizes are width, height, as on the command line.
 """
 
 from ._core import DeviceLost, Error, Interrupted, SceneError, __version__, builtin_names

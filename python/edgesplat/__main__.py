@@ -1,4 +1,4 @@
-"""``python3 -m edgesplat render ...``: the program edgesplat, which comes with the package."""
+"""``python3 -m edgesplat render ...`` runs the program edgesplat that the package contains."""
 
 import os
 import sys

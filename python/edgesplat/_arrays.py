@@ -1,5 +1,5 @@
-"""Samples and geometry out of whatever holds them: NumPy arrays, and images of SimpleITK, nibabel, VTK (PyVista) and
-xarray, told by what they can do, so that none of these libraries is needed."""
+"""Extracts samples and geometry from NumPy arrays and from images of SimpleITK, nibabel, VTK (PyVista) and xarray.
+Images are recognised by their attributes, so that none of these libraries is required."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from ._core import Error
 
 @dataclass
 class Samples:
-    """`array` is indexed [z, y, x]; `axes` has the steps of a voxel along x, y and z as its rows, in mm."""
+    """`array` is indexed [z, y, x]. The rows of `axes` are the steps of a voxel along x, y and z, mm."""
 
     array: np.ndarray
     axes: np.ndarray
@@ -23,12 +23,12 @@ class Samples:
 
 
 def samples_of(source: Any, name: str | None, frame: int | None) -> Samples:
-    """What `source` says of itself. Raises Error where it is no scalar volume."""
+    """Samples and geometry of `source`. Raises Error if it is not a scalar volume."""
     if _has(source, "affine", "dataobj"):
         found = _nibabel(source, frame)
     else:
         if frame is not None:
-            raise Error(f"frame: {frame}: is for files and nibabel images; of an array expected array[{frame}]")
+            raise Error(f"frame: {frame}: only for files and nibabel images; for an array expected array[{frame}]")
         if _has(source, "GetSpacing", "GetDirection", "GetNumberOfComponentsPerPixel"):
             found = _simple_itk(source)
         elif _has(source, "GetDimensions", "GetSpacing", "GetOrigin", "GetPointData"):
@@ -48,7 +48,7 @@ def _has(source: Any, *parts: str) -> bool:
 
 def _check(array: np.ndarray, name: str) -> None:
     if name.startswith("builtin:"):
-        raise Error(f"name: {name!r}: expected another name, this one is for builtin volumes")
+        raise Error(f"name: {name!r}: reserved for builtin volumes; expected another name")
     if array.dtype.kind not in "biuf":
         raise Error(f"{name}: dtype {array.dtype}: expected integers, floats or bool")
     if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
@@ -58,7 +58,7 @@ def _check(array: np.ndarray, name: str) -> None:
 
 
 def _frame(array: np.ndarray, frame: int | None, name: str) -> np.ndarray:
-    """One frame of data whose axes after the third are frames."""
+    """One frame of an array. All axes after the third count frames."""
     if array.ndim <= 3:
         return array
     array = array.reshape(array.shape[:3] + (-1,), order="F")
@@ -66,19 +66,19 @@ def _frame(array: np.ndarray, frame: int | None, name: str) -> np.ndarray:
     if frame is None and count > 1:
         raise Error(f"{name}: 4-D data with {count} frames; choose one with frame=0..{count - 1}")
     if not 0 <= (frame or 0) < count:
-        raise Error(f"{name}: frame {frame}: there are {count}, numbered from 0")
+        raise Error(f"{name}: frame {frame}: expected 0 to {count - 1}")
     return array[..., frame or 0]
 
 
 def _simple_itk(image: Any) -> Samples:
     if image.GetNumberOfComponentsPerPixel() != 1:
-        raise Error(f"SimpleITK image: {image.GetNumberOfComponentsPerPixel()} components a voxel: expected 1")
+        raise Error(f"SimpleITK image: {image.GetNumberOfComponentsPerPixel()} components per voxel: expected 1")
     if image.GetDimension() != 3:
         raise Error(f"SimpleITK image: {image.GetDimension()} dimensions: expected 3")
     library = sys.modules[type(image).__module__.partition(".")[0]]
     direction = np.reshape(image.GetDirection(), (3, 3))
     axes = (direction * np.asarray(image.GetSpacing())).T
-    # A view that outlives the image would be of memory that is gone; the samples are copied before that.
+    # The view is only valid while the image exists; the caller copies the samples before that.
     return Samples(library.GetArrayViewFromImage(image), axes, np.asarray(image.GetOrigin()), True, "SimpleITK image")
 
 
@@ -86,7 +86,7 @@ def _nibabel(image: Any, frame: int | None) -> Samples:
     name = image.get_filename() if hasattr(image, "get_filename") else None
     name = str(name or "nibabel image")
     array = _frame(np.asanyarray(image.dataobj), frame, name)
-    # nibabel's world runs to the right and to the front; the patient's axes here run to the left and to the back.
+    # nibabel's x and y axes point right and forward; the patient axes here point left and backward.
     to_patient = np.diag([-1.0, -1.0, 1.0])
     affine = np.asarray(image.affine, dtype=float)
     return Samples(array.T, (to_patient @ affine[:3, :3]).T, to_patient @ affine[:3, 3], True, name)
@@ -98,9 +98,9 @@ def _vtk(image: Any) -> Samples:
     name = "VTK image"
     scalars = image.GetPointData().GetScalars()
     if scalars is None:
-        raise Error(f"{name}: has no point scalars; expected one value a point (set the active scalars)")
+        raise Error(f"{name}: has no point scalars; expected one value per point (set the active scalars)")
     if scalars.GetNumberOfComponents() != 1:
-        raise Error(f"{name}: {scalars.GetNumberOfComponents()} components a point: expected 1")
+        raise Error(f"{name}: {scalars.GetNumberOfComponents()} components per point: expected 1")
     to_numpy = import_module("vtkmodules.util.numpy_support").vtk_to_numpy
     array = to_numpy(scalars).reshape(tuple(image.GetDimensions())[::-1])
     direction = np.eye(3)

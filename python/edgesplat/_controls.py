@@ -1,5 +1,5 @@
-"""The controls of a view in a notebook, by ipywidgets (6 or later). It knows of sliders and buttons alone: those move
-the eye, in JupyterLab as in the classic notebook."""
+"""Controls of a view in a notebook, with ipywidgets (6 or later). Sliders and buttons move the eye; they work in
+JupyterLab and in the classic notebook."""
 
 from __future__ import annotations
 
@@ -12,23 +12,23 @@ from ._view import View
 
 
 def controls(view: View) -> ipywidgets.Widget:
-    """The picture of `view`, and beside it what moves it."""
-    return _Controls(view).whole
+    """The picture of `view` with its controls beside it."""
+    return _Controls(view).panel_with_picture
 
 
 class _Controls:
-    """Sliders show the view's numbers, and each change draws one picture: the front end sends the next one when the
-    last is done."""
+    """Sliders show the view's values. Each change draws one picture; the front end sends the next change after the last
+    picture is done."""
 
     def __init__(self, view: View) -> None:
         self.view = view
-        self.following = False
+        self.is_updating = False
         height, width = view.picture.color.shape[:2]
         size = {"width": f"{width}px", "height": f"{height}px", "flex": "0 0 auto"}
         self.image = ipywidgets.Image(format="png", value=view.png(), layout=size)
-        self.said = ipywidgets.HTML()
-        way = ipywidgets.ToggleButtons(options=[("orbit", False), ("fly", True)], value=view.flying)
-        way.observe(self.change_way, "value")
+        self.message = ipywidgets.HTML()
+        mode = ipywidgets.ToggleButtons(options=[("orbit", False), ("fly", True)], value=view.flying)
+        mode.observe(self.set_mode, "value")
         self.sliders = {
             name: self.slider(name, getattr(view, name), low, high, lambda value, name=name: setattr(view, name, value))
             for name, low, high in (
@@ -48,9 +48,10 @@ class _Controls:
         home = ipywidgets.Button(description="first view", icon="home")
         first = view.camera
         home.on_click(lambda _: self.draw(lambda: setattr(view, "camera", first)))
-        panel = [way, *self.sliders.values(), self.pad(), self.step, *surfaces, divider, against, home, self.said]
-        self.whole = ipywidgets.HBox([self.image, ipywidgets.VBox(panel)])
-        self.tell()
+        sliders, buttons = self.sliders.values(), self.step_buttons()
+        panel = [mode, *sliders, buttons, self.step, *surfaces, divider, against, home, self.message]
+        self.panel_with_picture = ipywidgets.HBox([self.image, ipywidgets.VBox(panel)])
+        self.show_state()
 
     def slider(self, name: str, value: float, low: float, high: float, act: Callable[[float], None]) -> Any:
         slider = ipywidgets.FloatSlider(description=name, value=value, min=low, max=high, step=(high - low) / 1000)
@@ -66,46 +67,49 @@ class _Controls:
         volume = self.view.volume
         return self.slider(f"iso {place + 1}", self.view.iso_values[place], volume.min, volume.max, act)
 
-    def pad(self) -> Any:
-        """Buttons that move the eye by a step."""
+    def step_buttons(self) -> Any:
+        """Buttons that move the eye by one step."""
         rows = (
             (("left", "arrow-left", {"right": -1}), ("right", "arrow-right", {"right": 1})),
             (("up", "arrow-up", {"up": 1}), ("down", "arrow-down", {"up": -1})),
             (("forward", "plus", {"forward": 1}), ("back", "minus", {"forward": -1})),
         )
-        return ipywidgets.VBox([ipywidgets.HBox([self.mover(*button) for button in row]) for row in rows])
+        return ipywidgets.VBox([ipywidgets.HBox([self.step_button(*button) for button in row]) for row in rows])
 
-    def mover(self, name: str, icon: str, way: dict[str, int]) -> Any:
+    def step_button(self, name: str, icon: str, direction: dict[str, int]) -> Any:
         button = ipywidgets.Button(description=name, icon=icon)
         button.on_click(
-            lambda _: self.draw(lambda: self.view.move(**{axis: sign * self.step.value for axis, sign in way.items()}))
+            lambda _: self.draw(
+                lambda: self.view.move(**{axis: sign * self.step.value for axis, sign in direction.items()})
+            )
         )
         return button
 
-    def change_way(self, change: Any) -> None:
+    def set_mode(self, change: Any) -> None:
         self.view.flying = change["new"]
 
     def draw(self, act: Callable[[], None]) -> None:
-        """Does what a control asks for, and shows what came of it, or why it cannot be."""
-        if self.following:
+        """Executes a control's action and shows the new picture, or the error."""
+        if self.is_updating:
             return
         try:
             act()
             self.image.value = self.view.png()
         except Error as error:
-            self.say(str(error))
+            self.show_message(str(error))
         else:
-            self.tell()
+            self.show_state()
 
-    def tell(self) -> None:
-        self.following = True
+    def show_state(self) -> None:
+        self.is_updating = True
         for name, slider in self.sliders.items():
             slider.value = min(max(getattr(self.view, name), slider.min), slider.max)
-        self.following = False
+        self.is_updating = False
         statistics = self.view.picture.statistics
         eye = ", ".join(f"{v:.4g}" for v in self.view.eye)
-        self.say(f"eye {eye} mm; {statistics.frame_ms:.0f} ms" if statistics.frame_ms is not None else f"eye {eye} mm")
+        time = f"; {statistics.frame_ms:.0f} ms" if statistics.frame_ms is not None else ""
+        self.show_message(f"eye {eye} mm{time}")
 
-    def say(self, text: str) -> None:
+    def show_message(self, text: str) -> None:
         escaped = text.replace("&", "&amp;").replace("<", "&lt;")
-        self.said.value = f'<div style="max-width: 20em; line-height: 1.3">{escaped}</div>'
+        self.message.value = f'<div style="max-width: 20em; line-height: 1.3">{escaped}</div>'

@@ -1,4 +1,4 @@
-"""Renderers, and the pictures they make."""
+"""Renderers and their pictures."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from ._volume import PathLike, Volume
 
 @dataclass(frozen=True)
 class Device:
-    """A Vulkan device of this machine; it can be used where `rejections` is empty."""
+    """A Vulkan device of this machine. It is usable if `rejections` is empty."""
 
     index: int
     name: str
@@ -32,13 +32,13 @@ class Device:
 
 
 def list_devices() -> list[Device]:
-    """Every Vulkan device, best first."""
+    """All Vulkan devices, the best one first."""
     return [Device(**device) for device in _core.list_devices()]
 
 
 @dataclass(frozen=True)
 class Statistics:
-    """What a picture did and cost. None: the renderer has no such figure. `everything` is what ``--json`` writes."""
+    """Counts and times of a picture. None: not measured by this renderer. `everything`: the content of ``--json``."""
 
     setup_ms: float | None = None
     frame_ms: float | None = None
@@ -63,23 +63,23 @@ class Statistics:
 
 
 class Picture:
-    """A picture: arrays, statistics, and a figure in notebooks. Arrays are read-only and share the picture's memory;
-    rows run from the top."""
+    """A picture with its arrays and statistics; notebooks display it. Arrays are read-only and share the picture's
+    memory; row 0 is the top row."""
 
     def __init__(self, held: _core.Picture, time: float = 0.0) -> None:
         self._core = held
         self.time = time
-        """Seconds from the movie's beginning; 0 for single pictures."""
+        """Time since the start of the movie, s; 0 for single pictures."""
 
     @property
     def color(self) -> np.ndarray:
-        """float32, H x W x 4: red, green, blue in linear light with the background blended in, and the volume's own
+        """float32, H x W x 4: red, green, blue in linear light, blended with the background, and the volume's
         opacity."""
         return self._core.color
 
     @property
     def plain(self) -> np.ndarray | None:
-        """The same by conventional splatting, where ``output.compare_plain`` asked for it."""
+        """The same by conventional splatting; None unless ``output.compare_plain`` is set."""
         return self._core.plain
 
     @property
@@ -89,53 +89,53 @@ class Picture:
 
     @property
     def depth(self) -> np.ndarray | None:
-        """float32, H x W: mean distance along the view axis, mm; 0 where nothing is hit."""
+        """float32, H x W: mean depth along the view axis, mm; 0 in empty pixels."""
         return self._core.depth
 
     @property
     def normal(self) -> np.ndarray | None:
-        """float32, H x W x 3: mean world normal of what is seen, of unit length or 0."""
+        """float32, H x W x 3: mean world normal of the visible splats, of unit length or 0."""
         return self._core.normal
 
     @property
     def distance(self) -> np.ndarray | None:
-        """float32, H x W: mean signed distance of the seen voxels to their edge, voxels."""
+        """float32, H x W: mean signed distance of the visible voxels to their edge, voxels."""
         return self._core.distance
 
     @property
     def camera(self) -> Camera:
-        """The camera that was used: eye, direction, up and fov."""
+        """The camera of the picture: eye, direction, up and fov."""
         eye, direction, up, fov = self._core.camera
         return Camera(eye=tuple(eye), direction=tuple(direction), up=tuple(up), fov=fov)
 
     @property
     def iso_values(self) -> list[float]:
-        """The surfaces that were drawn."""
+        """The iso-values of the drawn surfaces."""
         return self._core.iso_values
 
     @property
     def scene(self) -> Scene:
-        """The scene with nothing left open, from which the same picture is made again."""
+        """The scene with nothing left open; it reproduces the picture."""
         return Scene(self._core.scene_text)
 
     @property
     def volume(self) -> Volume:
-        """The volume that was drawn."""
+        """The drawn volume."""
         return Volume._of(self._core.volume)
 
     @property
     def statistics(self) -> Statistics:
-        """What it did and cost."""
+        """Counts and times of the picture."""
         return Statistics._of(json.loads(self._core.statistics()))
 
     def save(self, path: str | os.PathLike) -> None:
-        """Writes what ``edgesplat render -o`` writes: ``.png`` (8-bit sRGB over the background, extra outputs beside
-        it as ``.tau.exr`` and so on) or ``.exr`` (float32, linear, everything in it)."""
+        """Writes the files of ``edgesplat render -o``: ``.png`` (8-bit sRGB over the background; extra outputs beside
+        it as ``.tau.exr`` and so on) or ``.exr`` (float32, linear; extra outputs inside)."""
         self._core.save(os.fspath(path))
 
     def png(self, left: Picture | None = None, wipe: float = 0.5) -> bytes:
-        """A PNG file: 8-bit sRGB over the background. Left of `wipe`, from 0 to 1 of the width, and of a white line
-        there, it shows the picture `left`, of the same size."""
+        """A PNG file: 8-bit sRGB over the background. With `left`, a picture of the same size, it shows `left` on the
+        left of a white line at `wipe`, 0 to 1 of the width."""
         if left is None:
             return self._core.png()
         if left.color.shape != self.color.shape:
@@ -153,7 +153,7 @@ class Picture:
 
 
 class Movie:
-    """A movie's frames, drawn one by one as they are asked for: iterate over it, or index it."""
+    """The frames of a movie, each drawn on request: iterate over the movie, or index it."""
 
     def __init__(self, renderer: Renderer, held: _core.Movie) -> None:
         self._renderer = renderer
@@ -161,7 +161,7 @@ class Movie:
 
     @property
     def fps(self) -> float:
-        """Frames a second."""
+        """Frames per second."""
         return self._core.fps
 
     def __len__(self) -> int:
@@ -179,13 +179,13 @@ class Movie:
 
 
 class Renderer:
-    """Holds a Vulkan device and everything on it. Threads may share one: they draw one after another, and other Python
-    threads go on meanwhile. Ctrl-C stops a picture.
+    """Owns a Vulkan device and all its data. Threads may share a renderer: they draw one after another, while other
+    Python threads continue. Ctrl-C stops a picture.
 
-    device: a part of its name, or its number in `list_devices()`; empty: the best one.
-    memory_budget: MiB of device memory that may be held; 0: what the device has.
-    validation: every Vulkan call is checked (`validation_messages` counts).
-    check_numbers: Error where a number is not finite, naming the pass.
+    device: part of the device's name, or its number in `list_devices()`; empty: the best one.
+    memory_budget: limit of device memory, MiB; 0: all memory of the device.
+    validation: checks every Vulkan call (`validation_messages` counts the messages).
+    check_numbers: raises Error for a number that is not finite, naming the pass.
     """
 
     def __init__(
@@ -207,20 +207,20 @@ class Renderer:
 
     @property
     def held_bytes(self) -> int:
-        """Device memory held now."""
+        """Device memory in use, bytes."""
         return self._core.held_bytes()
 
     @property
     def validation_messages(self) -> int:
-        """So far; 0 without validation."""
+        """Number of validation messages so far; 0 without validation."""
         return self._core.validation_messages()
 
     def interrupt(self) -> None:
-        """From another thread: the picture that is being drawn ends with `Interrupted`. Does nothing else."""
+        """Call it from another thread: the picture that is being drawn raises `Interrupted`. Otherwise does nothing."""
         self._core.interrupt()
 
     def close(self) -> None:
-        """Gives the device back; the renderer is of no use then."""
+        """Releases the device. The renderer cannot be used afterwards."""
         self._core.close()
 
     def __enter__(self) -> Renderer:
@@ -240,21 +240,22 @@ class Renderer:
         max_error: float | None = None,
         **keys: Any,
     ) -> Picture:
-        """A picture of `source`: a Volume, anything that Volume takes, a scene file, or a Scene that names its volume.
+        """Renders `source`: a Volume, anything that Volume accepts, a scene file, or a Scene with a volume.
 
-        scene: a Scene, or anything that Scene takes.
-        camera: in place of the scene's.
-        size: width and height, pixels, 1 to 16384 each (512 x 512).
+        scene: a Scene, or anything that Scene accepts.
+        camera: replaces the scene's camera.
+        size: width and height, pixels, 1 to 16384 each (default 512 x 512).
         aovs: extra outputs: tau, depth, normal, distance.
-        max_error: RMS of full scale, (0, 1): the cheapest method that keeps it is chosen, as by ``--max-error``.
-        keys: any other keys of scenes, such as ``iso_values=[300]`` or ``effects={"fog": {"density": 0.01}}``.
+        max_error: RMS error, share of full scale, (0, 1): chooses the fastest method within it, as ``--max-error``.
+        keys: other keys of scenes, such as ``iso_values=[300]`` or ``effects={"fog": {"density": 0.01}}``.
         """
-        volume, document = _asked(source, scene, camera, size, aovs, max_error, keys)
+        volume, document = _volume_and_scene(source, scene, camera, size, aovs, max_error, keys)
         picture = Picture(self._core.draw(document, document.prepared(volume)))
         frame = picture.statistics.everything["frames"][-1]
         if frame.get("level", 0) > frame.get("wanted_level", 0):
             warnings.warn(
-                f"{picture.volume.name}: drawn at level {frame['level']}: the splats of a finer one do not fit",
+                f"{picture.volume.name}: drawn at level {frame['level']}: "
+                "the splats of a finer level do not fit into memory",
                 stacklevel=2,
             )
         return picture
@@ -270,12 +271,12 @@ class Renderer:
         max_error: float | None = None,
         **keys: Any,
     ) -> Movie:
-        """The frames that ``edgesplat movie`` would make, drawn as they are asked for.
+        """The frames of ``edgesplat movie``, each drawn on request.
 
-        seconds: how long; None: until the camera's way and all animated numbers end.
-        keys: as for `render`; the way is ``movie={"orbit": {"degrees": 360, "seconds": 6}}`` or another of a scene's.
+        seconds: duration; None: until the camera path and all animations end.
+        keys: as for `render`. The camera path is a key, such as ``movie={"orbit": {"degrees": 360, "seconds": 6}}``.
         """
-        volume, document = _asked(source, scene, camera, size, None, max_error, keys)
+        volume, document = _volume_and_scene(source, scene, camera, size, None, max_error, keys)
         return Movie(self, self._core.movie(document, document.prepared(volume), seconds))
 
 
@@ -293,19 +294,19 @@ class Renderer:
         orbit: int = 36,
         **keys: Any,
     ) -> dict[str, Any]:
-        """Measures what each step of accuracy costs, as ``edgesplat accuracy`` does, writes its report, and gives what is in
-        report.json. Stopped by Ctrl-C, the same call goes on from the measurements that are in the folder.
+        """Measures error and time of each accuracy setting, as ``edgesplat accuracy`` does, writes its report, and
+        returns the content of report.json. After Ctrl-C, the same call continues from the measurements in the folder.
 
-        report: the folder of index.html, report.json and steps.csv.
-        size: pixels of the pictures that are measured.
-        knobs: only the steps of these, and no combinations; empty: all.
-        cameras: of far, near, grazing, inside; empty: all there are.
-        tolerance: largest error of a pixel of the references, [1e-7, .01].
-        repeats: rounds in which times are taken.
-        orbit: frame pairs, one degree apart, for popping; 0: none.
-        keys: as for `render`; of ``quality`` the steps are taken from there.
+        report: folder for index.html, report.json and steps.csv.
+        size: size of the measured pictures, pixels.
+        knobs: names of the settings to measure, without combinations; empty: all.
+        cameras: some of far, near, grazing, inside; empty: all.
+        tolerance: largest error of a pixel of the reference pictures, [1e-7, .01]; full scale is 1.
+        repeats: number of timing rounds, [1, 1000].
+        orbit: number of frame pairs, one degree apart, that measure popping, [0, 3600]; 0: none.
+        keys: as for `render`; keys of ``quality`` are the base from which each setting is varied.
         """
-        volume, document = _asked(source, scene, None, None, None, None, keys)
+        volume, document = _volume_and_scene(source, scene, None, None, None, None, keys)
         if len(size) != 2 or not all(1 <= n <= 16384 for n in size):
             raise Error(f"size: {tuple(size)}: expected width and height, 1 to 16384 pixels each")
         for name, number, low, high in (
@@ -322,7 +323,7 @@ class Renderer:
         return json.loads(text)
 
 
-def _asked(
+def _volume_and_scene(
     source: Any,
     scene: Any,
     camera: Any,
@@ -331,12 +332,12 @@ def _asked(
     max_error: Any,
     keys: Mapping[str, Any],
 ) -> tuple[_core.Volume, _core.Document]:
-    """The volume and the scene that a call means."""
+    """The volume and the scene of a call."""
     if isinstance(source, Mapping) or isinstance(source, PathLike) and os.fspath(source).endswith(".toml"):
         source = Scene(source)
     if isinstance(source, Scene):
         if scene is not None:
-            raise Error("scene: is given twice; expected a volume before it, or one scene that names its volume")
+            raise Error("scene: is given twice; expected a volume and a scene, or one scene with a volume")
         source, scene = None, source
     document = Scene(scene, **keys)
     if camera is not None:
@@ -371,15 +372,15 @@ def _default_renderer() -> Renderer:
 
 
 def render(source: Any = None, scene: Any = None, **options: Any) -> Picture:
-    """`Renderer.render` on the best device of this machine, which is kept for the calls to come."""
+    """`Renderer.render` on the best device of this machine. Later calls use the same renderer."""
     return _default_renderer().render(source, scene, **options)
 
 
 def movie(source: Any = None, scene: Any = None, **options: Any) -> Movie:
-    """`Renderer.movie` on the best device of this machine, which is kept for the calls to come."""
+    """`Renderer.movie` on the best device of this machine. Later calls use the same renderer."""
     return _default_renderer().movie(source, scene, **options)
 
 
 def accuracy(source: Any = None, scene: Any = None, **options: Any) -> dict[str, Any]:
-    """`Renderer.accuracy` on the best device of this machine, which is kept for the calls to come."""
+    """`Renderer.accuracy` on the best device of this machine. Later calls use the same renderer."""
     return _default_renderer().accuracy(source, scene, **options)

@@ -1,4 +1,4 @@
-"""Scenes by the keys of scene files, and cameras."""
+"""Scenes, with the keys of scene files, and cameras."""
 
 from __future__ import annotations
 
@@ -16,11 +16,11 @@ from ._volume import Volume
 
 @dataclass(frozen=True)
 class Camera:
-    """Where the picture is seen from: the table ``camera`` of a scene, with None for what is left open.
+    """A camera: the table ``camera`` of a scene. None leaves a value open.
 
-    A named view (``view="oblique"``), or an eye with a target or a direction, or a direction alone, which frames the
-    volume. Positions are world mm, or voxel indices x, y, z with ``voxel=True``; `fov` is the full vertical angle in
-    degrees.
+    Give a named view (``view="oblique"``), an eye with a target or a direction, or a direction alone, which frames the
+    volume. Positions are world mm, or voxel indices x, y, z with ``voxel=True``. `fov` is the full vertical field of
+    view, degrees.
     """
 
     view: str | None = None
@@ -34,7 +34,7 @@ class Camera:
 
 @dataclass(frozen=True)
 class Key:
-    """A key of scenes: what it means, what is expected, and what holds where it is not given."""
+    """A key of scenes: its meaning, the expected values, and the default."""
 
     path: str
     help: str
@@ -43,12 +43,12 @@ class Key:
 
 
 def scene_keys() -> list[Key]:
-    """Everything that a scene can say, as ``edgesplat scene keys`` prints it."""
+    """All keys of scenes, as ``edgesplat scene keys`` prints them."""
     return [Key(**key) for key in _core.scene_keys()]
 
 
 def _toml(value: Any, path: str) -> str:
-    """A value as TOML spells it."""
+    """A value as TOML text."""
     if isinstance(value, np.generic) or isinstance(value, np.ndarray):
         value = value.tolist()
     if isinstance(value, bool):
@@ -67,7 +67,7 @@ def _toml(value: Any, path: str) -> str:
 
 
 def _assignments(content: Mapping[str, Any], before: str = "") -> Iterator[tuple[str, Any]]:
-    """Keys with their values; dicts are opened as far as scenes have groups of keys."""
+    """Pairs of key path and value. A dict is expanded if its path is a group of keys or a table."""
     for name, value in content.items():
         path = f"{before}{name}"
         if value is None:
@@ -83,14 +83,15 @@ def _assignments(content: Mapping[str, Any], before: str = "") -> Iterator[tuple
 
 
 class Scene:
-    """What is to be seen, from where, how accurately, and which outputs: everything that a scene file can say.
+    """A scene: surfaces, camera, effects, accuracy and outputs, with the same keys as a scene file.
 
-    source: a dict of keys (nested, or with dots: ``{"effects.fog.density": 0.01}``), a scene file's path (a text that
-        ends in ``.toml``, or a Path), TOML text, or another Scene, which is copied.
-    keys: the same as keywords, on top: ``Scene(iso_values=[300], camera={"view": "back"})``. None leaves a key as it is.
+    source: a dict of keys (nested, or with dots: ``{"effects.fog.density": 0.01}``), the path of a scene file (a text
+        that ends in ``.toml``, or a Path), TOML text, or another Scene, which is copied.
+    keys: keys as keywords, which override `source`: ``Scene(iso_values=[300], camera={"view": "back"})``. None leaves a
+        key unchanged.
 
-    `scene_keys()` lists the keys with units. What is left open is chosen from the volume when a picture is made.
-    Raises Error (SceneError for files and texts) naming the key, the value and what was expected.
+    `scene_keys()` lists the keys with units. Values that are left open are chosen from the volume when a picture is
+    drawn. Raises Error (SceneError for files and texts) naming the key, the value and the expected form.
     """
 
     def __init__(self, source: Mapping[str, Any] | str | os.PathLike | Scene | None = None, /, **keys: Any) -> None:
@@ -108,32 +109,32 @@ class Scene:
         self.update(keys)
 
     def update(self, content: Mapping[str, Any] | None = None, /, **keys: Any) -> None:
-        """Sets keys, all of them or, where one is wrong, none."""
+        """Sets keys. If one of them is invalid, none is set."""
         changed = self._core.copy()
-        # A row of the ladder first, whose single steps the other keys change.
+        # The preset comes first, because the other keys override its settings.
         wanted = sorted(_assignments({**(content or {}), **keys}), key=lambda one: one[0] != "quality.preset")
         for path, value in wanted:
             changed.set(f"{path}={_toml(value, path)}")
         self._core = changed
 
     def __getitem__(self, key: str) -> Any:
-        """What stands at a key such as ``"effects.fog.density"`` or ``"lights[0].color"``; None: it is left open. Of
-        an effect's table whether it is there, of a list of tables how many there are."""
+        """The value of a key such as ``"effects.fog.density"`` or ``"lights[0].color"``; None: left open. For an
+        effect's table: whether it exists. For a list of tables: their number."""
         return self._core.get(key)
 
     def __setitem__(self, key: str, value: Any) -> None:
         self.update({key: value})
 
     def text(self, comments: bool = False) -> str:
-        """As TOML; with `comments` every key, explained."""
+        """The scene as TOML; with `comments` every key, explained."""
         return self._core.text(comments)
 
     def problems(self) -> list[str]:
-        """What is wrong beyond single keys, one line each, as far as it can be told without reading the volume."""
+        """Errors that concern several keys, one line each, as far as they show without reading the volume."""
         return [f"{path}: {text}" for path, text in self._core.problems()]
 
     def load_volume(self) -> Volume:
-        """Reads the volume that ``volume.path`` names, looked for beside the scene file and in EDGESPLAT_VOLUMES."""
+        """Reads the volume ``volume.path``, searched beside the scene file and in EDGESPLAT_VOLUMES."""
         volume = Volume._of(self._core.load())
         volume._warn()
         return volume

@@ -1,4 +1,4 @@
-"""Volumes: samples, and where they lie in the world."""
+"""Volumes: samples and their geometry."""
 
 from __future__ import annotations
 
@@ -33,21 +33,21 @@ def _triple(vector: Any) -> Triple:
 
 
 def _axes(axes: np.ndarray, direction: Any, lengths: np.ndarray | None) -> list[Triple]:
-    """The steps of a voxel along x, y, z, with another direction or other lengths where these are given."""
+    """Steps of a voxel along x, y, z; `direction` and `lengths` replace their directions and lengths unless None."""
     if direction is not None:
         matrix = np.asarray(direction, dtype=float)
         if matrix.shape != (3, 3):
             raise Error(f"direction: shape {matrix.shape}: expected 3 x 3, columns for x, y, z")
         axes = matrix.T * np.linalg.norm(axes, axis=1)[:, None]
     if lengths is not None:
-        with np.errstate(all="ignore"):  # an axis of no length is refused with the volume
+        with np.errstate(all="ignore"):  # an axis of length 0 is refused later, with the volume
             axes = axes / np.linalg.norm(axes, axis=1)[:, None] * lengths[:, None]
     return [_triple(axis) for axis in axes]
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A measured number, and how far from it the true one may lie, either way."""
+    """A measured value and its uncertainty (+-)."""
 
     value: float
     uncertainty: float
@@ -58,31 +58,31 @@ class Quantity:
 
 @dataclass(frozen=True)
 class Extents:
-    """What `Volume.measure` found."""
+    """Result of `Volume.measure`."""
 
     volumes: tuple[Quantity, ...]
-    """mm^3 of each material: below the first iso-value, between it and the next, ..., from the last one up."""
+    """Volume of each material, mm^3: below the first iso-value, ..., from the last iso-value up."""
     surfaces: tuple[Quantity, ...]
-    """mm^2 of each iso-value's surface."""
+    """Area of each iso-surface, mm^2."""
 
 
 class Volume:
-    """A scalar volume, which never changes.
+    """A scalar volume. It is immutable.
 
-    source: a file, folder, pattern of slices or ``"builtin:NAME"``, as the program reads them; or samples: anything
-        that NumPy takes as an array of three axes **z, y, x** (any strides and byte order; integers, floats or bool;
-        kept as float32), or an image of SimpleITK, nibabel (its right-anterior world is turned to left-posterior), VTK
-        or PyVista, or an xarray.DataArray, whose own geometry is taken.
-    spacing: three lengths above 0, mm, along **x, y, z**; given, it replaces the source's.
+    source: a file, folder, pattern of slices or ``"builtin:NAME"``, as the program reads them. Or samples: anything
+        that NumPy accepts as an array with three axes **z, y, x** (any strides and byte order; integers, floats or
+        bool; stored as float32). Or an image with its own geometry: SimpleITK, nibabel (its right-anterior axes are
+        converted to left-posterior), VTK or PyVista, or an xarray.DataArray.
+    spacing: three lengths above 0, mm, along **x, y, z**; replaces the source's.
     origin: world position of voxel x = y = z = 0, mm.
     direction: 3 x 3; its **columns** are the world directions of x, y and z, as in ITK.
-    patient: whether the world's axes are the patient's (+x left, +y back, +z up).
-    name: what messages and pictures call an array.
-    component, frame, series, raw: what a file leaves open, as ``--component`` and so on; frame also of a 4-D nibabel
+    patient: whether the world axes are patient axes (+x left, +y back, +z up).
+    name: name of an array in messages and pictures.
+    component, frame, series, raw: choose data in a file, as ``--component`` and so on; `frame` also in a 4-D nibabel
         image.
 
-    Samples that are not finite are taken as the smallest one that is, with a warning.
-    Raises Error in the program's words.
+    Samples that are not finite are replaced by the smallest finite one, with a warning.
+    Raises Error with the program's messages.
     """
 
     def __init__(
@@ -107,25 +107,25 @@ class Volume:
         if isinstance(source, PathLike):
             for key, value in of_arrays.items():
                 if value is not None:
-                    raise Error(f"{key}: is for arrays; a file says it itself")
+                    raise Error(f"{key}: only for arrays; a file defines it")
             given = None if lengths is None else _triple(lengths)
             self._core = _core.Volume.load(os.fspath(source), component, frame, str(series), raw, given)
         else:
             for key, value in of_files.items():
                 if value is not None:
-                    raise Error(f"{key}: is for files, not for {type(source).__name__}")
+                    raise Error(f"{key}: only for files, not for {type(source).__name__}")
             found = samples_of(source, name, frame)
             axes = _axes(found.axes, direction, lengths)
             at = _triple(found.origin if origin is None else _vector(origin, "origin"))
             in_patient = found.patient if patient is None else bool(patient)
-            with np.errstate(over="ignore"):  # beyond float32 is infinite, of which the warning below tells
+            with np.errstate(over="ignore"):  # values beyond float32 become infinite; the warning below reports them
                 self._core = _core.Volume.from_array(found.array, axes, at, in_patient, found.name)
         self._warn()
 
     def _warn(self) -> None:
         if self._core.non_finite_count:
             warnings.warn(
-                f"{self.name}: {self._core.non_finite_count} samples are not finite and taken as {self.min}",
+                f"{self.name}: {self._core.non_finite_count} samples are not finite; they are replaced by {self.min}",
                 stacklevel=3,
             )
 
@@ -137,18 +137,18 @@ class Volume:
 
     @property
     def array(self) -> np.ndarray:
-        """The samples, float32, shape (z, y, x): the volume's own memory, read-only."""
+        """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory."""
         return self._core.array
 
     @property
     def shape(self) -> tuple[int, int, int]:
-        """Voxels along z, y, x."""
+        """Number of voxels along z, y, x."""
         z, y, x = self._core.shape
         return z, y, x
 
     @property
     def spacing(self) -> Triple:
-        """mm along x, y, z."""
+        """Voxel spacing along x, y, z, mm."""
         return _triple(self._core.spacing)
 
     @property
@@ -164,7 +164,7 @@ class Volume:
 
     @property
     def patient(self) -> bool:
-        """Whether the world's axes are the patient's."""
+        """Whether the world axes are patient axes."""
         return self._core.patient
 
     @property
@@ -179,32 +179,32 @@ class Volume:
 
     @property
     def name(self) -> str:
-        """Path, ``builtin:NAME``, or what an array was called."""
+        """Path, ``builtin:NAME``, or the name of an array."""
         return self._core.name
 
     @property
     def stored_type(self) -> str:
-        """Of the samples in the file or the array."""
+        """Type of the samples in the file or the array."""
         return self._core.stored_type
 
     @property
     def checksum(self) -> str:
-        """Of dims, geometry and samples: 16 hexadecimal digits, as ``edgesplat info`` prints them."""
+        """Checksum of dims, geometry and samples: 16 hexadecimal digits, as ``edgesplat info`` prints them."""
         return self._core.checksum
 
     @property
     def notes(self) -> list[str]:
-        """What reading had to assume, choose or correct."""
+        """Assumptions, choices and corrections made while reading."""
         return self._core.notes
 
     def suggest_iso_values(self, count: int = 4) -> list[tuple[float, float]]:
-        """Values at which surfaces are likely, with their strength relative to the strongest, which comes first."""
+        """Likely iso-values with their strengths, relative to the strongest, which comes first."""
         return self._core.suggest_iso_values(count)
 
     def measure(self, iso_values: float | Sequence[float]) -> Extents:
-        """How much there is of each material, and how large the surfaces between them are, with what each figure is
-        uncertain by: materials are divided where the cubic B-spline through the samples crosses an iso-value, as
-        ``edgesplat measure`` has them. Ctrl-C stops it."""
+        """The volume of each material and the area of each iso-surface, with uncertainties, as ``edgesplat measure``
+        measures them. Materials are separated where the cubic B-spline through the samples crosses an iso-value. Ctrl-C
+        stops the measurement."""
         values = np.atleast_1d(np.asarray(iso_values, dtype=float))
         if values.ndim != 1 or not np.all(np.isfinite(values)) or not np.all(np.diff(values) > 0) or not len(values):
             raise Error(f"iso_values: {iso_values}: expected finite numbers that ascend")
@@ -212,8 +212,8 @@ class Volume:
         return Extents(tuple(Quantity(*v) for v in volumes), tuple(Quantity(*s) for s in surfaces))
 
     def measure_labels(self) -> dict[float, Quantity]:
-        """Of a segmentation: the volume of each label's voxels, mm^3; half of those with another label beside them are
-        uncertain."""
+        """For a segmentation: the volume of each label, mm^3. The uncertainty is half the volume of the label's voxels
+        that have another label beside them."""
         return {label: Quantity(*volume) for label, _, volume in self._core.measure_labels()}
 
     def __repr__(self) -> str:

@@ -1,5 +1,5 @@
-// What the parts of the Python module share. Functions take and give plain things; what people see is written in
-// Python (edgesplat/*.py).
+// Shared declarations of the Python module. Its functions use plain types; the public interface is written in Python
+// (edgesplat/*.py).
 #pragma once
 
 #include <pybind11/numpy.h>
@@ -22,20 +22,20 @@ namespace edgesplat::python {
 namespace py = pybind11;
 using Triple = std::array<double, 3>;
 
-/// A volume that pictures, renderers and arrays may hold at once.
+/// A volume that pictures, renderers and arrays share.
 struct SharedVolume {
     std::shared_ptr<const Volume> volume;
-    VolumeSource source;  ///< how it was read; of an array its name alone
+    VolumeSource source;  ///< how it was read; for an array only its name
 };
 
-/// What of a scene's volume says how it is read, not what is done to it then.
+/// The part of `source` that says how the volume is read, without preprocessing.
 VolumeSource reading_part(const VolumeSource& source);
 
-/// Finds and reads a volume. The interpreter's lock is kept: while image libraries read, what anyone prints would be
-/// taken for theirs.
+/// Finds and reads a volume. Keeps the interpreter's lock: output that another thread prints meanwhile would be taken
+/// for messages of the image libraries.
 SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders);
 
-/// A scene, and where its volume is looked for.
+/// A scene, and the folders searched for its volume.
 struct Document {
     SceneDocument scene;
     std::vector<std::filesystem::path> folders;
@@ -48,7 +48,7 @@ inline glm::dvec3 vector(const Triple& v) {
     return {v[0], v[1], v[2]};
 }
 
-/// A read-only array over memory that `owner` keeps.
+/// A read-only array over memory that `owner` owns.
 template <typename T>
 py::array view_of(std::vector<py::ssize_t> shape, const T* data, const py::object& owner) {
     py::array_t<T> array(std::move(shape), data, owner);

@@ -1,4 +1,4 @@
-// The module edgesplat._core, and how errors come to Python.
+// The module edgesplat._core, and the translation of C++ errors to Python exceptions.
 #include "engine/reference/pixel_rows.h"
 #include "engine/renderer.h"
 #include "engine/scene/scene_file.h"
@@ -7,7 +7,7 @@
 namespace edgesplat::python {
 namespace {
 
-// Kept for the life of the process, as the interpreter keeps its own exceptions.
+// Never released, like the interpreter's own exception types.
 struct ErrorTypes {
     PyObject *error = nullptr, *scene_error = nullptr, *interrupted = nullptr, *device_lost = nullptr;
 };
@@ -50,20 +50,21 @@ void translate(std::exception_ptr pointer) {
 
 void add_errors(py::module_& module) {
     ErrorTypes& all = types();
-    all.error = make_type(module, "Error", "What was asked for is not possible; the message says what was expected.",
-                          PyExc_RuntimeError);
+    all.error =
+        make_type(module, "Error", "A request failed; the message names the field, the value and the expected form.",
+                  PyExc_RuntimeError);
     all.scene_error = make_type(module, "SceneError",
-                                "A scene file or text is wrong. `problems` holds one line for each thing.", all.error);
-    all.interrupted = make_type(module, "Interrupted", "The picture was stopped by `Renderer.interrupt`.", all.error);
+                                "A scene file or text has errors. `problems` holds one line per error.", all.error);
+    all.interrupted = make_type(module, "Interrupted", "`Renderer.interrupt` stopped the picture.", all.error);
     all.device_lost =
-        make_type(module, "DeviceLost", "The device was lost, and again when it was opened anew.", all.error);
+        make_type(module, "DeviceLost", "The device was lost, and lost again after it was reopened.", all.error);
     py::register_exception_translator(translate);
 }
 
 }  // namespace edgesplat::python
 
 PYBIND11_MODULE(_core, module) {
-    module.doc() = "The renderer under the package edgesplat; see there.";
+    module.doc() = "The C++ core of the package edgesplat.";
     module.attr("__version__") = EDGESPLAT_VERSION;
     edgesplat::python::add_errors(module);
     edgesplat::python::add_volumes(module);

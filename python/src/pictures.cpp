@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 2> kPictureExtensions{".png", ".exr"};
 
-/// From which the same picture is made again.
+/// Text of the scene that reproduces the picture.
 std::string scene_of(const Picture& self) {
     return scene_text(
         resolved(self.document, *self.volume.volume, self.scene, self.camera, self.frames.back().settings));
@@ -35,7 +35,7 @@ struct Described {
     nlohmann::ordered_json statistics;
 };
 
-/// What the program writes into a picture, and beside it (--json).
+/// Metadata and statistics (--json) of a picture, as the program writes them.
 Described described(const Picture& self) {
     const RunDescription description = description_of(self);
     Described all{picture_metadata(description), statistics(description, self.frames)};
@@ -61,7 +61,8 @@ std::string png(const Picture& self) {
     return encode_png(without_alpha(self.frames.front().result.color), metadata);
 }
 
-/// A picture with another one of its size left of a white line.
+/// A PNG file that shows the picture `left`, of the same size, to the left of a white line; `wipe`: the line's place,
+/// 0..1 of the width.
 std::string wiped_png(const Picture& self, const Picture& left, double wipe) {
     const py::gil_scoped_release release;
     Image image = without_alpha(self.frames.back().result.color);

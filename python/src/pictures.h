@@ -1,4 +1,4 @@
-// A picture with everything that it was made from.
+// A picture together with the inputs that it was rendered from.
 #pragma once
 
 #include <optional>
@@ -13,11 +13,11 @@ namespace edgesplat::python {
 
 struct Picture {
     SharedVolume volume;
-    SceneDocument document;  ///< as it was asked for
+    SceneDocument document;  ///< as requested
     Scene scene;
     Camera camera;
-    std::vector<RenderedFrame> frames;          ///< with output.compare_plain the plain one first
-    std::vector<CpuMeasurements> measurements;  ///< of renderers that need no device
+    std::vector<RenderedFrame> frames;          ///< with output.compare_plain, the plain frame comes first
+    std::vector<CpuMeasurements> measurements;  ///< of renderers on the processor
     std::optional<accuracy::ChosenSettings> choice;
     std::string device;
 };

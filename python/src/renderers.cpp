@@ -1,4 +1,4 @@
-// Renderers: the interpreter's lock is let go while they draw, and Ctrl-C stops them.
+// Renderers. They release the interpreter's lock while they draw, and Ctrl-C stops them.
 #include <atomic>
 #include <mutex>
 
@@ -19,17 +19,15 @@
 namespace edgesplat::python {
 namespace {
 
-/// The scene with the volume that is given, checked as far as can be before anything is drawn.
+/// The scene with the given volume, checked before anything is drawn.
 SceneDocument checked(const Document& document, const SharedVolume& volume) {
     SceneDocument scene = document.scene;
     const VolumeSource asked = scene.volume;
     VolumeSource reading = reading_part(asked), none;
     reading.path = none.path = volume.source.path;
     if (reading != none && reading != volume.source)
-        fail(
-            "volume: component, frame, series, raw and spacing say how a file is read, and this one is: {}; expected "
-            "them with Volume",
-            volume.source.path);
+        fail("volume: {} is already read; expected component, frame, series, raw and spacing as arguments of Volume",
+             volume.source.path);
     scene.volume = volume.source;
     scene.volume.threshold = asked.threshold;
     scene.volume.box_filter = asked.box_filter;
@@ -39,13 +37,13 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     validate(scene.quality.settings);
     std::string text;
     for (const DocumentProblem& problem : problems_of(scene, document.folders))
-        if (problem.path != "volume.path")  // of an array there is no file
+        if (problem.path != "volume.path")  // an array has no file
             text += fmt::format("{}{}: {}", text.empty() ? "" : "\n", problem.path, problem.text);
     if (!text.empty()) fail("{}", text);
     return scene;
 }
 
-/// A renderer for all threads: they draw one after another.
+/// A renderer that several threads share; they draw one after another.
 class SharedRenderer {
   public:
     SharedRenderer(const DeviceChoice& choice, double budget_mib)
@@ -53,14 +51,15 @@ class SharedRenderer {
         renderer_->set_memory_budget(ExplainOption{false, budget_mib}.budget_bytes());
     }
 
-    /// Calls `work` with the renderer, alone and without the interpreter's lock. Throws Error where it was closed.
+    /// Calls `work` with exclusive use of the renderer and without the interpreter's lock. Throws Error if it is
+    /// closed.
     template <typename Work>
     auto use(Work work) {
         return without_lock([&] {
             Signals signals;
             std::unique_lock lock(mutex_, std::defer_lock);
             while (!lock.try_lock_for(std::chrono::milliseconds(50)))
-                if (signals.ask_to_stop()) throw Interrupted();
+                if (signals.request_stop()) throw Interrupted();
             if (!renderer_) fail("the renderer is closed");
             const Drawing drawing(*this, signals);
             return work(*renderer_);
@@ -76,16 +75,16 @@ class SharedRenderer {
             renderer_.reset();
         });
     }
-    /// For work that asks itself.
+    /// For work that polls the interruption itself.
     std::function<bool()> interruption() const { return interruption_; }
 
   private:
-    /// While it lives, the renderer may be interrupted.
+    /// While this object exists, the renderer can be interrupted.
     struct Drawing {
         Drawing(SharedRenderer& shared, Signals& signals) : owner(shared) {
             owner.stop_ = false;
             owner.drawing_ = true;
-            owner.interruption_ = [&shared, &signals] { return shared.stop_ || signals.ask_to_stop(); };
+            owner.interruption_ = [&shared, &signals] { return shared.stop_ || signals.request_stop(); };
             owner.renderer_->set_interruption(owner.interruption_);
         }
         ~Drawing() {
@@ -126,7 +125,8 @@ void draw_on_device(Picture& picture, Renderer& renderer) {
     renderer.set_volume(picture.volume.volume);
     picture.choice = apply_max_error(picture.document.quality.max_error, renderer, *picture.volume.volume,
                                      picture.scene, picture.camera, output.size, settings, true);
-    if (output.compare_raycast) fail("output.compare_raycast: draw a second picture with output.renderer \"raycast\"");
+    if (output.compare_raycast)
+        fail("output.compare_raycast: true: expected false; draw a second picture with output.renderer \"raycast\"");
     if (output.compare_plain) {
         picture.frames.push_back({"plain", settings, {}});
         picture.frames.back().settings.edges = EdgeEstimator::Off;
@@ -148,8 +148,8 @@ Picture draw(SharedRenderer& self, const Document& document, const SharedVolume&
     self.use([&](Renderer& renderer) {
         const OutputChoice& output = picture.document.output;
         if (output.renderer != RendererKind::Splat)
-            need_samples(*volume.volume, fmt::format("output.renderer {}", name_of(output.renderer)));
-        if (picture.document.quality.max_error) need_samples(*volume.volume, "quality.max_error");
+            require_samples(*volume.volume, fmt::format("output.renderer {}", name_of(output.renderer)));
+        if (picture.document.quality.max_error) require_samples(*volume.volume, "quality.max_error");
         picture.scene = resolve_scene(picture.document, *volume.volume);
         picture.camera = resolve_camera(picture.document, *volume.volume, picture.scene);
         if (on_processor(output.renderer))
@@ -160,7 +160,7 @@ Picture draw(SharedRenderer& self, const Document& document, const SharedVolume&
     return picture;
 }
 
-/// A movie's frames, drawn when they are asked for.
+/// A movie; each frame is drawn on request.
 struct Movie {
     Film film;
     SharedVolume volume;
@@ -199,13 +199,13 @@ Picture frame_of(SharedRenderer& self, const Movie& movie, int frame) {
     return picture;
 }
 
-/// What `edgesplat accuracy` writes into `options.folder`, and the text of its report.json.
+/// Writes the report of `edgesplat accuracy` to `options.folder` and returns the text of its report.json.
 std::string measure_steps(SharedRenderer& self, const Document& document, const SharedVolume& volume,
                           accuracy::ReportOptions options) {
     const SceneDocument scene = checked(document, volume);
     options.base = scene.quality.settings;
     return self.use([&](Renderer& renderer) {
-        need_samples(*volume.volume, "accuracy");
+        require_samples(*volume.volume, "accuracy");
         accuracy::check_report_folder(options.folder);
         accuracy::ReportInput input;
         input.volume = volume.volume;
@@ -215,8 +215,8 @@ std::string measure_steps(SharedRenderer& self, const Document& document, const 
         input.command = "edgesplat.accuracy";
         renderer.set_volume(volume.volume);
         try {
-            const auto go_on = [stop = self.interruption()](const accuracy::Progress&) { return !stop(); };
-            const accuracy::Measured measured = measure_accuracy(renderer, input, options, go_on);
+            const auto progress = [stop = self.interruption()](const accuracy::Progress&) { return !stop(); };
+            const accuracy::Measured measured = measure_accuracy(renderer, input, options, progress);
             write_report(measured);
             return report_json(measured.report).dump();
         } catch (const accuracy::Interrupted&) {

@@ -1,5 +1,4 @@
-// Scenes by their keys: every key of a scene file, with the words that files and the command line have for what is
-// wrong.
+// Scenes: access to every key of a scene file, with the same error messages as files and the command line.
 #include "engine/error.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
@@ -8,8 +7,8 @@
 namespace edgesplat::python {
 namespace {
 
-/// What stands at a key; None where the scene leaves it open. Of a table that may be there or not, whether it is; of a
-/// list of tables, how many there are.
+/// The value of a key; None if the scene leaves it open. For an optional table: whether it exists. For a list of
+/// tables: their number.
 py::object value_at(const Document& self, const std::string& path) {
     const KeyAddress address = key_address(path);
     if (address.component) return py::cast(number_at(self.scene, path));
@@ -35,7 +34,7 @@ py::object value_at(const Document& self, const std::string& path) {
     return std::visit([](const auto& held) -> py::object { return py::cast(held); }, *value);
 }
 
-/// "table", "tables" (a list of them), "key", "group" (of keys and tables), or nothing.
+/// "table", "tables" (a list of tables), "key", "group" (of keys and tables), or "" for an unknown path.
 std::string kind_of(const std::string& path) {
     const KeyAddress address = key_address(path);
     if (const SceneTable* table = find_table(address.path)) return table->list ? "tables" : "table";
@@ -67,7 +66,7 @@ Document read(const std::string& path) {
     return {read_scene_file(path), volume_folders(std::filesystem::path(path).parent_path())};
 }
 
-/// What the scene does to a volume first: threshold, box filter, crop.
+/// The volume after the scene's preprocessing: threshold, box filter, crop.
 SharedVolume prepared(const Document& self, const SharedVolume& given) {
     VolumeSource source = self.scene.volume, plain = reading_part(source);
     plain.checksum = source.checksum;

@@ -1,4 +1,4 @@
-// Work without the interpreter's lock, which Ctrl-C stops.
+// Runs work without the interpreter's lock, and lets Ctrl-C stop it.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace edgesplat::python {
 
-/// Does `work` without the interpreter's lock. Where it was stopped by a signal, the signal's exception goes on.
+/// Runs `work` without the interpreter's lock. If a signal stopped it, rethrows the signal handler's exception.
 template <typename Work>
 auto without_lock(Work work) {
     try {
@@ -24,11 +24,11 @@ auto without_lock(Work work) {
     }
 }
 
-/// Whether signals that came in ask to stop; asked by a thread without the interpreter's lock, which is taken 50 times
-/// a second at most. Then the signal's exception is set.
+/// Checks for signals from a thread without the interpreter's lock; takes the lock at most 50 times a second.
+/// request_stop() returns true if a handler raised an exception, which is then set.
 class Signals {
   public:
-    bool ask_to_stop() {
+    bool request_stop() {
         const std::chrono::steady_clock::time_point now = std::chrono::steady_clock::now();
         if (now - last_ < std::chrono::milliseconds(20)) return false;
         last_ = now;

@@ -23,7 +23,7 @@ SharedVolume load(const std::string& path, std::optional<int> component, std::op
     return read_from(std::move(source), volume_folders({}));
 }
 
-/// What the array has along z, y and x, within the limits of files.
+/// Dimensions x, y, z of an array with axes z, y, x. Throws Error beyond the limits of files.
 glm::ivec3 dims_of(const py::array& array, const std::string& name) {
     const auto side = [&](int axis) { return static_cast<std::size_t>(array.shape(axis)); };
     for (const int axis : {0, 1, 2}) {
@@ -39,8 +39,8 @@ glm::ivec3 dims_of(const py::array& array, const std::string& name) {
     return {side(2), side(1), side(0)};
 }
 
-/// `array`: three axes, z, y, x, of numbers in any order of bytes and with any strides; `axes`: the steps of a voxel
-/// along x, y and z, mm.
+/// A volume from an array. `array`: numbers with three axes z, y, x, any byte order and strides. `axes`: steps of a
+/// voxel along x, y and z, mm.
 SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axes, const Triple& origin, bool patient,
                         const std::string& name) {
     Volume volume;
@@ -52,7 +52,7 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
         volume.geometry.index_to_world_axes[axis] = vector(axes[static_cast<std::size_t>(axis)]);
     volume.geometry.origin = vector(origin);
     volume.values.resize(volume.geometry.voxel_count());
-    // NumPy converts in one pass whatever the array is, into the memory that the volume keeps.
+    // NumPy converts any array in one pass, directly into the volume's memory.
     const py::array_t<float> target({array.shape(0), array.shape(1), array.shape(2)}, volume.values.data(), py::none());
     py::module_::import("numpy").attr("copyto")(target, array, py::arg("casting") = "unsafe");
     const py::gil_scoped_release release;
@@ -64,7 +64,7 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
 
 py::array values(const py::object& self) {
     const Volume& volume = *self.cast<const SharedVolume&>().volume;
-    need_samples(volume, "Volume.array");
+    require_samples(volume, "Volume.array");
     const glm::ivec3& dims = volume.geometry.dims;
     return view_of<float>({dims.z, dims.y, dims.x}, volume.values.data(), self);
 }
@@ -77,7 +77,7 @@ std::vector<std::pair<double, double>> suggestions(const SharedVolume& self, int
     return found;
 }
 
-using Numbers = std::pair<double, double>;  // a value, and what it is uncertain by
+using Numbers = std::pair<double, double>;  // a value and its uncertainty
 
 std::vector<Numbers> numbers(const std::vector<measure::Quantity>& quantities) {
     std::vector<Numbers> all;
@@ -86,18 +86,18 @@ std::vector<Numbers> numbers(const std::vector<measure::Quantity>& quantities) {
     return all;
 }
 
-/// Volumes of the materials, mm^3, and surfaces of the iso-values, mm^2.
+/// Volumes of the materials, mm^3, and areas of the iso-surfaces, mm^2.
 std::pair<std::vector<Numbers>, std::vector<Numbers>> measured(const SharedVolume& self,
                                                                const std::vector<double>& iso_values) {
     return without_lock([&] {
         Signals signals;
         const auto extents =
-            measure::measure_extents(*self.volume, iso_values, {}, [&](double) { return !signals.ask_to_stop(); });
+            measure::measure_extents(*self.volume, iso_values, {}, [&](double) { return !signals.request_stop(); });
         return std::pair(numbers(extents.volumes), numbers(extents.surfaces));
     });
 }
 
-/// Labels with their voxels and volumes, mm^3.
+/// Each label with its number of voxels and its volume, mm^3.
 std::vector<std::tuple<double, std::size_t, Numbers>> measured_labels(const SharedVolume& self) {
     return without_lock([&] {
         std::vector<std::tuple<double, std::size_t, Numbers>> all;
@@ -123,7 +123,7 @@ VolumeSource reading_part(const VolumeSource& source) {
 SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders) {
     source.path = find_volume(source.path, folders);
     Volume volume = load_source(source, {{}});
-    // What a picture says of its volume holds wherever the picture goes.
+    // An absolute path stays valid wherever the picture is stored.
     if (!is_builtin(source.path)) source.path = std::filesystem::absolute(source.path).string();
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
 }

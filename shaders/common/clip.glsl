@@ -1,9 +1,9 @@
-// What clip planes cut away: method.md, "Clip". The including shader declares CLIP_KEEP and CLIP_REMOVE (specialization constants:
-// without planes nothing of this is left) and CLIP_PARAMS, which holds the planes.
+// Tests against clip planes: docs/method.md, "Clip". The including shader declares the specialization constants
+// CLIP_KEEP and CLIP_REMOVE (numbers of planes; 0 compiles to nothing) and CLIP_PARAMS, which contains the planes.
 #ifndef EDGESPLAT_CLIP_GLSL
 #define EDGESPLAT_CLIP_GLSL
 
-// Whether a sphere is cut away whole.
+// Whether a whole sphere is cut away.
 bool is_cut_away(vec3 centre, float radius) {
     bool beyond = false, within = CLIP_REMOVE > 0u;
     for (uint i = 0u; i < CLIP_KEEP; ++i) beyond = beyond || dot(CLIP_PARAMS.clip_keep[i], vec4(centre, 1.0)) > radius;

@@ -1,19 +1,19 @@
-// The pieces of a ray that clip planes leave. After shaders/common/clip.glsl and footprint.glsl (Slice).
+// The pieces of a ray that clip planes keep. Include after shaders/common/clip.glsl and footprint.glsl (Slice).
 #ifndef EDGESPLAT_CLIP_RAY_GLSL
 #define EDGESPLAT_CLIP_RAY_GLSL
 
-// z counts along the ray from the point it is given. A face is the normal of the cut where the piece begins, index space,
-// towards what is cut away; 0 where the piece begins elsewhere.
+// z is measured along the ray from the given point. A face is the normal of the cut where the piece begins (index
+// space, towards the side that is cut away); 0 if the piece does not begin at a cut.
 struct Kept {
-    Slice before;  // before what `remove` takes, or all of it
+    Slice before;  // the piece before the one that `remove` cuts out; the whole ray if it cuts out none
     Slice behind;
     vec3 before_face;
     vec3 behind_face;
 };
 
-const float CLIP_PARALLEL = 1e-6;  // a ray at less than this to a plane lies on one side of it
+const float CLIP_PARALLEL = 1e-6;  // |n.u| below this: the ray is parallel to the plane
 
-// Where the ray through `place` along u, from z = `eye` on, is kept.
+// The kept pieces of the ray through `place` along u, from z = `eye` on.
 Kept kept_pieces(vec3 place, vec3 u, float eye) {
     Kept kept = Kept(Slice(eye, 1e9), Slice(1e9, 1e9), vec3(0.0), vec3(0.0));
     for (uint i = 0u; i < CLIP_KEEP; ++i) {
@@ -48,8 +48,8 @@ Kept kept_pieces(vec3 place, vec3 u, float eye) {
     return kept;
 }
 
-// Whether a point is inside a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2 and t: the
-// point's squared distance from the voxel and its coordinate along n. What a ray that enters there sees is the cut.
+// Whether a point lies in a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2:
+// squared distance from the voxel; t: coordinate along n. A ray that enters at this point shows the cut.
 bool is_in_matter(float r2, float t, float D, bool plain, FootprintParams params) {
     float reach = plain ? KERNEL_R : params.paper_reach;
     return r2 < reach * reach && (plain || t < D);

@@ -1,6 +1,6 @@
-// The material of a sample: the number of iso-values it reaches. The including shader declares the uniform block
-// `params.scene`. Their number is a constant: lavapipe compiles a shader anew, and keeps what it compiled, each time one
-// is bound whose loops end where a uniform says.
+// The material of a sample: the number of iso-values that are at most the sample. The including shader declares the
+// uniform block `params.scene`. ISO_COUNT is a constant because of lavapipe: it recompiles a shader at each bind, and
+// keeps every compiled version, if a uniform bounds one of its loops.
 layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;
 
 uint material_of(float value) {

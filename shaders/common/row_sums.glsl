@@ -1,7 +1,7 @@
-// A row of a histogram, summed by a workgroup.
+// Exclusive prefix sum of one histogram row, computed by a workgroup.
 #include "shaders/common/workgroup_sums.glsl"
 
-// Counters [first, first + count) become the sums of those before them; returns the sum of all.
+// Replaces each counter in [first, first + count) by the sum of the counters before it; returns the total.
 uint sum_row(UintsRef counters, uint first, uint count) {
     uint me = gl_LocalInvocationIndex, per_run = (count + SUMS - 1u) / SUMS;
     uint begin = first + min(me * per_run, count), end = first + min((me + 1u) * per_run, count);

@@ -1,21 +1,22 @@
-// The scalar field between voxels, in index space, samples scaled to their range. docs/method.md, pass 1.
+// The scalar field between voxels, in index space; samples are scaled to the value range. docs/method.md, pass 1.
 // The including shader declares `volume` and `coefficients` (r32f image3D) and the variable `dims`.
 #include "shaders/common/trilinear.glsl"
 
-// Along an axis: the four coefficients beside a place of the spline, and their weights in its value and slope.
+// Along one axis: the four coefficients around a point of the spline, and their weights for value and slope.
 struct SplineTaps {
-    ivec4 places;  // one beyond a border has no weight
+    ivec4 places;  // a place beyond a border has weight 0
     vec4 weights, slopes;
 };
 
-// A coefficient beyond a border goes on straight from the two before it; `cell` of n - 1.
+// A coefficient beyond a border is the linear extrapolation of the two before it. `cell`: 0 to n - 1.
 vec4 within_border(vec4 w, int cell, int n) {
     w = cell == 0 ? vec4(0.0, w.y + 2.0 * w.x, w.z - w.x, w.w) : w;
     w = cell == n - 2 ? vec4(w.x, w.y - w.w, w.z + 2.0 * w.w, 0.0) : w;
     return cell == n - 1 ? vec4(w.x - w.z, w.y + 2.0 * w.z, 0.0, w.w) : w;
 }
 
-// At p from voxel `origin`, of n. Beyond the outermost samples the spline goes on straight. Mirrors engine/volume/filters.h.
+// At `origin` + p along an axis of n voxels. Beyond the outermost samples the spline is linear. Mirrors
+// engine/volume/filters.h.
 SplineTaps spline_taps(int origin, float p, int n) {
     float held = clamp(p, float(-origin), float(n - 1 - origin)), c = floor(held), t = held - c, s = 1.0 - t;
     int cell = origin + int(c);
@@ -41,7 +42,7 @@ float bspline(vec3 p) {
     return sum;
 }
 
-// (gradient, value) of the spline, at p from voxel `origin`.
+// (gradient, value) of the spline at voxel `origin` + p.
 vec4 bspline_slope(ivec3 origin, vec3 p) {
     SplineTaps x = spline_taps(origin.x, p.x, dims.x), y = spline_taps(origin.y, p.y, dims.y), z = spline_taps(origin.z, p.z, dims.z);
     vec4 sum = vec4(0.0);
@@ -56,7 +57,7 @@ vec4 bspline_slope(ivec3 origin, vec3 p) {
     return sum;
 }
 
-// Central difference at a voxel, one-sided at the border, 0 along an axis of one voxel; value range per voxel.
+// Central difference at a voxel, one-sided at the border, 0 along an axis of one voxel. Unit: value range per voxel.
 vec3 voxel_gradient(ivec3 p) {
     ivec3 low = max(p - 1, ivec3(0)), high = min(p + 1, dims - 1);
     vec3 span = vec3(max(high - low, ivec3(1)));

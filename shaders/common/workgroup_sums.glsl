@@ -1,10 +1,10 @@
-// What the invocations of a workgroup have before one another. The including shader declares the workgroup's size, along x.
+// Prefix sums over the invocations of a workgroup. The including shader declares the workgroup size, along x only.
 #ifndef EDGESPLAT_WORKGROUP_SUMS_GLSL
 #define EDGESPLAT_WORKGROUP_SUMS_GLSL
 const uint SUMS = gl_WorkGroupSize.x;
 shared uint sums[SUMS];
 
-// The sum over the invocations before this one; sums[i] is that of the invocations up to i. Called by all of them.
+// Exclusive prefix sum of `own`; sums[i] contains the inclusive sum. All invocations must call it.
 uint sum_before(uint own) {
     uint me = gl_LocalInvocationIndex;
     sums[me] = own;

@@ -1,5 +1,6 @@
-// `if`, before what takes longer than to look whether any invocation needs it: lavapipe runs both sides of an if for all eight that
-// go side by side, but no loop that none of them enters. Elsewhere the loop ends at once, as compilers see.
+// A replacement for `if` around expensive code. lavapipe runs both sides of an `if` for all eight invocations of a
+// group, but skips a loop that none of them enters. On other drivers the loop has one iteration, and compilers see
+// that.
 #ifndef EDGESPLAT_IF_ANY_GLSL
 #define EDGESPLAT_IF_ANY_GLSL
 #include "shaders/shared/limits.h"

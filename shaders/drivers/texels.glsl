@@ -1,5 +1,6 @@
-// Buffers that shaders load as texels, which lavapipe does faster, or through their addresses, where a device has fewer texels than a
-// picture may have pixels. After the declaration of `params`; what each is for is in bindings.h.
+// Buffers that shaders read either as texels (faster on lavapipe) or through their addresses (for devices with fewer
+// texels than a picture may have pixels). Include after the declaration of `params`. bindings.h says what each buffer
+// contains.
 #ifndef EDGESPLAT_TEXELS_GLSL
 #define EDGESPLAT_TEXELS_GLSL
 layout(constant_id = SPEC_TEXELS) const uint TEXELS = 1u;
@@ -8,7 +9,8 @@ uvec4 as_texel(uint value) { return uvec4(value, 0u, 0u, 0u); }
 uvec4 as_texel(uvec2 value) { return uvec4(value, 0u, 0u); }
 vec4 as_texel(vec4 value) { return value; }
 
-// A buffer by its name, its slot and the field of FrameParams with its address: T load(uint), of what is STORED void store(uint, T), too.
+// Declares a buffer with name, slot and the FrameParams field of its address. Defines T load(uint); STORED_OF also
+// defines void store(uint, T).
 #define TEXELS_OF(T, texel, image, Ref, slot, access, name, address, load) \
     layout(binding = slot, texel) uniform access image name;               \
     T load(uint at) {                                                      \

@@ -1,6 +1,6 @@
-// Marks voxels that opaque ones hide from every side: erosion of the opaque voxels by a cube, one axis a dispatch.
-// One invocation walks one line twice: forward it counts opaque voxels since the last other one, backward likewise;
-// a voxel stays where both runs are longer than the bury distance. Outside the volume nothing is opaque.
+// Marks voxels that opaque voxels enclose on all sides: erosion of the opaque voxels by a cube, one axis per dispatch.
+// One invocation walks one line twice. Forward and backward it counts the opaque voxels since the last other voxel. A
+// voxel stays marked if both runs are longer than the bury distance. Outside the volume nothing is opaque.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

@@ -1,4 +1,4 @@
-// For every voxel that can be seen: distance and direction to the nearest edge of its own material interval.
+// For every voxel that can be visible: distance and direction to the nearest edge of its own material interval.
 // docs/method.md, pass 1; paper, section 3 (Taylor estimate).
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -20,8 +20,8 @@ ivec3 dims;
 #include "shaders/common/material.glsl"
 #include "shaders/common/volume_sampling.glsl"
 
-// Mean slope over the unit sphere, by the 14-point Lebedev rule: differences along the three axes alone flatten a
-// blurred edge by a different amount each and turn its normal by up to 5 degrees.
+// Mean slope over the unit sphere by the 14-point Lebedev rule. Differences along the three axes alone flatten a
+// blurred edge by a different amount per axis, and turn its normal by up to 5 degrees.
 vec3 field_gradient(ivec3 origin, vec3 p) {
     vec3 last = vec3(dims - 1), from = vec3(origin);
     vec3 centre = clamp(p, min(vec3(1.0), 0.5 * last) - from, max(last - 1.0, 0.5 * last) - from);
@@ -35,14 +35,14 @@ vec3 field_gradient(ivec3 origin, vec3 p) {
     return g;
 }
 
-// (gradient, value) at p from voxel `origin`.
+// (gradient, value) at voxel `origin` + p.
 vec4 field_slope(ivec3 origin, vec3 p) {
     if (ESTIMATOR == CUBIC) return bspline_slope(origin, p);
     return vec4(field_gradient(origin, p), trilinear(origin, p));
 }
 #include "shaders/edges/find_surfel.glsl"
 
-// One step from the voxel's own gradient (paper; Levoy 1988).
+// One step along the voxel's own gradient (paper; Levoy 1988).
 Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
     Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
     vec3 g = voxel_gradient(p);
@@ -56,7 +56,7 @@ Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
     return e;
 }
 
-// What is not seen has no edge.
+// Invisible voxels have no edge.
 bool wanted(ivec3 p) {
     bool visible = in_mask(params.scene.estimate_mask, material_of(voxel(p)));
     if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
@@ -78,7 +78,7 @@ void main() {
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR) e = extrapolate(p, value, low, high, params.scene.band);
         Beside beside = Beside(0u, 0u);
-        if (SURFELS || params.scene.seen_through != 0u) {
+        if (SURFELS || params.scene.translucent_mask != 0u) {
             vec2 around = values_around(p);
             beside = Beside(material - material_of(around.x), material_of(around.y) - material);
             if (SURFELS) e = find_surfel(p, value, low, high, around);

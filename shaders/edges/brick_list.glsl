@@ -1,5 +1,6 @@
-// The voxels of a brick of 8^3 that there is something to do for, one behind the other: then invocations side by side all have
-// one, where on a surface every other would be idle. For workgroups of 64. After shaders that declare `bool wanted(ivec3 p)`.
+// Collects the wanted voxels of an 8^3 brick into a list without gaps. Then neighbouring invocations all have work;
+// without the list, half of them would be idle at a surface. For workgroups of 64. Include after the shader has
+// declared `bool wanted(ivec3 p)`.
 #ifndef EDGESPLAT_BRICK_LIST_GLSL
 #define EDGESPLAT_BRICK_LIST_GLSL
 #extension GL_KHR_shader_subgroup_basic : require
@@ -11,7 +12,8 @@ shared uint brick_count;
 
 ivec3 brick_voxel(uint i) { return ivec3(i & 7u, i >> 3 & 7u, i >> 6); }
 
-// Of the workgroup's brick in the box from `low` up to `high`: how many there are in brick_voxels. All invocations call it.
+// Lists the wanted voxels of the workgroup's brick, within the box from `low` up to `high`, in brick_voxels; returns
+// their number. All invocations must call it.
 uint list_brick(ivec3 low, ivec3 high) {
     if (gl_LocalInvocationIndex == 0u) brick_count = 0u;
     barrier();
@@ -29,6 +31,6 @@ uint list_brick(ivec3 low, ivec3 high) {
     return brick_count;
 }
 
-// Voxel `i` of that list.
+// The position of entry `i` of that list.
 ivec3 listed_voxel(ivec3 low, uint i) { return low + BRICK_SIDE * ivec3(gl_WorkGroupID) + brick_voxel(brick_voxels[i]); }
 #endif

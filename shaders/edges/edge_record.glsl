@@ -1,13 +1,13 @@
-// Packing of a voxel's edge: the edge field (64 bits) and the splat record share it, but for D2, in whose bits the field says what
-// matter there is beside the voxel. docs/method.md, pass 1.
+// Packs a voxel's edge. The edge field (64 bits) and the splat record use the same format, except that the field stores
+// the neighbouring materials (Beside) in the bits of D2. docs/method.md, pass 1.
 #ifndef EDGE_RECORD_GLSL
 #define EDGE_RECORD_GLSL
 #include "shaders/shared/scene_params.h"
 
 struct Edge {
-    vec3 n;        // index space, unit; towards the edge
+    vec3 n;        // index space, unit; points towards the edge
     float d;       // distance along n, voxels
-    float d2;      // distance along -n to the second edge; > FACE_DISTANCE_UNIT where none is in reach
+    float d2;      // distance along -n to the second edge; > FACE_DISTANCE_UNIT if none is in reach
     uint state;    // EdgeState
 };
 
@@ -43,12 +43,12 @@ Edge unpack_edge(uint normal_code, uint code) {
     return e;
 }
 
-// How many materials below a voxel's own, and above it, there are between the samples around it.
+// Numbers of materials below and above a voxel's own that occur between the samples around it.
 struct Beside {
     uint below;
     uint above;
 };
-const uint BESIDE_BITS = 0x3ffu << 16;  // D2's
+const uint BESIDE_BITS = 0x3ffu << 16;  // the bits of D2
 uint pack_beside(Beside b) { return b.below << 16 | b.above << 20; }
 Beside unpack_beside(uint code) { return Beside(code >> 16 & 15u, code >> 20 & 15u); }
 #endif

@@ -1,5 +1,5 @@
-// Where the surface is nearest to a voxel beside it: a point of it at right angles, by Newton's method on the field.
-// docs/method.md, pass 1, faces. The including shader declares `dims`, field_slope(ivec3, vec3) and what finds voxels.
+// Finds the surfel of a voxel by Newton's method on the field: the surface point whose normal passes through the voxel.
+// docs/method.md, pass 1, faces. The including shader declares `dims`, voxel(ivec3) and field_slope(ivec3, vec3).
 
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/values_around.glsl"
@@ -9,7 +9,7 @@ Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
     bvec2 crossed = bvec2(around.x < low, around.y >= high);
     bool upper = crossed.y && (!crossed.x || high - value < value - low);
     float iso = upper ? high : low;
-    vec3 at = vec3(0.0), n = vec3(0.0);  // from the voxel
+    vec3 at = vec3(0.0), n = vec3(0.0);  // relative to the voxel
     float off = 1.0;
     bool lost = !(crossed.x || crossed.y);
     for (int i = 0; i < SURFEL_STEPS && !lost; ++i) {
@@ -18,10 +18,11 @@ Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
         lost = !(slope >= GRADIENT_MIN) || length(at) > 3.0;
         n = slope_value.xyz / max(slope, 1e-30);
         off = (slope_value.w - iso) / max(slope, 1e-30);
-        // The last step only looks.
+        // The last step only evaluates the field.
         IF_ANY(i + 1 < SURFEL_STEPS && !lost) {
             at -= clamp(off, -0.6, 0.6) * n;
-            // Slides to where the voxel sees it at right angles; the last steps lead back to the surface alone.
+            // Moves tangentially towards the point whose normal passes through the voxel. The last steps only return to
+            // the surface.
             at -= i >= 2 && i + 4 < SURFEL_STEPS ? 0.5 * (at - dot(at, n) * n) : vec3(0.0);
         }
     }
@@ -34,8 +35,8 @@ Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
     return e;
 }
 
-// Where the volume ends, half a voxel beyond its outermost samples: the side nearest to voxel p, towards it; 0 where none
-// is nearer than a voxel. Along an axis of one voxel nothing ends.
+// The outward normal of the volume's border next to voxel p; 0 if p is not an outermost voxel. The border lies half a
+// voxel beyond the outermost samples. An axis of one voxel has no border.
 vec3 border_beside(ivec3 p) {
     ivec3 at = p + params.scene.block_origin;
     bvec3 low = equal(at, ivec3(0)), high = equal(at, params.scene.volume_dims - 1);

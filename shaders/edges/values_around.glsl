@@ -1,8 +1,8 @@
-// The samples next to a voxel. The including shader declares `dims` and voxel(ivec3).
+// The range of the samples around a voxel. The including shader declares `dims` and voxel(ivec3).
 #ifndef EDGESPLAT_VALUES_AROUND_GLSL
 #define EDGESPLAT_VALUES_AROUND_GLSL
 
-// The least and the largest sample around. No surface within SURFEL_REACH passes between samples further off.
+// Minimum and maximum of the samples around p. No surface within SURFEL_REACH passes between samples further away.
 vec2 values_around(ivec3 p) {
     vec2 around = vec2(3e38, -3e38);
     for (int i = 0; i < 33; ++i) {

@@ -1,24 +1,24 @@
-// Footprints of splats that are smaller than a pixel: the kernel's, widened by the pixel's own (EWA volume splatting,
+// Footprints of splats smaller than a pixel: the kernel's footprint, widened by the pixel's own (EWA volume splatting,
 // Zwicker et al. 2002). docs/method.md, pass 5, "Antialiasing".
 #ifndef EDGESPLAT_ANTIALIAS_GLSL
 #define EDGESPLAT_ANTIALIAS_GLSL
 
-// With A the 2x2 form of a pixel's sides in voxels, across the ray: |x|^2 becomes x (1 + A)^-1 x.
+// A = the 2x2 form of the pixel's sides, in voxels, perpendicular to the ray: |x|^2 becomes x (1 + A)^-1 x.
 struct LowPass {
-    float share;      // of the widened footprint in what is drawn; 0 where pixels are finer than half a voxel
+    float share;      // of the widened footprint in the result; 0 if a pixel is smaller than half a voxel
     float of_pixels;  // det A / det(1 + A): weight of the distance in pixels, squared
     float of_voxels;  // 1 / det(1 + A): weight of the distance in voxels, squared
     float reach;      // radius of the widened support, voxels
 };
 
-// `across` and `down`: sides of a pixel at the splat, index space; u: the ray's direction.
+// `across`, `down`: sides of a pixel at the splat, index space; u: direction of the ray.
 LowPass low_pass(vec3 across, vec3 down, vec3 u, float support) {
     across -= dot(across, u) * u;
     down -= dot(down, u) * u;
     float a = dot(across, across), b = dot(down, down), c = dot(across, down);
     LowPass f;
     f.share = smoothstep(0.5, 1.0, sqrt(max(a, b)));
-    // Divided by `unit`, so that nothing overflows where pixels are large.
+    // Division by `unit` prevents overflow for large pixels.
     float unit = max(1.0, max(a, b));
     a /= unit;
     b /= unit;
@@ -31,8 +31,9 @@ LowPass low_pass(vec3 across, vec3 down, vec3 u, float support) {
     return f;
 }
 
-// What a voxel's kernel holds when it is drawn unwarped: its share of the matter between the faces around it. Summed
-// over the layers at a face this is the distance to that face; voxels beside it have some of it where they `carry` it.
+// Integral of a voxel's kernel when it is drawn unwarped: its share of the matter between the faces around it. The sum
+// over the layers at a face is the distance to that face. `carried`: voxels on the other side of the face have a share,
+// too.
 float matter_of_voxel(float d, float d2, bool carried) {
     float whole = carried ? 0.5 : 1.0;
     float near = d < whole ? max(d + 0.5, 0.0) : 1.0;

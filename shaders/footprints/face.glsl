@@ -1,5 +1,5 @@
-// Kernels that a face cuts, along a ray: the float32 mirror of footprints/face.h (same names, same equations). After
-// shaders/footprints/footprint.glsl, in the subset of GLSL that is C++ too.
+// Integrates kernels that a face cuts along a ray: the float32 mirror of footprints/face.h (same names, same
+// equations). Include after shaders/footprints/footprint.glsl. Written in the subset of GLSL that is also C++.
 #ifndef EDGESPLAT_FACE_GLSL
 #define EDGESPLAT_FACE_GLSL
 
@@ -7,9 +7,9 @@
 
 const float FACE_STRAIGHT = 1e-6;
 const float BESIDE_OTHER = 0.8;  // kBesideOther
-const float FACE_NOWHERE = 1e9;  // voxels along a ray: out of every kernel's reach
+const float FACE_NOWHERE = 1e9;  // a position along a ray, voxels: beyond every kernel's reach
 
-// c + z (b + z a).
+// c + b z + a z^2.
 struct Quadratic {
     float c;
     float b;
@@ -25,11 +25,11 @@ struct FaceRay {
     float turn;    // p . Hu
 };
 
-// Where a ray enters a kernel's matter, or leaves it.
+// The point where a ray enters or leaves a kernel's matter.
 struct FaceEnd {
     float z;
-    float side;   // -1: by the wall's other face, or beside it, else 1
-    int plane;    // by the face (0), the crease's plane (1) or the corner's (2)
+    float side;   // -1: at the wall's other face, or beside it; else 1
+    int plane;    // at the face (0), the crease's plane (1) or the corner's (2)
 };
 
 struct FaceFootprint {
@@ -59,15 +59,15 @@ FaceRoots face_roots(Quadratic phi, float level) {
     return r;
 }
 
-// The plane that touches a face where a ray meets it, or where it is next to that within the kernel's reach: n.p, n.u, and the
-// n.x from which on x is moved along n.
+// The tangent plane of a face at the point where a ray meets it, or where the ray is nearest to it within the kernel's
+// reach. p = n.p, u = n.u, level: x is moved along n if n.x exceeds it.
 struct FacePlane {
     float p;
     float u;
     float level;
 };
 
-// Of the face phi = -level; `side` -1: matter lies where phi is larger.
+// Of the face phi = -level. `side` -1: the matter lies where phi is larger.
 FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side) {
     float inverse = side * inversesqrt(max(quadratic_at(ray.slope2, z), 1e-8));
     FacePlane plane;
@@ -77,10 +77,10 @@ FacePlane face_plane(FaceRay ray, float depth, float z, float level, float side)
     return plane;
 }
 
-// Nothing is moved on the ray between two points that are both deep.
+// True if no point of the ray between the two ends is moved, because both ends are deep.
 bool is_deep(FacePlane plane, float z, float other) { return plane.p + max(z * plane.u, other * plane.u) <= plane.level; }
 
-// Where a ray enters and leaves what lies inside of planes, and by which.
+// Where a ray enters and leaves the half-spaces of the crease's planes, and through which plane.
 struct CreaseEnds {
     float low;
     float high;
@@ -109,16 +109,16 @@ CreaseEnds crease_ends(FaceCrease crease) {
     return ends;
 }
 
-// The point z of the ray as an end of its way. What lies deeper in a wall than BESIDE_OTHER of it shows the other face.
+// The end of the ray's piece at z. A point deeper in a wall than BESIDE_OTHER of its thickness shows the other face.
 FaceEnd face_end(FaceRay ray, FaceCut cut, float z, int plane) {
     return FaceEnd(z, plane == 0 && quadratic_at(ray.phi, z) < -BESIDE_OTHER * cut.thickness ? -1.0 : 1.0, plane);
 }
 
-// The kernel between two ends of a ray's way through the matter, which it enters and leaves by a wall's other face or not: cut,
-// and mapped near each by the plane that touches it there.
+// Integral of the kernel between two ends of the ray's piece in the matter. Near each end, the tangent plane there
+// moves the points. `from_behind`, `to_behind`: the ray enters or leaves through the wall's other face.
 float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, CreaseEnds ends, float from, float to, bool from_behind,
                  bool to_behind, float half_chord, Slice slice) {
-    // A ray that meets no face is nearest to it where phi turns.
+    // A ray that meets no face is nearest to it where phi has its extremum.
     bool meets = from > -FACE_NOWHERE || to < FACE_NOWHERE;
     float turn = -0.5 * ray.phi.b / min(ray.phi.a, -FACE_STRAIGHT);
     FacePlane entry = face_plane(ray, cut.depth, clamp(meets ? from : turn, -half_chord, half_chord), from_behind ? cut.thickness : 0.0,
@@ -136,8 +136,8 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
         to = max(min(to, ends.high), from);
     }
     float middle = 0.5 * (from + to);
-    // Deeper than what is moved there is nothing beyond the plain kernel's reach. Of a wall that must be so all the way: its other
-    // face may be tilted.
+    // Deeper than all moved points, nothing lies beyond the plain kernel's reach. In a wall, this must be true up to
+    // half_chord, because its other face may be tilted.
     float far = cut.thickness < FACE_NO_WALL ? half_chord : plain;
     bool deep_before = is_deep(entry, -plain, -far) && (!creased || is_deep(edge, -plain, -far));
     bool deep_behind = is_deep(leave, plain, far) && (!creased || is_deep(edge, plain, far));
@@ -158,7 +158,7 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
             float across = edge.p + z * edge.u + (held - t) * crease.facing;
             float kept = min(across, edge.level);
             beyond += kept * kept - across * across;
-            // A face bends: what is moved along two normals may seem to come nearer than the voxel.
+            // A face is curved: a point moved along two normals may seem to be nearer than the voxel.
             beyond = max(beyond, -ray.rho2);
         }
         sum += FOOTPRINT_WEIGHT[FOOTPRINT_RULE + k] * kernel_at(core - beyond * KERNEL_INVERSE_R2);
@@ -166,13 +166,13 @@ float face_piece(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Crea
     return len * sum;
 }
 
-// `creased` is a constant wherever it is handed over: without creases nothing is done for them. Without a loop that depends on the
-// splat: lavapipe would keep nothing in registers across it. The including shader declares
-// FACE_PIECES: 2, or 1 where matter is opaque; of two pieces the longer counts then.
+// `creased` is a constant at every call, so that scenes without creases compile to no code for them. No loop depends on
+// the splat, because lavapipe would keep no variable in a register across such a loop. The including shader declares
+// FACE_PIECES: 2, or 1 if all matter is opaque; then only the longer of two pieces counts.
 FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease crease, Slice slice) {
     float half_chord = sqrt(max(cut.reach2 - ray.rho2, 0.0));
     bool wall = cut.thickness < FACE_NO_WALL;
-    // Along the ray phi has a least value between its zeros, or a largest.
+    // Along the ray, phi has a minimum (opens) or a maximum between its zeros.
     bool opens = ray.phi.a >= 0.0;
     FaceRoots face = face_roots(ray.phi, 0.0);
     FaceRoots behind = face_roots(ray.phi, cut.thickness);
@@ -206,7 +206,8 @@ FaceFootprint footprint_face(FaceRay ray, FaceCut cut, bool creased, FaceCrease 
         result.integral += first && has_inner ? other : 0.0;
     }
     result.integral = has_outer && half_chord > 0.0 ? result.integral : 0.0;
-    // Where a ray but touches a face its way falls in two, and what it shows must not jump: it leaves by the last piece.
+    // If a ray only touches a face, its path splits into two pieces. The ray leaves by the last one, so that its colour
+    // is continuous.
     bool last = FACE_PIECES == 2u && first && has_inner && after > 0.0;
     to = last ? outer_high : to;
     int from_plane = 0;

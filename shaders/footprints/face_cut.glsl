@@ -1,22 +1,22 @@
-// How a face cuts a kernel, whatever the ray: the float32 mirror of face_cut() in footprints/face.h. After
-// shaders/footprints/kernel.glsl, in the subset of GLSL that is C++ too.
+// How a face cuts a kernel, independent of the ray: the float32 mirror of face_cut() in footprints/face.h. Include
+// after shaders/footprints/kernel.glsl. Written in the subset of GLSL that is also C++.
 #ifndef EDGESPLAT_FACE_CUT_GLSL
 #define EDGESPLAT_FACE_CUT_GLSL
 
-const float FACE_DEPTH = 0.8;     // kFaceDepth: of matter that hides what is behind
-const float FACE_FARTHEST = 3.0;  // kFaceFarthest: no kernel reaches further
-const float FACE_NO_WALL = 1e8;  // a face without another behind it has a larger thickness
+const float FACE_DEPTH = 0.8;     // kFaceDepth: of opaque matter
+const float FACE_FARTHEST = 3.0;  // kFaceFarthest: upper bound of every kernel's reach
+const float FACE_NO_WALL = 1e8;  // the thickness is larger if no second face lies behind the first
 
 struct FaceCut {
     float depth;
     float thickness;
     float reach2;
-    float shift;   // along the normal to the centre of a sphere that holds the kernel
+    float shift;   // along the normal to the centre of a sphere that contains the kernel
     float radius;
 };
 
 struct FaceReach {
-    float reach2;  // 0: no further than the plain kernel
+    float reach2;  // 0: no larger than the plain kernel's
     float along;
 };
 
@@ -30,7 +30,7 @@ FaceReach face_reach(float distance, float depth, float norm) {
     return r;
 }
 
-// `deepest`: as FaceCut::depth, at most.
+// `deepest`: upper bound of FaceCut::depth.
 FaceCut face_cut(float distance, float bend, float norm, float thickness, float deepest) {
     FaceCut cut;
     cut.thickness = thickness;
@@ -40,7 +40,7 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     float other = wall ? face_reach(thickness - distance, cut.depth, norm).reach2 : 0.0;
     float most = KERNEL_R + cut.depth;
     cut.reach2 = min(max(KERNEL_R2, max(face.reach2, other)), most * most);
-    // The sphere through the rim of what is moved that holds the plain kernel, too.
+    // The sphere through the rim of the moved points that also contains the plain kernel.
     float shift = max(face.reach2 - KERNEL_R2, 0.0) / (2.0 * (face.along + KERNEL_R));
     bool shifted = !wall && KERNEL_R + shift < most;
     cut.shift = shifted ? shift : 0.0;
@@ -48,19 +48,19 @@ FaceCut face_cut(float distance, float bend, float norm, float thickness, float 
     return cut;
 }
 
-// Another plane that ends the matter, at a crease, as a ray sees it; mirrors FaceRay::Crease and FaceCut::Crease.
+// Another plane that bounds the matter, at a crease, relative to a ray. Mirrors FaceRay::Crease and FaceCut::Crease.
 struct FaceCrease {
     float p;         // n . p
     float u;         // n . u
-    float distance;  // from the voxel's centre; beyond FACE_NO_WALL there is none
+    float distance;  // from the voxel's centre; larger than FACE_NO_WALL if there is no plane
     float facing;    // cosine of its normal with the face's
-    // Of a third plane, at a corner, which ends the matter, too.
+    // A third plane that bounds the matter, at a corner.
     float corner_p;
     float corner_u;
     float corner_distance;
 };
 
-// By as much as it lets the kernel reach further.
+// Enlarges the reach by the amount that the crease's plane adds.
 FaceCut with_crease(FaceCut cut, float distance) {
     float further = distance < KERNEL_R + cut.depth ? max((2.0 * distance - cut.depth) * cut.depth, 0.0) : 0.0;
     cut.reach2 = min(cut.reach2 + further, FACE_FARTHEST * FACE_FARTHEST);

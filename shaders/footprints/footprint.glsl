@@ -1,22 +1,24 @@
-// Footprints of plain kernels and of those that the paper's curve warps: the float32 mirror of footprints/ (same names, same equations).
+// Footprints of plain kernels and of kernels warped by the paper's curve: the float32 mirror of footprints/ (same
+// names, same equations).
 //
-// Declares no bindings. A ray is (rho2, pn, un): p its point nearest to the voxel centre, relative to it, u its unit direction, n the
-// unit edge normal, all in index space; rho2 = dot(p, p), pn = dot(p, n), un = dot(u, n). D: distance to the edge along n, voxels.
-// Results are integrals of K per voxel length of the ray. Every input is safe: no NaN for un = 0 or 1, rho2 = 0, pn beyond rho.
+// Declares no bindings. A ray is (rho2, pn, un) with rho2 = dot(p, p), pn = dot(p, n), un = dot(u, n), all in index
+// space. p: the ray's point nearest to the voxel centre, relative to it; u: its unit direction; n: the unit edge
+// normal. D: distance to the edge along n, voxels. Results are integrals of K along the ray, in voxels. Every input is
+// safe: no NaN for un = 0 or 1, rho2 = 0, pn beyond rho.
 //
 //   footprint_isotropic(rho2, slice)                        a splat without an edge
 //   footprint_paper_warp2d(rho2, pn, un, D, slice, params)  --warp paper with warp2d
 //   footprint_paper_procedural(rho2, pn, un, D, slice, params)  --warp paper with any other mode
 //
-// Kernels that faces cut are in face.glsl. Written in the subset of GLSL that is C++ too (tests/unit/footprints_shader_test.cpp runs
-// it): scalars, no swizzles.
+// Kernels that faces cut are in face.glsl. Written in the subset of GLSL that is also C++
+// (tests/unit/footprints_shader_test.cpp runs it): scalars, no swizzles.
 #ifndef EDGESPLAT_FOOTPRINT_GLSL
 #define EDGESPLAT_FOOTPRINT_GLSL
 #include "shaders/footprints/kernel.glsl"
 #include "shaders/shared/footprint_params.h"
 
-// Gauss-Legendre rules on [0, 1] with 4, 10 and 6 nodes, one after the other; the including shader declares NODES, one of them.
-// None has a node in the middle, where a ray goes over from the face it enters by to the one it leaves by.
+// Gauss-Legendre rules on [0, 1] with 4, 10 and 6 nodes, one after the other; the including shader selects one by
+// NODES. No rule has a node at 1/2, where a piece switches from the tangent plane of its entry to that of its exit.
 const float FOOTPRINT_NODE[20] = {
     0.0694318442, 0.3300094782, 0.6699905218, 0.9305681558, 0.0130467357, 0.0674683167, 0.1602952159, 0.2833023029, 0.4255628305,
     0.5744371695, 0.7166976971, 0.8397047841, 0.9325316833, 0.9869532643, 0.0337652429, 0.1693953068, 0.3806904070, 0.6193095930,
@@ -28,7 +30,7 @@ const float FOOTPRINT_WEIGHT[20] = {
 const int FOOTPRINT_NODES = int(NODES);
 const int FOOTPRINT_RULE = FOOTPRINT_NODES == 4 ? 0 : (FOOTPRINT_NODES == 10 ? 4 : 14);
 
-// A piece of the ray, z along u from p: a sheet's share of a footprint. All of it where footprints are not sliced.
+// A piece of the ray, z along u from p: a sheet's part of a footprint. The whole ray if footprints are not sliced.
 struct Slice {
     float low;
     float high;
@@ -36,7 +38,7 @@ struct Slice {
 
 // ---- plain footprints (footprints/kernel.h)
 
-// The whole footprint has a closed form of its own, which costs less than two chords.
+// The whole footprint has its own closed form, which is cheaper than two chords.
 bool is_whole(Slice slice) { return slice.low <= -1e8 && slice.high >= 1e8; }
 
 float footprint_isotropic(float rho2, Slice slice) {
@@ -44,19 +46,20 @@ float footprint_isotropic(float rho2, Slice slice) {
     return max(0.0, kernel_between(rho2, slice.low, slice.high));
 }
 
-// Footprint of the point nearest to the voxel, moved by delta along n as far as the ray sees it.
+// Footprint at the ray's nearest point, moved by delta times the component of n perpendicular to the ray.
 float displaced_footprint(float rho2, float pn, float un, float delta, Slice slice) {
     return footprint_isotropic(max(0.0, rho2 + delta * (2.0 * pn + (1.0 - un * un) * delta)), slice);
 }
 
 // ---- quadrature along the ray (footprints/procedural_footprint.cpp)
 
-// What the ray does near the voxel: z = along the ray from p, t = normal coordinate, turned so that t grows with z.
+// The ray near the voxel: z = distance along the ray from p; t = coordinate along n, with the sign that makes it grow
+// with z.
 struct Chord {
     float rho2;
     float pn;
     float un;
-    float low;   // z within R of the axis through the voxel along n; W never leaves that cylinder
+    float low;   // z within R of the axis through the voxel along n; the warp W never leaves that cylinder
     float high;
 };
 
@@ -98,8 +101,8 @@ PaperKnots paper_knots(float D, FootprintParams params) {
     return q;
 }
 
-// x/t of an end piece, p(x) = m - e for e in [0, m]: e = q^2 (A + B q) with q = 1 - x/t, solved by Newton's method on its square
-// root, which is nearly straight.
+// x/t of an end piece, p(x) = m - e for e in [0, m]: e = q^2 (A + B q) with q = 1 - x/t. Solved by Newton's method on
+// the square root of the equation, which is nearly linear.
 float paper_end(float e, float t, float m) {
     float A = max(3.0 * m - t, 0.0);
     float B = t - 2.0 * m;
@@ -125,7 +128,7 @@ float paper_map(float x, PaperKnots q, uint smooth_curve) {
     float last = 1.0 - (1.0 - q.t2) * paper_end(inside - q.m2, 1.0 - q.t2, 1.0 - q.m2);
     float middle = q.t1 + (q.t2 - q.t1) / 3.14159265 * acos(clamp(1.0 - 2.0 * (inside - q.m1) / (q.m2 - q.m1), -1.0, 1.0));
     float slope = (q.t2 - q.t1) / (q.m2 - q.m1);
-    // Chosen between, not branched on: lavapipe makes and keeps a shader anew for every branch that a uniform decides.
+    // Selected without a branch: lavapipe recompiles and stores a shader for every branch that depends on a uniform.
     bool smoothed = smooth_curve != 0u;
     first = mix(first, rational_quadratic(inside, 0.0, q.m1, 0.0, q.t1, 1.0, slope), smoothed);
     middle = mix(middle, q.t1 + slope * (inside - q.m1), smoothed);

@@ -1,5 +1,5 @@
-// Which layers of the table a footprint is blended from: the float32 mirror of footprints/footprint_table.h (same names, same
-// equations). After shaders/footprints/kernel.glsl, in the subset of GLSL that is C++ too.
+// Selects the table layers that a footprint is blended from: the float32 mirror of footprints/footprint_table.h (same
+// names, same equations). Include after shaders/footprints/kernel.glsl. Written in the subset of GLSL that is also C++.
 #ifndef EDGESPLAT_FOOTPRINT_LAYER_GLSL
 #define EDGESPLAT_FOOTPRINT_LAYER_GLSL
 #include "shaders/shared/footprint_table.h"
@@ -15,7 +15,7 @@ const uint TABLE_MASK = (1u << TABLE_BLEND_BITS) - 1u;
 
 float table_blend(uint code, uint bits) { return float((code >> bits) & TABLE_MASK) * (1.0 / TABLE_BLEND_STEPS); }
 
-// Of the tangent of half an angle.
+// Sine and cosine of an angle from the tangent of its half, and that tangent from the sine.
 float half_sine(float tangent) { return 2.0 * tangent / (1.0 + tangent * tangent); }
 float half_cosine(float tangent) { return (1.0 - tangent * tangent) / (1.0 + tangent * tangent); }
 float half_tangent(float sine) { return sine / (1.0 + sqrt(max(1.0 - sine * sine, 0.0))); }

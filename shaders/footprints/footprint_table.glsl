@@ -1,10 +1,11 @@
-// Footprints looked up in layers: the float32 mirror of FootprintTable::lookup in footprints/footprint_table.h. After
-// shaders/footprints/footprint_layer.glsl, in the subset of GLSL that is C++ too; table_texel(x, y, layer) is the including shader's: the
-// layer there, x and y counted in texels from the first one's centre.
+// Reads footprints from the table's layers: the float32 mirror of FootprintTable::lookup in
+// footprints/footprint_table.h. Include after shaders/footprints/footprint_layer.glsl. Written in the subset of GLSL
+// that is also C++. The including shader defines table_texel(x, y, layer): the texel's value, x and y counted in texels
+// from the centre of the first.
 #ifndef EDGESPLAT_FOOTPRINT_TABLE_GLSL
 #define EDGESPLAT_FOOTPRINT_TABLE_GLSL
 
-// The texel of x in a row, counted from the centre of the first.
+// The column of x in a row, in texels from the centre of the first.
 float footprint_column(FootprintLayer layer, float x, float y2) {
     float across = layer.cosine * sqrt(max(layer.rim2 - y2, 0.0));
     float ball = sqrt(max(KERNEL_R2 - y2, 0.0));
@@ -19,7 +20,7 @@ float footprint_column(FootprintLayer layer, float x, float y2) {
     return first + clamp((x - begin) / max(end - begin, 1e-6), 0.0, 1.0) * last;
 }
 
-// The footprint of a ray that passes x along the normal's projection, at distance^2 rho2 from the voxel.
+// The footprint of a ray at x along the projected normal; rho2: squared distance from the voxel.
 float footprint_looked_up(FootprintLayer layer, float x, float rho2) {
     float y2 = max(rho2 - x * x, 0.0);
     float u = footprint_column(layer, x, y2);

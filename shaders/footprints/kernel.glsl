@@ -1,12 +1,12 @@
-// The kernels: the float32 mirror of footprints/kernel.h. The subset of GLSL that is C++ too. The including shader declares NARROW:
-// 1 where all matter hides what is behind it and faces cut kernels.
+// The kernels: the float32 mirror of footprints/kernel.h. Written in the subset of GLSL that is also C++. The including
+// shader declares NARROW: 1 if all matter is opaque and faces cut kernels.
 #ifndef EDGESPLAT_KERNEL_GLSL
 #define EDGESPLAT_KERNEL_GLSL
 
 #define KERNEL_R (NARROW == 1u ? 1.21 : 1.6)
 #define KERNEL_R2 (NARROW == 1u ? 1.4641 : 2.56)
 #define KERNEL_INVERSE_R2 (NARROW == 1u ? 0.683013455 : 0.390625)
-// Coefficients of K and of its footprint: of the wide kernel, and of the narrow one.
+// Coefficients of K and of its footprint: first of the wide kernel, then of the narrow one.
 const float KERNEL_K[12] = {0.0173624837, -0.0404017909, 0.531403221, -0.680940898, 1.37803587, -0.611612954,
                             1.3647426, -7.69352155, 25.8377679, -41.6868634, 33.3112006, -10.4390086};
 const float KERNEL_G[12] = {0.0296319722, -0.0591020484, 0.690992887, -0.804944854, 1.50367897, -0.622885261,
@@ -15,7 +15,7 @@ const float KERNEL_G[12] = {0.0296319722, -0.0591020484, 0.690992887, -0.8049448
 
 // ---- kernel (footprints/kernel.h)
 
-// `inside`: 1 - r^2 / R^2; nothing where that is negative.
+// `inside`: 1 - r^2 / R^2; the kernel is 0 where this is negative.
 float kernel_at(float inside) {
     float w = max(0.0, inside);
     int k = KERNEL_SET;
@@ -32,7 +32,8 @@ float kernel_footprint(float rho2) {
            w * (KERNEL_G[k + 4] + w * KERNEL_G[k + 5])))));
 }
 
-// Integral of K along the line from its nearest point to z; kernel_chord in kernel.cpp has the recurrence.
+// Integral of K along the ray from its point nearest to the voxel to z. kernel_chord in kernel.cpp explains the
+// recurrence.
 float kernel_chord(float rho2, float z) {
     float w = max(0.0, 1.0 - rho2 * KERNEL_INVERSE_R2);
     float half_chord = KERNEL_R * sqrt(w);

@@ -1,12 +1,12 @@
-// How much light from everywhere reaches a splat: rays over the half space that its normal looks into, through the matter
-// of the nearest voxels. docs/method.md, 2b_occlude_ambient.
+// The share of ambient light that reaches a splat: traces rays over the half space that its normal points into, with
+// nearest-voxel lookup. docs/method.md, 2b_occlude_ambient.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/occlusion_params.h"
 
 layout(local_size_x = 64) in;
-layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // planes
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // number of planes
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -16,7 +16,7 @@ layout(binding = BIND_OCCLUSION, scalar) uniform Occlusion { OcclusionParams at;
 #include "shaders/light/surface_point.glsl"
 #include "shaders/common/transfer.glsl"
 
-const float DARK = 12.0;  // optical depth from which on 16 bits hold nothing
+const float DARK = 12.0;  // optical depth; from here on, transmittance rounds to 0 in 16 bits
 // Cosine and sine of the golden angle: successive points of Vogel's spiral (1979).
 const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
 
@@ -31,13 +31,13 @@ float extinction_at(ivec3 p) {
     return extinction;
 }
 
-// exp of minus the optical depth over `radius` mm from `start` (index space) along `u` (index units per mm).
+// Transmittance exp(-tau) over `radius` mm from `start` (index space) along `u` (index units per mm).
 float transmittance(vec3 start, vec3 u) {
     float radius = occlusion.at.radius;
-    // A little less than a whole number of voxels is that number, to every precision.
+    // The 0.01 absorbs rounding: if the radius is a whole number of voxels, `steps` is that number.
     int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
     float dl = radius / float(steps);
-    // The part of the ray within the voxels' cells, in steps.
+    // The part of the ray inside the volume's cells, in steps.
     vec3 along = mix(u, vec3(1e-9), lessThan(abs(u), vec3(1e-9))) * dl;
     vec3 low = (vec3(-0.5) - start) / along, high = (vec3(params.scene.dims) - 0.5 - start) / along;
     vec3 near = min(low, high), far = max(low, high);
@@ -65,7 +65,8 @@ void main() {
     Edge e = unpack_edge(splat.normal, splat.edge);
     uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);
     uvec3 voxel = uvec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny);
-    // Neighbours look in directions that fill one another's gaps: the additive sequence of the plastic number, 3-D.
+    // Neighbouring voxels use rotated directions that fill each other's gaps: the 3-D additive sequence of the plastic
+    // number.
     uint turn = voxel.x * 3518319155u + voxel.y * 2882110345u + voxel.z * 2360945575u;
     float phase = float(turn >> 8u) * (6.28318531 / 16777216.0);
 
@@ -81,7 +82,7 @@ void main() {
         vec2 round = vec2(cos(phase), sin(phase));
         float sum = 0.0;
         for (uint k = 0u; k < OCCLUSION_RAYS; ++k) {
-            // Equal shares of the cosine over the half space (a spiral on the disc below it), or of the sphere.
+            // Equal shares of the cosine over the half space (a spiral on the disc below it), or of the whole sphere.
             float share = (float(k) + 0.5) / float(OCCLUSION_RAYS);
             float up = sphere ? 1.0 - 2.0 * share : sqrt(1.0 - share);
             vec3 direction = frame * vec3(sqrt(1.0 - up * up) * round, up);

@@ -1,4 +1,4 @@
-// A sheet group of the light's picture -> the optical depth from the light to the far plane of each of its sheets.
+// For one sheet group of the light's picture: the optical depth from the light to the far plane of each sheet.
 // docs/method.md, 2c_sweep_light.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -17,11 +17,11 @@ void main() {
     ivec4 rect = GroupsRef(params.frame.groups).at[group].rect;
     bool touched = all(greaterThanEqual(pixel, rect.xy)) && all(lessThan(pixel, rect.zw));
     int first = int(group * params.frame.sheets_per_group);
-    // An end that differs from pixel to pixel: lavapipe makes and keeps a shader anew for loops that a uniform ends.
+    // The loop bound varies per pixel: lavapipe recompiles and stores a shader for loops that a uniform bounds.
     int count = inside ? min(int(params.frame.sheets_per_group), int(params.frame.sheet_count) - first) : 0;
     float tau = texelFetch(accumulated, pixel, 0).a;
     for (int i = 0; i < count; ++i) {
-        // Beyond the group's rectangle its sheets hold what was there before.
+        // Outside the group's rectangle its sheets were not cleared: they contain old data.
         float sheet = texelFetch(sheets, ivec3(pixel, i), 0).a;
         tau += touched ? sheet : 0.0;
         FloatsRef(params.frame.light_layers).at[((first + i) * size.y + pixel.y) * size.x + pixel.x] = tau;

@@ -1,4 +1,5 @@
-// What the sweep found -> how much of the light reaches each splat in the light's picture. docs/method.md, 2d_shadow_splats.
+// From the swept optical depths: the share of the light that reaches each splat in the light's picture. docs/method.md,
+// 2d_shadow_splats.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -9,15 +10,15 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(push_constant) uniform Push {
-    uint channel;  // 0 or 1: which half of the splat's word
+    uint channel;  // 0 or 1: the half of the splat's word to write
 };
 #define CLIP_PARAMS params.frame
 #include "shaders/light/surface_point.glsl"
 
-const float LONGEST_LIFT = 8.0;      // voxels; coarser pictures of the light may let a surface shadow itself
-const float SMALLEST_COSINE = 0.05;  // of a light that grazes
+const float LONGEST_LIFT = 8.0;      // voxels; with coarser pictures of the light a surface may shadow itself
+const float SMALLEST_COSINE = 0.05;  // lower bound, for grazing light
 
-// Optical depth from the light, at a depth in sheets: linear between the sheets' far planes.
+// Optical depth from the light at `depth`, measured in sheets: linear between the far planes of the sheets.
 float optical_depth(ivec2 pixel, float depth) {
     FloatsRef layers = FloatsRef(params.frame.light_layers);
     ivec2 size = params.frame.size;
@@ -38,7 +39,7 @@ void main() {
 
     vec3 to_light = normalize(params.frame.index_to_world * (params.frame.eye - position));
     SurfacePoint s = surface_point(e, params.frame.band, false, params.frame.normal_to_world);
-    // Of a wall only the face that the light sees can be lit.
+    // Only the face of a wall that the light sees can be lit.
     if (is_wall(e, params.frame.band) && dot(s.normal, to_light) < 0.0)
         s = surface_point(e, params.frame.band, true, params.frame.normal_to_world);
     if (CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, position, params.frame.normal_to_world);
@@ -47,12 +48,12 @@ void main() {
     float cosine = dot(s.normal, to_light);
     float depth_here = dot(params.frame.view_z, position) + params.frame.anchor_z;
     float pixel_mm = 2.0 * params.frame.tan_half_x * max(depth_here, 0.0) / size_z.x;
-    // Seen at a slant, the pixels next to this one look that much deeper below the surface.
+    // At a slant, the neighbouring pixels look deeper below the surface by this amount.
     float slant = pixel_mm * sqrt(max(1.0 - cosine * cosine, 0.0));
     float lift = min(clamp(slant + 0.5 * s.voxel, SHORTEST_LIFT * s.voxel, LONGEST_LIFT * s.voxel), s.room);
     position += s.foot + lift * s.step;
 
-    // The sheet's far plane must not lie behind the surface.
+    // The far plane that is used must not lie behind the surface.
     float ahead = s.normal == vec3(0.0) ? 0.0 : max(size_z.z - lift / max(cosine, SMALLEST_COSINE), 0.0);
     float along = dot(params.frame.view_z, position);
     float depth = (along - params.frame.sheet_zero - ahead) / params.frame.sheet_thickness;

@@ -1,5 +1,5 @@
-// How much of the ambient light reaches a splat: what 2b_occlude_ambient left. The including shader declares the push
-// block `params.frame`. `turned`: of a wall, the face on the other side.
+// The share of ambient light that reaches a splat, from 2b_occlude_ambient. The including shader declares the uniform
+// block `params.frame`. `turned`: use the other face of a wall.
 #ifndef EDGESPLAT_OCCLUSION_GLSL
 #define EDGESPLAT_OCCLUSION_GLSL
 

@@ -1,5 +1,5 @@
-// What a splat looks like from the eye: its colour, what the lights make of it, silhouette and fog. docs/method.md,
-// Shading. The including shader declares the uniform block `params.frame`.
+// The colour of a splat as seen from the eye: lighting, silhouette and fog. docs/method.md, Shading. The including
+// shader declares the uniform block `params.frame`.
 #ifndef EDGESPLAT_SHADING_GLSL
 #define EDGESPLAT_SHADING_GLSL
 #include "shaders/shared/frame_params.h"
@@ -18,13 +18,13 @@ struct Surface {
     uint number;      // of the splat
     bool has_normal;
     vec3 normal;      // world, unit
-    bool turned;      // it is that of a wall's other face
+    bool turned;      // `normal` is that of a wall's other face
     vec3 from_eye;    // world, mm
     vec3 to_eye;      // world, unit
     float depth;      // along the view axis, mm
 };
 
-// pow() of 0 is not defined everywhere.
+// pow(0, x) is not defined on every device.
 float power(float base, float exponent) { return base > 0.0 ? pow(base, exponent) : 0.0; }
 
 vec3 unit_or_zero(vec3 v) { return dot(v, v) > 0.0 ? normalize(v) : vec3(0.0); }
@@ -37,7 +37,7 @@ vec3 lit(Surface s) {
     for (uint l = 0u; l < LIGHTS; ++l) {
         vec4 place = params.frame.light_at[l];
         vec3 towards = place.xyz - place.w * s.from_eye;
-        // At the light itself every direction is as good.
+        // At the light itself, all directions are equivalent.
         bool at_light = dot(towards, towards) == 0.0;
         vec3 to_light = unit_or_zero(towards);
         float facing = at_light ? 1.0 : dot(s.normal, to_light);
@@ -57,7 +57,7 @@ vec3 shade(Surface s) {
     vec3 color = s.color;
     if (LIGHTS > 0u) color = lit(s);
     if (SILHOUETTE == 1u) {
-        // Loaded whole: lavapipe reads the last component alone wrongly.
+        // Loads the whole vector: lavapipe reads its last component alone incorrectly.
         vec4 outline = params.frame.silhouette;
         float turned = power(1.0 - abs(dot(s.normal, s.to_eye)), params.frame.silhouette_sharpness);
         float share = s.has_normal ? outline.a * turned : 0.0;

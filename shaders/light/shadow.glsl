@@ -1,4 +1,4 @@
-// How much of a light reaches a splat past what stands in its way: what 2d_shadow_splats left. The including shader declares
+// The share of a light that reaches a splat past its occluders, from 2d_shadow_splats. The including shader declares
 // the uniform block `params.frame`.
 #ifndef EDGESPLAT_SHADOW_GLSL
 #define EDGESPLAT_SHADOW_GLSL

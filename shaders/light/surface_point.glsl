@@ -1,39 +1,39 @@
-// Where light arrives at a splat: at the surface that it shows, a little outside of it, so that the surface is not in its own
-// way. docs/method.md, Light that arrives; mirrored by engine/reference/surface_point.h. The including shader declares
-// CLIP_KEEP and CLIP_REMOVE (specialization constants) and CLIP_PARAMS, which holds the planes.
+// The point where light is evaluated for a splat: on its surface, lifted a little outwards so that the surface does not
+// occlude itself. docs/method.md, Light that arrives; mirrored by engine/reference/surface_point.h. The including
+// shader declares CLIP_KEEP and CLIP_REMOVE (specialization constants) and CLIP_PARAMS, which contains the planes.
 #include "shaders/edges/edge_record.glsl"
 
-const float SHORTEST_LIFT = 1.5;  // voxels between a surface and the place that looks up from it
+const float SHORTEST_LIFT = 1.5;  // voxels between a surface and the starting point of a ray from it
 
 const float CUT_REACH = KERNEL_RADIUS;
 
 struct SurfacePoint {
     vec3 foot;     // relative to the voxel centre, index space
-    vec3 normal;   // world, unit, outwards; 0 where the splat has none
-    vec3 step;     // index space: one mm along the normal
+    vec3 normal;   // world, unit, outwards; 0 if the splat has none
+    vec3 step;     // index space: 1 mm along the normal
     float voxel;   // mm per voxel along the normal
-    float room;    // mm along the normal to where the next surface may be
+    float room;    // mm along the normal up to the next possible surface
 };
 
 bool is_wall(Edge e, float band) { return e.state >= EDGE_LOWER && e.d2 < band; }
 
-// `turned`: of a wall, the face on the other side.
+// `turned`: use the other face of a wall.
 SurfacePoint surface_point(Edge e, float band, bool turned, mat3 normal_to_world) {
     SurfacePoint s = SurfacePoint(vec3(0.0), vec3(0.0), vec3(0.0), 1.0, 0.0);
     if (e.state == EDGE_NONE) return s;
     bool wall = is_wall(e, band);
-    float side = (e.state == EDGE_UPPER) == (wall && turned) ? 1.0 : -1.0;  // of the outward normal along n
+    float side = (e.state == EDGE_UPPER) == (wall && turned) ? 1.0 : -1.0;  // sign of the outward normal relative to n
     s.normal = normalize(normal_to_world * (side * e.n));
     s.step = transpose(normal_to_world) * s.normal;
     s.voxel = 1.0 / length(s.step);
     s.room = e.state == EDGE_UPPER && !wall ? 0.5 * (e.d + e.d2) * s.voxel : 1e9;
-    // An edge further off than the kernel is wide is not in the record: such a splat shows its own place.
+    // The record does not store edges further away than the kernel's width. Such a splat uses the voxel centre.
     if (e.state >= EDGE_LOWER) s.foot = (wall && side < 0.0 ? -e.d2 : e.d) * e.n;
     return s;
 }
 
-// Where a clip plane is nearer to the voxel than the splat's own edge and cuts its kernel, the cut is the surface. `position` is
-// counted from where the planes are.
+// If a clip plane cuts the kernel and is nearer to the voxel than the splat's own edge, the cut is the surface.
+// `position`: in the coordinates of the planes.
 SurfacePoint at_cut(SurfacePoint s, Edge e, vec3 position, mat3 normal_to_world) {
     float keep = -1e9, remove = -1e9;
     vec3 keep_normal = vec3(0.0), remove_normal = vec3(0.0);

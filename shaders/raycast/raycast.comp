@@ -1,5 +1,5 @@
-// Rays through the field between the voxels: emission and absorption of the material at each place, which changes where
-// the interpolated value crosses an iso-value. docs/method.md, Ray caster.
+// Ray casting with iso-values: emission and absorption of the material at each point. The material changes where the
+// interpolated value crosses an iso-value. docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/drivers/if_any.glsl"
@@ -9,11 +9,12 @@ layout(local_size_x = 8, local_size_y = 8) in;
 layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams rays; } params;
 #include "shaders/raycast/raycast.glsl"
 
-// Where the ray crosses an iso-value between low and high, where values less the iso-value have different signs.
+// The crossing of an iso-value between low and high. f_low and f_high: value minus iso-value at both; their signs
+// differ.
 float crossing(Ray ray, float low, float high, float f_low, float f_high, float iso) {
     float a = low, b = high, c = 0.0;
     if (FILTER == FILTER_CUBIC) {
-        // Newton from the chord on, or the middle where that leads out of what is left: to 1e-3 voxel.
+        // Newton's method from the secant's zero; bisection if a step leaves the bracket. Accurate to 1e-3 voxel.
         c = low + (high - low) * f_low / (f_low - f_high);
         for (int k = 0; k < 3; ++k) {
             vec4 s = bspline_slope(ivec3(0), within_samples(at(ray, c)));
@@ -25,7 +26,7 @@ float crossing(Ray ray, float low, float high, float f_low, float f_high, float 
             c = next >= low && next <= high ? next : 0.5 * (low + high);
         }
     } else {
-        // Regula falsi, Illinois: the end that stays counts half.
+        // Regula falsi, Illinois variant: halves the value at the end that does not move.
         for (int k = 0; k < 2; ++k) {
             c = low + (high - low) * f_low / (f_low - f_high);
             float f = field(at(ray, c)) - iso;
@@ -53,19 +54,20 @@ void main() {
     IF_ANY(count > 0) previous = field(at(ray, ray.first));
     uint from = material_of(previous), to = from;
     bool was_visible = is_visible(from);
-    float light = 1.0, lit_at = -1e9, stale = 0.0;  // where light was found last, and what was drawn with it since
-    float alpha_step = 0.0;            // opacity of a whole step in the material at hand
-    vec4 color = vec4(0.0);            // lit
-    // Every loop below does one kind of work: lavapipe runs both sides of an if, but no loop that is empty.
+    float light = 1.0, lit_at = -1e9, stale = 0.0;  // depth of the last lighting, and opacity drawn with it since
+    float alpha_step = 0.0;            // opacity of a whole step in the current material
+    vec4 color = vec4(0.0);            // lit colour
+    // Each loop does one kind of work: lavapipe runs both sides of an `if`, but skips an empty loop.
     for (int i = 1; i <= count;) {
-        // Along what is transparent, or goes on as before, to the segment (i - 1, i) that needs a closer look.
+        // Passes transparent and unchanged parts up to a segment (i - 1, i) that needs crossings or lighting.
         bool found = false;
         while (i <= count && !found) {
             float way = SKIP == 1u && !was_visible ? 1e9 : 0.0;
             while (i <= count && way > 0.0) {
                 float t = min(ray.first + float(i) * step, ray.last);
                 way = leap(ray, at(ray, t));
-                // An end point in a transparent brick is transparent; so is its segment, if it begins so.
+                // If the end point lies in a transparent brick and the segment starts transparent, the whole segment is
+                // transparent.
                 i = way > 0.0 ? max(i + 1, int(ceil((t + way - 1e-3 - ray.first) * per_step))) : i;
             }
             int end = count;
@@ -89,7 +91,7 @@ void main() {
             }
         }
 
-        // One piece for each material that the segment passes.
+        // One piece per material on the segment.
         float a = min(ray.first + float(i - 1) * step, ray.last), b = min(ray.first + float(i) * step, ray.last);
         IF_ANY(found && !was_visible) {
             previous = field(at(ray, a));
@@ -109,10 +111,10 @@ void main() {
             vec4 material = params.rays.materials[from];
             float weight = (1.0 - sum.a) * opacity(material.a * ray.mm * (c - a));
             stale += weight;
-            // Surfaces are lit where they are entered, wherever the samples lie.
+            // Surfaces are lit at the crossing, independent of the sample positions.
             float here = entered ? a : 0.5 * (a + c);
             bool dark = LIGHT != LIGHT_NONE && material.a > 0.0 && (entered || (stale > STALE_LIGHT && here - lit_at >= STALE_WAY));
-            // Matter that the volume's border cuts is lit by the border.
+            // Matter that the volume's border cuts is lit with the border's normal.
             bool cut = !entered && lit_at < -1e8 && dot(ray.border, ray.border) > 0.0;
             IF_ANY(dark) {
                 light = light_on(cut ? ray.border : gradient(at(ray, here)), ray.u);

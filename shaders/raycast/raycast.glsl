@@ -1,4 +1,4 @@
-// Parts of the ray caster: the ray, the field, the leap over transparent bricks, light. docs/method.md, Ray caster.
+// Parts of the ray caster: ray, field, skipping of transparent bricks, light. docs/method.md, Ray caster.
 // The including shader declares the uniform block `params`.
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/raycast_params.h"
@@ -9,7 +9,8 @@ layout(constant_id = SPEC_SKIP) const uint SKIP = 1u;
 layout(constant_id = SPEC_RAY_FILTER) const uint FILTER = FILTER_TRILINEAR;
 const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u;
 
-// A new gradient is taken a voxel further on, or later, once what was drawn meanwhile adds up to this much of the pixel.
+// A new gradient is computed after at least STALE_WAY voxels, once the opacity drawn with the old one exceeds
+// STALE_LIGHT.
 const float STALE_LIGHT = 1.0 / 64.0, STALE_WAY = 1.0;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -23,10 +24,10 @@ uint visible_mask;
 #include "shaders/common/opacity.glsl"
 #include "shaders/common/volume_sampling.glsl"
 
-// Beyond the outermost samples the field is theirs.
+// Clamps to the outermost samples.
 vec3 within_samples(vec3 p) { return clamp(p, vec3(0.0), vec3(dims - 1)); }
 
-// trilinear() with a cheaper choice of the cell: at the last sample it has no width. Or the spline.
+// trilinear() with a cheaper cell (width 0 at the last sample), or the spline.
 float field(vec3 p) {
     p = within_samples(p);
     if (FILTER == FILTER_CUBIC) return bspline(p);
@@ -42,15 +43,15 @@ uint material_of(float value) {
 
 bool is_visible(uint material) { return (visible_mask >> material & 1u) == 1u; }
 
-// A pixel's ray in index space: origin + t * u, and the part of it that is in front of the eye and in the volume, whose
+// A pixel's ray in index space: origin + t * u. first to last: the part in front of the eye and in the volume. The
 // outermost voxels are whole: [-0.5, dim - 0.5].
 struct Ray {
     vec3 origin;
     vec3 u;       // unit
     vec3 inverse; // 1 / u
     float first, last;
-    float mm;     // millimetres per voxel along it
-    vec3 border;  // where it begins at the volume's border, unit, into the volume; else 0
+    float mm;     // millimetres per voxel along the ray
+    vec3 border;  // unit normal into the volume if the ray begins at the border; else 0
 };
 
 Ray ray_of(ivec2 pixel) {
@@ -62,7 +63,7 @@ Ray ray_of(ivec2 pixel) {
     ray.u = mix(ray.u, vec3(1e-8), lessThan(abs(ray.u), vec3(1e-8)));
     ray.inverse = 1.0 / ray.u;
     ray.mm = length(params.rays.index_to_world * ray.u);
-    // Where the ray meets the plane across the view through the anchor: from there nothing cancels, however far the eye.
+    // The origin lies in the plane across the view through the anchor, so that nothing cancels for a far eye.
     vec2 across = slope * params.rays.anchor_z - vec2(params.rays.anchor_x, params.rays.anchor_y);
     ray.origin = params.rays.anchor + across.x * params.rays.ray_x + across.y * params.rays.ray_y;
     float eye = -params.rays.anchor_z * per_mm;
@@ -78,7 +79,7 @@ Ray ray_of(ivec2 pixel) {
 
 vec3 at(Ray ray, float t) { return ray.origin + t * ray.u; }
 
-// Voxels along the ray from p to where it leaves the transparent bricks around p; 0 in a brick that is not transparent.
+// Voxels along the ray from p to the end of the transparent bricks around p; 0 if p's brick is not transparent.
 float leap(Ray ray, vec3 p) {
     ivec3 brick = ivec3(clamp(p, vec3(0.0), vec3(dims - 1))) >> BRICK_SHIFT;
     int reach = int(imageLoad(bricks, brick).r);
@@ -87,7 +88,7 @@ float leap(Ray ray, vec3 p) {
     return reach == 0 ? 0.0 : max(min(way.x, min(way.y, way.z)), 1e-3);
 }
 
-// Voxels to where the ray leaves the brick around p.
+// Voxels along the ray from p to the end of its brick.
 float leave(Ray ray, vec3 p) {
     ivec3 brick = ivec3(clamp(p, vec3(0.0), vec3(dims - 1))) >> BRICK_SHIFT;
     vec3 low = vec3(brick << BRICK_SHIFT), high = vec3((brick + 1) << BRICK_SHIFT);
@@ -95,8 +96,8 @@ float leave(Ray ray, vec3 p) {
     return max(min(way.x, min(way.y, way.z)), 0.0);
 }
 
-// Interpolated central differences of the voxels around p, moved to where both ends lie between voxels: the same as
-// differences of six interpolated values, in 32 loads for 48. Of the spline its own slope there.
+// Interpolated central differences of the voxels around p, clamped so that both ends lie between voxels. Equal to
+// differences of six interpolated values, with 32 loads instead of 48. With the spline: its own slope.
 vec3 gradient(vec3 p) {
     vec3 last = vec3(dims - 1);
     p = clamp(p, min(vec3(1.0), 0.5 * last), max(last - 1.0, 0.5 * last));
@@ -105,14 +106,14 @@ vec3 gradient(vec3 p) {
     vec3 t = p - vec3(c);
     ivec3 end = dims - 1;
     ivec3 e = min(c + 1, end), l = max(c - 1, ivec3(0)), h = min(c + 2, end);
-    // In one row along x each: (y, z) = (c, c), (e, c), (c, e), (e, e).
+    // One row along x each: (y, z) = (c, c), (e, c), (c, e), (e, e).
     vec4 x0 = vec4(voxel(c), voxel(ivec3(c.x, e.y, c.z)), voxel(ivec3(c.x, c.y, e.z)), voxel(ivec3(c.x, e.y, e.z)));
     vec4 x1 = vec4(voxel(ivec3(e.x, c.y, c.z)), voxel(ivec3(e.x, e.y, c.z)), voxel(ivec3(e.x, c.y, e.z)), voxel(e));
     vec4 xl = vec4(voxel(ivec3(l.x, c.y, c.z)), voxel(ivec3(l.x, e.y, c.z)), voxel(ivec3(l.x, c.y, e.z)), voxel(ivec3(l.x, e.y, e.z)));
     vec4 xh = vec4(voxel(ivec3(h.x, c.y, c.z)), voxel(ivec3(h.x, e.y, c.z)), voxel(ivec3(h.x, c.y, e.z)), voxel(ivec3(h.x, e.y, e.z)));
     vec4 gx = mix(x1 - xl, xh - x0, t.x);
     vec4 f = mix(x0, x1, t.x);
-    // Below and above along y, (z) = (c), (e); along z, (y) = (c), (e).
+    // Below and above along y, at (z) = (c), (e); along z, at (y) = (c), (e).
     vec2 yl = mix(vec2(voxel(ivec3(c.x, l.y, c.z)), voxel(ivec3(c.x, l.y, e.z))), vec2(voxel(ivec3(e.x, l.y, c.z)), voxel(ivec3(e.x, l.y, e.z))), t.x);
     vec2 yh = mix(vec2(voxel(ivec3(c.x, h.y, c.z)), voxel(ivec3(c.x, h.y, e.z))), vec2(voxel(ivec3(e.x, h.y, c.z)), voxel(ivec3(e.x, h.y, e.z))), t.x);
     vec2 zl = mix(vec2(voxel(ivec3(c.xy, l.z)), voxel(ivec3(c.x, e.y, l.z))), vec2(voxel(ivec3(e.x, c.y, l.z)), voxel(ivec3(e.xy, l.z))), t.x);
@@ -123,7 +124,7 @@ vec3 gradient(vec3 p) {
     return 0.5 * vec3(mix(g.x, g.y, t.z), mix(gy.x, gy.y, t.z), mix(gz.x, gz.y, t.y));
 }
 
-// Light on a surface whose values rise along `g` (index space; shorter than GRADIENT_MIN: no direction).
+// Light on a surface with the gradient `g` (index space). If |g| < GRADIENT_MIN, the surface has no direction.
 float light_on(vec3 g, vec3 u) {
     vec3 n = normalize(params.rays.normal_to_world * -g);
     vec3 to_light = LIGHT == LIGHT_HEADLIGHT ? -normalize(params.rays.index_to_world * u) : params.rays.light;
@@ -142,7 +143,7 @@ void write_pixel(ivec2 pixel, vec4 sum) {
     PixelsRef(params.rays.pixels).at[pixel.y * params.rays.size.x + pixel.x] = sum;
 }
 
-// Eight consecutive invocations are 4 x 2 pixels, 32 are 8 x 4: neighbours on the screen take the same way.
+// Eight consecutive invocations cover 4 x 2 pixels, 32 cover 8 x 4: neighbouring pixels take similar paths.
 ivec2 pixel_of_invocation() {
     ivec2 i = ivec2(gl_LocalInvocationID.x, gl_LocalInvocationID.y);
     int n = i.x + 8 * i.y;

@@ -1,4 +1,5 @@
-// Which bricks hold anything but transparent material: 0 for those, BRICK_FAR for the rest. docs/method.md, Ray caster.
+// Finds the bricks that contain visible material: 0 for those, BRICK_FAR for transparent ones. docs/method.md, Ray
+// caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/drivers/if_any.glsl"
@@ -15,7 +16,7 @@ layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams 
 #include "shaders/common/material.glsl"
 #include "shaders/common/transfer.glsl"
 
-// A coefficient beyond a border goes on straight from the two before it.
+// A coefficient beyond a border is the linear extrapolation of the two before it.
 float spline_coefficient(ivec3 p) {
     ivec3 last = params.scene.dims - 1, held = clamp(p, ivec3(0), last);
     float value = imageLoad(coefficients, held).r;
@@ -34,9 +35,9 @@ float spline_coefficient(ivec3 p) {
 void main() {
     ivec3 brick = ivec3(gl_GlobalInvocationID), count = imageSize(scratch);
     if (any(greaterThanEqual(brick, count))) return;
-    // A sample between the last voxel of a brick and the first of the next belongs to the former.
+    // A sample between the last voxel of a brick and the first of the next belongs to the former brick.
     ivec3 first = brick << BRICK_SHIFT, last = min(first + (1 << BRICK_SHIFT), params.scene.dims - 1);
-    // A spline lies within the coefficients of the four voxels around along each axis, but for rounding.
+    // A spline lies between the coefficients of the four voxels around it along each axis, up to rounding.
     if (FILTER == FILTER_CUBIC) {
         --first;
         ++last;
@@ -55,7 +56,7 @@ void main() {
                 low = min(low, value - rounding);
                 high = max(high, value + rounding);
             }
-    // Every material, and every value, between the two can be met on the way from one to the other.
+    // A ray can meet every material and every value between low and high.
     uint materials = (2u << material_of(high)) - (1u << material_of(low));
     bool visible = (materials & params.scene.visible_mask) != 0u;
     if (TRANSFER == 1u) visible = transfer_between(TransferRef(params.scene.transfer), low, high).a > 0.0;

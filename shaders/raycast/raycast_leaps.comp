@@ -1,5 +1,5 @@
-// How far a ray may leap: for every brick the distance in bricks, along the axis where it is largest, to the nearest one
-// that is not transparent. One axis a dispatch: min over j of max(|j|, distance so far at j). docs/method.md, Ray caster.
+// For each brick, how far a ray may skip: the Chebyshev distance, in bricks, to the nearest brick that is not
+// transparent. One axis per dispatch: min over j of max(|j|, distance so far at j). docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/raycast_params.h"

@@ -1,5 +1,5 @@
-// Rays through the field between the voxels where a transfer function says what each value absorbs and emits. Between
-// two samples of a ray values are linear: what they absorb and emit is exact. docs/method.md, Ray caster.
+// Ray casting with a transfer function. Values are linear between two samples of a ray; their absorption and emission
+// are exact. docs/method.md, Ray caster.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/drivers/if_any.glsl"
@@ -10,10 +10,10 @@ layout(binding = BIND_RAYS, scalar) uniform Rays { SceneParams scene; RayParams 
 #include "shaders/raycast/raycast.glsl"
 #include "shaders/common/transfer.glsl"
 
-const float PIECE_DEPTH = 0.5;   // optical depth of a piece in which colours are mixed, whichever is in front
+const float PIECE_DEPTH = 0.5;   // optical depth of a piece; within a piece, colours are mixed without regard to order
 const float MOST_PIECES = 16.0;
 
-// Towards which values rise where the border is the surface; 0 elsewhere.
+// The border's inward normal within BORDER_LIGHT of the border, where it serves as gradient; 0 elsewhere.
 vec3 border_beside(vec3 p) {
     vec3 below = p + 0.5, above = vec3(dims) - 0.5 - p, near = min(below, above);
     float nearest = min(near.x, min(near.y, near.z));
@@ -33,10 +33,10 @@ void main() {
 
     vec4 sum = vec4(0.0);
     float previous = 0.0;
-    float light = 1.0, lit_at = -1e9, stale = 0.0;  // where light was found last, and what was drawn with it since
-    bool empty = true;                               // nothing is known of `previous`, or it absorbs nothing
+    float light = 1.0, lit_at = -1e9, stale = 0.0;  // depth of the last lighting, and opacity drawn with it since
+    bool empty = true;                               // `previous` is unknown, or absorbs nothing
     for (int i = 1; i <= count;) {
-        // Along what is transparent to the segment (i - 1, i) that may not be.
+        // Skips transparent bricks up to a segment (i - 1, i) that may be visible.
         float way = SKIP == 1u && empty ? 1e9 : 0.0;
         while (i <= count && way > 0.0) {
             float t = min(ray.first + float(i) * step, ray.last);
@@ -45,7 +45,7 @@ void main() {
         }
         IF_ANY(i <= count && empty) previous = field(at(ray, min(ray.first + float(i - 1) * step, ray.last)));
         empty = false;
-        bool dark = false;  // light is to be found before anything else is drawn
+        bool dark = false;  // light must be computed before anything else is drawn
         float middle = 0.0;
         while (i <= count && !dark && !empty) {
             float a = min(ray.first + float(i - 1) * step, ray.last), b = min(ray.first + float(i) * step, ray.last);

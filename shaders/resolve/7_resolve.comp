@@ -1,4 +1,5 @@
-// Accumulated sheets to the picture that the host reads: background behind colour, means for the other quantities.
+// Converts accumulated sheets into the picture that the host reads: adds the background to colours, and computes means
+// of the other quantities.
 // docs/method.md, pass 7.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -14,7 +15,7 @@ layout(binding = BIND_ACCUMULATED) uniform sampler2D accumulated;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
-TEXEL_PIXELS(BIND_TILE_SHEETS, before, tile_sheets, load_before)  // the picture, as it was
+TEXEL_PIXELS(BIND_TILE_SHEETS, before, tile_sheets, load_before)  // the picture before this pass
 TEXEL_WORDS(BIND_OUTLINES, passing, outlines, load_outline)
 #include "shaders/resolve/other_side.glsl"
 
@@ -36,7 +37,7 @@ void main() {
     }
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) sum.rgb = sum.a > 0.0 ? sum.rgb / sum.a : vec3(0.0);
     if (PAYLOAD == PAYLOAD_NORMAL) {
-        // Scaled first: the squares of what a pixel hardly shows would vanish.
+        // Scaled first: for faint pixels the squares would underflow.
         float largest = max(abs(sum.r), max(abs(sum.g), abs(sum.b)));
         sum.rgb = largest > 0.0 ? normalize(sum.rgb / largest) : vec3(0.0);
     }

@@ -1,5 +1,5 @@
-// How a pixel that an outline passes is shown. docs/method.md, 7_resolve. After the declarations of load_outline and load_before, of the
-// picture with one ray a pixel.
+// Blends a pixel at an outline with its neighbour. docs/method.md, 7_resolve. Include after the declarations of
+// load_outline and load_before, which read the picture with one ray per pixel.
 #ifndef EDGESPLAT_OTHER_SIDE_GLSL
 #define EDGESPLAT_OTHER_SIDE_GLSL
 
@@ -10,7 +10,7 @@ vec4 drawn_at(ivec2 pixel, ivec2 size) {
     return load_before(held.y * size.x + held.x);
 }
 
-// Offset of a pixel's outline along its axis, pixels; 0 without one.
+// Offset of a pixel's outline along its axis, pixels; 0 without an outline.
 vec2 outline_offset(ivec2 pixel, ivec2 size) {
     ivec2 held = held_pixel(pixel, size);
     uint word = load_outline(held.y * size.x + held.x);
@@ -18,8 +18,9 @@ vec2 outline_offset(ivec2 pixel, ivec2 size) {
     return word == NO_OUTLINE || held != pixel ? vec2(0.0) : (word >> 16 & 1u) == 1u ? vec2(0.0, offset) : vec2(offset, 0.0);
 }
 
-// The pixel with what an outline between it and its neighbour uncovers of what is there. What the picture does on either side goes
-// on up to the outline, so that where it is smooth nothing changes; only the step that is left counts, and no larger one.
+// Adds the neighbour's share to a pixel if an outline passes between their centres. The picture on both sides is
+// extrapolated to the outline, and only the remaining step counts, clamped to the difference. So a smooth picture does
+// not change.
 vec4 with_other_side(vec4 own, ivec2 pixel, ivec2 size) {
     vec2 offset = outline_offset(pixel, size);
     ivec2 towards = ivec2(0);
@@ -27,7 +28,8 @@ vec4 with_other_side(vec4 own, ivec2 pixel, ivec2 size) {
     for (int k = 0; k < 4; ++k) {
         ivec2 step = ivec2(k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0);
         float ours = dot(offset, vec2(step)), theirs = -dot(outline_offset(pixel + step, size), vec2(step));
-        // Where both know of it, it is between them; one that has an outline elsewhere knows of no other.
+        // If both pixels store an outline, it lies between their two offsets. A pixel with an outline elsewhere ignores
+        // its neighbour's.
         bool both = ours > 0.0 && theirs > 0.0, alone = theirs > 0.0 && offset == vec2(0.0);
         float at = both ? ours / (ours + theirs) : ours > 0.0 ? ours : alone ? 1.0 - theirs : 1.0;
         towards = at < nearest ? step : towards;

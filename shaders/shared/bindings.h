@@ -1,5 +1,5 @@
-// The one descriptor set. Lists travel as device addresses; what every invocation reads alike is a uniform block, which
-// lavapipe loads once for eight of them (through an address: eight times).
+// The single descriptor set. Lists are passed as device addresses. Data that all invocations read alike is in a uniform
+// block: lavapipe loads it once for eight invocations, and through an address eight times.
 #ifndef EDGESPLAT_BINDINGS_H
 #define EDGESPLAT_BINDINGS_H
 #include "shaders/shared/glue.h"
@@ -8,7 +8,7 @@ EDGESPLAT_SHARED_BEGIN
 EDGESPLAT_CONSTANT uint BIND_VOLUME = 0u;        // r32f (z, y, x), samples scaled to their range
 EDGESPLAT_CONSTANT uint BIND_COEFFICIENTS = 1u;  // r32f, cubic B-spline coefficients (estimator `cubic` only)
 EDGESPLAT_CONSTANT uint BIND_EDGES = 2u;         // rg32ui, edge field (shared/edge.h)
-EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = every voxel around is opaque
+EDGESPLAT_CONSTANT uint BIND_BURIED = 3u;        // r8ui, 1 = all voxels around are opaque
 EDGESPLAT_CONSTANT uint BIND_PREPARED = 4u;      // rgba32f, records of a chunk's splats (splats/prepared_splat.glsl)
 EDGESPLAT_CONSTANT uint BIND_SHEETS = 5u;        // sheet group, one layer per sheet: (sum tau c, sum tau)
 EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 6u;   // rgba32f, premultiplied colour and alpha so far
@@ -16,18 +16,18 @@ EDGESPLAT_CONSTANT uint BIND_TABLE = 7u;         // r16f, layers of footprints (
 EDGESPLAT_CONSTANT uint BIND_SCENE = 8u;         // SceneParams
 EDGESPLAT_CONSTANT uint BIND_FRAME = 9u;         // FrameParams
 EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 10u;    // OcclusionParams
-// Buffers that have an address, too, as texels, which lavapipe loads and stores faster.
+// Texel views of buffers that also have an address; lavapipe loads and stores texels faster.
 EDGESPLAT_CONSTANT uint BIND_PICTURE = 11u;        // rgba32f, FrameParams::output_pixels
 EDGESPLAT_CONSTANT uint BIND_TILE_COUNTERS = 12u;  // r32ui, FrameParams::tile_counters
 EDGESPLAT_CONSTANT uint BIND_TILE_CLOSED = 13u;    // r32ui, FrameParams::tile_closed
 EDGESPLAT_CONSTANT uint BIND_TILE_TODO = 14u;      // r32ui, FrameParams::tile_todo
-EDGESPLAT_CONSTANT uint BIND_TILE_ENTRIES = 15u;   // rg32ui (pairs at once): place in `order`, sheet; by tile, sheet, number
-EDGESPLAT_CONSTANT uint BIND_TILE_MARKS = 16u;     // r32ui: of each MARKED_AT_ONCE entries a word for each cell of their tile (tile_marks.glsl)
-EDGESPLAT_CONSTANT uint BIND_TILE_RANGES = 17u;    // rg32ui (tiles): parts of the entries, half open, counted from entries_first
-EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 18u;     // r32ui (tiles, then groups of their pixels): longest list first; with rounds only
-EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 19u;    // r32ui (tiles, TILE * TILE): which, x | y << 8 in the tile; with refined pixels only
-EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 20u;    // rgba32f (size.y, size.x): sums of a sheet whose entries go on in the next round
-EDGESPLAT_CONSTANT uint BIND_OUTLINES = 21u;       // r32ui (size.y, size.x): where an outline passes each pixel (outline.glsl)
+EDGESPLAT_CONSTANT uint BIND_TILE_ENTRIES = 15u;   // rg32ui (pairs in a chunk): index into `order`, sheet; sorted by tile, sheet, number
+EDGESPLAT_CONSTANT uint BIND_TILE_MARKS = 16u;     // r32ui: for each MARKED_AT_ONCE entries, a word per cell of their tile (tile_marks.glsl)
+EDGESPLAT_CONSTANT uint BIND_TILE_RANGES = 17u;    // rg32ui (tiles): range of entries, half open, relative to entries_first
+EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 18u;     // r32ui (tiles, then groups of their pixels): longest list first; only with rounds
+EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 19u;    // r32ui (tiles, TILE * TILE): pixels to draw, x | y << 8 in the tile; only with refined pixels
+EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 20u;    // rgba32f (size.y, size.x): partial sum of a sheet that continues in the next round
+EDGESPLAT_CONSTANT uint BIND_OUTLINES = 21u;       // r32ui (size.y, size.x): the outline that passes each pixel (outline.glsl)
 EDGESPLAT_CONSTANT uint BIND_COUNT = 22u;
 
 EDGESPLAT_SHARED_END

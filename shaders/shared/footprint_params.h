@@ -1,5 +1,5 @@
-// What shaders/footprints/footprint.glsl needs to know besides the ray and the edge: one struct for C++ and GLSL, only 4-byte
-// scalars, so that every buffer layout (std140, std430, scalar) is the same 16 bytes.
+// Parameters of shaders/footprints/footprint.glsl besides ray and edge: one struct for C++ and GLSL. It has only 4-byte
+// scalars, so every buffer layout (std140, std430, scalar) gives the same 16 bytes.
 #ifndef EDGESPLAT_FOOTPRINT_PARAMS_H
 #define EDGESPLAT_FOOTPRINT_PARAMS_H
 #ifdef __cplusplus

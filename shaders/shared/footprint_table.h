@@ -1,24 +1,26 @@
-// The one size of the table of footprints, and what a splat is told of it. footprints/footprint_table.h says what it holds.
+// The fixed size of the footprint table and the packing of a splat's layer. footprints/footprint_table.h describes its
+// content.
 #ifndef EDGESPLAT_SHARED_FOOTPRINT_TABLE_H
 #define EDGESPLAT_SHARED_FOOTPRINT_TABLE_H
 #include "shaders/shared/glue.h"
 EDGESPLAT_SHARED_BEGIN
 
-// Texels of a row: of rays that pass the face on the near side of the voxel, across it, and beyond it.
+// Texels of a row: for rays that pass the face on the near side of the voxel, across it, and beyond it.
 EDGESPLAT_CONSTANT uint TABLE_BEFORE = 20u;
 EDGESPLAT_CONSTANT uint TABLE_ACROSS = 20u;
 EDGESPLAT_CONSTANT uint TABLE_BESIDE = 8u;
 EDGESPLAT_CONSTANT uint TABLE_WIDTH = 48u;
 EDGESPLAT_CONSTANT uint TABLE_ROWS = 20u;
-EDGESPLAT_CONSTANT uint TABLE_DISTANCES = 33u;   // layers: a set of directions for each
+EDGESPLAT_CONSTANT uint TABLE_DISTANCES = 33u;   // one set of directions for each
 EDGESPLAT_CONSTANT uint TABLE_DIRECTIONS = 25u;
 EDGESPLAT_CONSTANT uint TABLE_LAYERS = 825u;
 
-// Faces bent more than this, 1/voxel, are integrated: within a kernel they leave their tangent plane by a fifth of a voxel and more.
+// 1/voxel; faces with a larger |H| are integrated: within a kernel they leave their tangent plane by a fifth of a voxel
+// or more.
 EDGESPLAT_CONSTANT float TABLE_BENDING = 0.15f;
 
-// A splat's layer: bits 0-9 the first of the four that are blended, 10-19 how far towards the next distance, 20-29 towards the next
-// direction.
+// A splat's layer: bits 0-9 the first of the four blended layers, 10-19 the weight of the next distance, 20-29 the
+// weight of the next direction.
 EDGESPLAT_CONSTANT uint TABLE_BLEND_BITS = 10u;
 EDGESPLAT_CONSTANT float TABLE_BLEND_STEPS = 1023.0f;
 

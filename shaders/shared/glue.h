@@ -1,4 +1,4 @@
-// Lets one header be read by C++ and by GLSL. Structs use scalar layout, so glm's vec3 and GLSL's agree byte for byte.
+// Makes a header readable by C++ and GLSL. Structs use scalar layout, so glm's vec3 and GLSL's have the same bytes.
 #ifndef EDGESPLAT_GLUE_H
 #define EDGESPLAT_GLUE_H
 
@@ -16,7 +16,7 @@ using glm::uvec2;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
-/// Device address of a buffer in two words, as GLSL's uvec2 that converts to a buffer reference.
+/// Device address of a buffer in two words; GLSL's uvec2 that converts to a buffer reference.
 struct Address {
     uint low = 0, high = 0;
     Address() = default;

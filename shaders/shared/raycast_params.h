@@ -1,24 +1,24 @@
-// What the ray caster needs beside the scene: camera, materials, light. Written every frame.
+// Parameters of the ray caster besides the scene: camera, materials, light. Written every frame.
 #ifndef EDGESPLAT_RAYCAST_PARAMS_H
 #define EDGESPLAT_RAYCAST_PARAMS_H
 #include "shaders/shared/frame_params.h"
 EDGESPLAT_SHARED_BEGIN
 
-// The ray caster has a descriptor set of its own, of the common layout; three slots hold something else there.
-EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x), bricks to the nearest one that is not transparent
-EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 4u;  // r8ui, while distances are found
+// The ray caster has its own descriptor set with the common layout. Three slots contain other data there.
+EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x): distance in bricks to the nearest one that is not transparent
+EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 4u;  // r8ui: intermediate distances
 
 EDGESPLAT_CONSTANT uint BIND_RAYS = 9u;          // RaycastBlock
 
-EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: measured best on lavapipe, 8^3 takes 5-13 % longer
-EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // larger distances between bricks are stored as this
+EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: fastest on lavapipe, 8^3 takes 5-13 % longer
+EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // sentinel for larger distances between bricks
 
 EDGESPLAT_CONSTANT uint FILTER_TRILINEAR = 0u, FILTER_CUBIC = 1u;
 
-EDGESPLAT_CONSTANT float BORDER_LIGHT = 1.0f;  // voxels from the volume's border in which it lights what a transfer function shows
+EDGESPLAT_CONSTANT float BORDER_LIGHT = 1.0f;  // voxels from the volume's border within which its normal lights matter of a transfer function
 
 struct RayParams {
-    // Rays begin on the plane across the view through `anchor`, the centre of the volume: a far eye costs no digits.
+    // Rays begin on the plane across the view through `anchor`, the centre of the volume: a far eye costs no precision.
     vec3 anchor;          // index space
     float anchor_x;       // view coordinates of the anchor, mm: right, down, forward of the eye
     vec3 ray_x;           // S^-1 right: index units per mm

@@ -1,34 +1,34 @@
-// What passes 1 and 2 need: the scene in scaled units. Written once per change of volume, scene or edge settings.
+// Parameters of passes 1 and 2: the scene in scaled units. Written when the volume, the scene or edge settings change.
 #ifndef EDGESPLAT_SCENE_PARAMS_H
 #define EDGESPLAT_SCENE_PARAMS_H
 #include "shaders/shared/limits.h"
 EDGESPLAT_SHARED_BEGIN
 
 struct SceneParams {
-    ivec3 dims;           // voxels that the images hold, x fastest: the volume, or a block of it with a border
+    ivec3 dims;           // voxels in the images, x fastest: the volume, or a block of it with a border
     uint iso_count;       // 1..15
     float iso[16];        // J_j, scaled, ascending; beyond iso_count: +3e38
     uint visible_mask;    // bit m: material m has extinction > 0
-    uint opaque_mask;     // bit m: material m hides what lies bury_distance voxels behind its surface
+    uint opaque_mask;     // bit m: material m occludes everything bury_distance voxels behind its surface
     int bury_distance;    // voxels
-    float band;           // an edge further away does not matter, voxels
-    Address run_offsets;  // (runs) uint: splats of each run, then where it writes
+    float band;           // edges further away are ignored, voxels
+    Address run_offsets;  // (runs) uint: number of splats of each run, then its write position
     Address splats;       // (splat_count) Splat
-    Address traits;       // (splat_count) uvec2: second derivatives of its face (face_record.glsl); with faces only
-    uint seen_through;    // bit m: voxels beside matter of material m carry it, too
+    Address traits;       // (splat_count) uvec2: second derivatives of the face (face_record.glsl); only with faces
+    uint translucent_mask; // bit m: voxels beside matter of material m also carry it
     uint estimate_mask;   // bit m: edges of material m are estimated
-    float reach;          // no kernel reaches further, voxels
-    vec4 clip_keep[8];    // normal (unit) and offset, index space: above 0 is beyond; where buried voxels are found
+    float reach;          // upper bound of every kernel's reach, voxels
+    vec4 clip_keep[8];    // normal (unit) and offset, index space: values above 0 are beyond the plane; for buried voxels
     vec4 clip_remove[8];
-    Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; with a transfer function
-    Address values;        // (splat_count) float: what each splat is classified by, scaled; likewise
+    Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; only with a transfer function
+    Address values;        // (splat_count) float: classified value of each splat, scaled; only with a transfer function
     ivec3 core_low;          // first voxel that becomes a splat
-    ivec3 core_size;         // how many do, along each axis
-    ivec3 block_origin;      // of the images' first voxel in the volume
-    ivec3 volume_dims;       // voxels of the volume: Splat::voxel counts them
-    uint list_first;         // first of the splats that 2a_finish_splats is to finish
+    ivec3 core_size;         // number of these voxels along each axis
+    ivec3 block_origin;      // position of the images' first voxel in the volume
+    ivec3 volume_dims;       // voxels of the volume; Splat::voxel is an index into it
+    uint list_first;         // first splat that 2a_finish_splats finishes
     uint list_count;
-    uint edge_count_at;      // where in run_offsets stands how many of them have an edge
+    uint edge_count_at;      // index in run_offsets of the number of splats with an edge
 };
 
 /// One splat as collected: 12 bytes.
@@ -43,7 +43,7 @@ EDGESPLAT_CONSTANT uint EDGE_NONE = 0u;           // neither edge nor normal
 EDGESPLAT_CONSTANT uint EDGE_NORMAL = 1u;         // a normal for light, no edge
 EDGESPLAT_CONSTANT uint EDGE_LOWER = 2u;          // edge at the lower end of the voxel's interval: the voxel is inside
 EDGESPLAT_CONSTANT uint EDGE_UPPER = 3u;          // edge at the upper end: the voxel is outside
-EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the volume ends there
+EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the volume's border
 
 EDGESPLAT_SHARED_END
 

@@ -1,16 +1,16 @@
-// A piecewise-linear transfer function as the device holds it.
+// A piecewise-linear transfer function, as stored on the device.
 #ifndef EDGESPLAT_TRANSFER_ROWS_H
 #define EDGESPLAT_TRANSFER_ROWS_H
 #include "shaders/shared/glue.h"
 EDGESPLAT_SHARED_BEGIN
 
-EDGESPLAT_CONSTANT uint TRANSFER_ROWS = 256u;  // as many as a scene may have; one more ends them
+EDGESPLAT_CONSTANT uint TRANSFER_ROWS = 256u;  // upper bound for a scene; one more row is the end
 
-/// Ascending; behind the last point rows of value 3e38 with its colour.
+/// Ascending values. Rows after the last point have the value 3e38 and its colour.
 struct TransferRow {
     float value;  // scaled
     vec4 matter;  // rgb, extinction per mm
-    vec4 before;  // integral of extinction times (rgb, 1) over the values from the first row's on, for rays
+    vec4 before;  // integral of extinction * (rgb, 1) from the first row's value up to this one, for rays
 };
 
 EDGESPLAT_SHARED_END

@@ -1,4 +1,4 @@
-// Counting sort, first third: how many splats of each block lie in each sheet. One invocation owns one block of
+// Counting sort, step 1 of 3: counts the splats of each block in each sheet. One invocation owns one block of
 // consecutive slots and one column of the histogram, so there is no race and the sort is stable.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(push_constant) uniform Push { uint segment; };  // of each block: one after another
+layout(push_constant) uniform Push { uint segment; };  // segments of each block are processed one after another
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 void main() {

@@ -1,5 +1,5 @@
-// Counting sort side by side, first step: how many splats of each block lie in each sheet. Every slot counts for itself; the
-// order in which they come changes no count.
+// Parallel counting sort, step 1: counts the splats of each block in each sheet. Each slot adds itself; the order of
+// additions does not change the counts.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

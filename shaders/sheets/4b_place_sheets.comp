@@ -1,4 +1,4 @@
-// Third step: where each sheet begins. One workgroup.
+// Parallel counting sort, step 3: finds the beginning of each sheet. One workgroup.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

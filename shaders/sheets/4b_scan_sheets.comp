@@ -1,6 +1,6 @@
-// Counting sort, second third: exclusive prefix sum over (sheet, block), then where each sheet begins, or each sheet
-// group's range and draw call.
-// One workgroup: each invocation sums a run of counters, the runs are scanned in shared memory.
+// Counting sort, step 2 of 3: exclusive prefix sum over (sheet, block). Then the beginning of each sheet, or the range
+// and draw call of each sheet group. One workgroup: each invocation sums a run of counters; the runs are scanned in
+// shared memory.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

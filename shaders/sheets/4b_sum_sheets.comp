@@ -1,4 +1,5 @@
-// Second step: what the blocks of a sheet have before one another, and the sheet's sum. A workgroup has a sheet.
+// Parallel counting sort, step 2: prefix sums over the blocks of a sheet, and the sheet's total. One workgroup per
+// sheet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

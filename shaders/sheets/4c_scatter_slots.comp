@@ -1,5 +1,6 @@
-// Last step: every splat number goes to its place. A workgroup goes through a block, as many slots at once as it has invocations;
-// each looks how many of those before it go to the same sheet, so that the order of the records stays.
+// Parallel counting sort, last step: writes every splat number to its position. A workgroup processes a block, as many
+// slots together as it has invocations. Each invocation counts the slots before it with the same sheet, so that the
+// order of the records is kept.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -11,7 +12,7 @@ layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/sheets/sheets_of_slot.glsl"
 
-shared uvec2 together[256];  // sheets of the slots that are gone through at once
+shared uvec2 together[256];  // sheets of the slots that are processed together
 
 void main() {
     uint block = gl_WorkGroupID.x, me = gl_LocalInvocationIndex;

@@ -1,4 +1,5 @@
-// Counting sort, last third: every splat number goes to its place; inside a sheet the order of the records stays.
+// Counting sort, step 3 of 3: writes every splat number to its position. Inside a sheet the order of the records is
+// kept.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -8,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_CULLED) const uint CULLED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(push_constant) uniform Push { uint segment; };  // of each block: one after another
+layout(push_constant) uniform Push { uint segment; };  // segments of each block are processed one after another
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 void main() {

@@ -1,4 +1,4 @@
-// Empties a sheet group, and closes the pixels that are opaque already: depth 0 rejects their fragments before shading.
+// Clears a sheet group. Saturated pixels get depth 0, which rejects their fragments before shading.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

@@ -1,4 +1,4 @@
-// One splat at one pixel: the optical depth of its kernel along the pixel's own ray, and that times its colour.
+// One splat in one pixel: (tau * colour, tau) with tau the optical depth of its kernel along the pixel's ray.
 // docs/method.md, pass 5; design (8).
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -46,7 +46,7 @@ layout(location = 0) out vec4 sheet;
 FaceForm face_form;
 uvec2 number_material;
 ivec3 dims;
-vec2 pixels;  // from the voxel's centre to the fragment's; with antialias only
+vec2 pixels;  // from the voxel's centre to the fragment; only with antialias
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 SelectedFootprint selected_footprint;
@@ -56,7 +56,7 @@ SelectedFootprint selected_footprint;
 #include "shaders/splats/trace_ray.glsl"
 #include "shaders/splats/use_traced.glsl"
 
-// Of the splat alone; false where the ray meets no matter.
+// Traces this splat's face on the pixel's ray. False if the ray meets no matter.
 bool meets_traced(vec3 p, vec3 u, float ahead) {
     Stretch along = kernel_stretch(p, ahead);
     bool some = true;
@@ -74,7 +74,7 @@ void main() {
         face_form = FaceForm(face_slope.w, face_slope.xyz, Bending(face_diagonal.xyz, face_mixed.xyz),
                              FaceCut(face_diagonal.w, face_mixed.w, face_reach2_corner.x, 0.0, 0.0), crease, face_reach2_corner.y);
     if (FOOTPRINTS == TABLE) selected_footprint = from_texels(first_selected, second_selected);
-    // Not interpolated: corners of quads are drawn where the device's grid of parts of a pixel has them.
+    // Computed from the pixel, not interpolated: devices round the corners of quads to fractions of a pixel.
     vec2 slope = (gl_FragCoord.xy * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     vec3 offset = start_plane.xyz + start_plane.w * (slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
     if (ANTIALIAS == 1u) pixels = (slope - slopes) / params.frame.pixel;

@@ -1,4 +1,4 @@
-// One quad a splat, 64 an instance: its corners, its layer of the sheet group, its colour. docs/method.md, pass 5.
+// One quad per splat, 64 per instance: its corners, its layer in the sheet group, its colour. docs/method.md, pass 5.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require
@@ -29,16 +29,16 @@ layout(location = 0) flat out vec4 start_plane;    // rays_beside()
 layout(location = 1) flat out vec3 from_eye;       // voxel centre minus eye, index space
 layout(location = 2) flat out vec4 color_sigma;    // payload, extinction per mm
 layout(location = 3) flat out vec4 normal_distance;  // n, D
-layout(location = 4) flat out vec3 shape;  // negative: the splat is not warped; depths of the slice (mm from the voxel)
-layout(location = 5) flat out vec2 slopes;         // of the voxel's centre; with antialias only
-layout(location = 6) flat out vec3 matter;         // colour before light: what a cut shows; with clip planes only
-layout(location = 7) flat out uvec2 number_material;  // of the splat, likewise
-layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; with antialias only
-layout(location = 9) flat out vec4 face_slope;     // with faces only, FaceForm in four parts: value last
+layout(location = 4) flat out vec3 shape;  // negative: the splat is not warped; then depths of the slice (mm from the voxel)
+layout(location = 5) flat out vec2 slopes;         // slopes of the voxel's centre; only with antialias
+layout(location = 6) flat out vec3 matter;         // unlit colour, for cuts; only with clip planes
+layout(location = 7) flat out uvec2 number_material;  // of the splat; only with clip planes or faces
+layout(location = 8) flat out vec4 filtered;       // share, weights of distances in pixels and voxels, amplitude; only with antialias
+layout(location = 9) flat out vec4 face_slope;     // only with faces: FaceForm in four parts, here the value last
 layout(location = 10) flat out vec4 face_diagonal; // depth last
 layout(location = 11) flat out vec4 face_mixed;    // thickness last
 layout(location = 12) flat out vec2 face_reach2_corner;
-layout(location = 13) flat out vec4 first_selected;   // with a table only, SelectedFootprint in two parts
+layout(location = 13) flat out vec4 first_selected;   // only with a table: SelectedFootprint in two parts
 layout(location = 14) flat out vec4 second_selected;
 layout(location = 15) flat out vec4 crease;
 
@@ -53,7 +53,7 @@ void main() {
     uint layer = 0u;
     vec2 depths = vec2(0.0);
     if (SLICED == 1u) {
-        // The sort left each sheet's end in its last counter.
+        // The sort has left each sheet's end in its last counter.
         uint nth_in_all = sheets.first + min(nth, sheets.count - 1u);
         uint first_sheet = group * params.frame.sheets_per_group;
         for (uint s = 0u; s + 1u < params.frame.sheets_per_group; ++s) {

@@ -1,4 +1,4 @@
-// Folds a group's sheets front to back and puts them behind what is accumulated (the blend state does the latter).
+// Composites a group's sheets front to back. The blend state puts the result behind the accumulated sheets.
 // docs/method.md, pass 6; design (10).
 #version 460
 #extension GL_GOOGLE_include_directive : require

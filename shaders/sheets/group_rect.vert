@@ -1,4 +1,5 @@
-// A quad over the pixels that a sheet group touches, in layer gl_InstanceIndex: clears and composites nothing else.
+// A quad over the pixels that a sheet group touches, in layer gl_InstanceIndex, so that only these are cleared and
+// composited.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_ARB_shader_viewport_layer_array : require

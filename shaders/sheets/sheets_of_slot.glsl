@@ -1,4 +1,4 @@
-// After shaders that declare SLICED: in which sheets a slot's splat lies, half open; none where it is not drawn.
+// The sheets of a slot's splat, half open; empty if it is not drawn. The including shader declares SLICED.
 uvec2 sheets_of_slot(uint slot) {
     uint sheet = UintsRef(params.frame.sheets).at[slot];
     uint first = SLICED == 1u ? sheet & ((1u << SHEET_BITS) - 1u) : sheet;
@@ -8,7 +8,7 @@ uvec2 sheets_of_slot(uint slot) {
 
 uint slots_per_block() { return (params.frame.slot_count + SORT_BLOCKS - 1u) / SORT_BLOCKS; }
 
-// Slots of a block, half open.
+// The slots of a block, half open.
 uvec2 slots_of_block(uint block) {
     return min(uvec2(block, block + 1u) * slots_per_block(), uvec2(params.frame.slot_count));
 }

@@ -1,6 +1,6 @@
-// Compacts the voxels that can be seen, or lie beside matter that one sees through, into splat records, brick by brick (engine/culling/brick_runs.h). Each invocation owns a
-// slice of a brick; the first dispatch counts, the second writes where the host's prefix sum of the counts says.
-// 2a_finish_splats gives them their edges.
+// Compacts voxels into splat records, brick by brick (engine/culling/brick_runs.h): visible voxels, and voxels beside
+// translucent matter. Each invocation owns one slice of a brick. The first dispatch counts; the second writes at the
+// positions from the host's prefix sum of the counts. 2a_finish_splats adds the edges.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -30,7 +30,7 @@ uint material_at(ivec3 p) { return material_of(voxel(p)); }
 
 void main() {
     dims = params.scene.dims;
-    // Bricks side by side, slice by slice: so do the voxels of invocations that run together lie in memory.
+    // Adjacent invocations own adjacent bricks of one slice, so that their voxels are close in memory.
     ivec3 size = params.scene.core_size;
     uvec3 runs = uvec3(uvec2(size.xy) + BRICK - 1u, uint(size.z)) / uvec3(BRICK, BRICK, 1u);
     uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
@@ -49,12 +49,12 @@ void main() {
         if (BURIED == 1u) there = imageLoad(buried, p).r == 0u;
         if (CLIP_KEEP + CLIP_REMOVE > 0u) there = there && !is_cut_away(vec3(p), params.scene.reach);
         uvec2 code = uvec2(0u);
-        IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.seen_through != 0u)) code = imageLoad(edges, p).xy;
+        IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.translucent_mask != 0u)) code = imageLoad(edges, p).xy;
         Beside beside = unpack_beside(code.y);
         for (uint material = 0u; material <= ISO_COUNT; ++material) {
             bool carried = material + beside.below >= own && material <= own + beside.above;
             bool visible = there && (material == own ? in_mask(params.scene.visible_mask, own)
-                                                     : carried && in_mask(params.scene.seen_through, material));
+                                                     : carried && in_mask(params.scene.translucent_mask, material));
             float value = 0.0;
             if (TRANSFER == 1u) {
                 Edge e = unpack_edge(code.x, code.y);

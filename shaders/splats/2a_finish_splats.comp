@@ -1,5 +1,5 @@
-// Gives each collected splat its edge or the face that fits the surface around it: one invocation a splat, where voxels that are
-// seen lie one behind the other. docs/method.md, pass 2.
+// Gives each collected splat its edge, or the face that fits the surface around it. One invocation per splat of the
+// compact list. docs/method.md, pass 2.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #extension GL_KHR_shader_subgroup_basic : require
@@ -22,7 +22,7 @@ ivec3 dims;
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
 
-// The field's own at a voxel, as surfels are found in it.
+// The gradient at a voxel, of the field in which surfels are found.
 vec3 field_gradient(ivec3 p) {
     if (ESTIMATOR == CUBIC) return bspline_slope(p, vec3(0.0)).xyz;
     return voxel_gradient(p);
@@ -45,15 +45,16 @@ void main() {
         e.d2 = 1e9;
         uint normal = code.x;
         if (FACES == 1u) {
-            // What the voxel itself found is a point of the surface; its kernel is cut at what fits all of those around.
+            // The voxel's own surfel is one point of the surface; the fitted face uses all surfels around and cuts the
+            // kernel.
             Face face = fit_face(p, material);
             bool near = face.edge.state >= EDGE_LOWER && abs(face.edge.d) <= params.scene.band;
-            bool through = in_mask(params.scene.seen_through, material);
+            bool through = in_mask(params.scene.translucent_mask, material);
             bool cut = near && (!through || abs(face.edge.d) < KERNEL_RADIUS);
             vec3 g = cut ? vec3(0.0) : field_gradient(p);
             float slope = length(g);
             Edge plain = Edge(-g / max(slope, 1e-30), 1e9, 1e9, slope >= GRADIENT_MIN ? EDGE_NORMAL : EDGE_NONE);
-            // What a face but for the reach would cut is lit as under it.
+            // If the face is too far away to cut the kernel, the splat is lit with the face's normal at the voxel.
             vec3 under = (face.edge.state == EDGE_UPPER ? -1.0 : 1.0) * (face.edge.n - face.edge.d * bent(face.h, face.edge.n));
             vec3 lit = mix(under / max(length(under), 1e-6), plain.n, slope >= GRADIENT_MIN ? face.steep : 0.0);
             if (near && dot(lit, lit) > 1e-6) plain = Edge(normalize(lit), 1e9, 1e9, EDGE_NORMAL);

@@ -1,5 +1,5 @@
-// For every splat record of bricks in view: is it in the picture, in which sheet, and which tiles does it touch, or which pixels
-// its sheet group; and of a table of footprints, its layers and how they are turned.
+// For every splat record of visible bricks: whether it is in the picture, its sheet, and the tiles or the sheet group's
+// pixels that it touches. With a table of footprints: also its layers and their rotation.
 // docs/method.md, pass 3.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -24,7 +24,7 @@ layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 
-// A box grows only outwards, so a look before the atomic spares nearly all of them.
+// A box only grows, so a plain read avoids nearly all atomics.
 void grow(GroupsRef groups, uint g, ivec4 box) {
     ivec4 now = groups.at[g].rect;
     if (box.x < now.x) atomicMin(groups.at[g].rect.x, box.x);
@@ -33,7 +33,7 @@ void grow(GroupsRef groups, uint g, ivec4 box) {
     if (box.w > now.w) atomicMax(groups.at[g].rect.w, box.w);
 }
 
-// Where splat i lies on the screen, for those who draw it with sheets `first` to `last`.
+// Records the screen box of splat i for drawing in the sheets `first` to `last`.
 void note(uint i, uint first, uint last, ivec4 box) {
     if (TILES == 1u) {
         uvec4 tiles = uvec4(uvec2(box.xy) / TILE, (uvec2(box.zw) + TILE - 1u) / TILE);
@@ -61,7 +61,8 @@ void main() {
     Projection p = place_splat(i, splat, e);
     project_support(p);
     ivec4 box = pixel_box(p);
-    // Beside matter a kernel's own middle is on the face's far side, and further off it has nothing of it.
+    // A splat of a voxel on the face's far side uses the depth of its foot point. Beyond the kernel's radius, its
+    // kernel contains none of the matter.
     float beside = WARP == FACE && e.state >= EDGE_LOWER ? min(e.d, 0.0) : 0.0;
     bool drawn = there && beside > -params.frame.support && p.visible && box.x < box.z && box.y < box.w;
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
@@ -70,7 +71,7 @@ void main() {
             select_footprint(e, is_in_table(i, e, splat.edge >> 28), p.position - params.frame.eye, params.frame.table_depth);
     int most = int(params.frame.sheet_count) - 1;
     if (SLICED == 1u) {
-        // Depths relative to the first sheet, where a far eye costs no digits.
+        // Depths relative to the first sheet, so that a far eye costs no precision.
         float middle = dot(params.frame.view_z, p.position + p.centre) - params.frame.sheet_zero;
         float reach = p.radius * length(params.frame.view_z);
         int first = clamp(int(floor((middle - reach) / params.frame.sheet_thickness)), 0, most);
@@ -78,9 +79,9 @@ void main() {
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(first) | uint(last - first) << SHEET_BITS : SHEET_NONE;
         if (drawn) note(i, uint(first), uint(last), box);
     } else {
-        // What it has lies behind the face, and matter that one sees through a sheet before what its face leads to: neither
-        // another material's splats are to come between, nor is what hides it to be in one sheet with it.
-        bool before = FACES && e.state >= EDGE_LOWER && (params.frame.seen_through >> (splat.edge >> 28) & 1u) == 1u;
+        // The matter lies behind the face. Translucent matter is drawn one sheet before the matter that its face leads
+        // to: no splat of another material may come between, and the occluder behind may not be in the same sheet.
+        bool before = FACES && e.state >= EDGE_LOWER && (params.frame.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
         float apart = before ? params.frame.sheet_thickness / length(params.frame.view_z) : 0.0;
         float depth = p.view.z + (beside - apart) * dot(params.frame.view_z, e.n);
         int sheet = max(int(floor(depth / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;

@@ -1,4 +1,4 @@
-// For every entry of a chunk: what its pixels share, once instead of for every block of pixels that it may touch.
+// Computes once per entry of a chunk what all its pixels share, instead of once per block of pixels that it may touch.
 // docs/method.md, 4_prepare_splats.
 #version 460
 #extension GL_GOOGLE_include_directive : require

@@ -1,4 +1,4 @@
-// Two-sided classification: what a voxel at an edge holds is told by the value a voxel further on its own side.
+// Two-sided classification: a voxel at an edge takes the value at a point further inside its own material.
 // docs/method.md, Transfer functions. The including shader includes common/trilinear.glsl, common/material.glsl and
 // edges/edge_record.glsl.
 #include "shaders/drivers/if_any.glsl"
@@ -14,8 +14,9 @@ float classified_value(ivec3 p, float own, uint material, Edge e) {
     return value;
 }
 
-// What a voxel beside matter of another material carries of that: the value a voxel behind the edge, or where there is less of it the
-// middle of the material's interval; of an outermost one the outermost sample around.
+// The value of a voxel beside matter of another material, for that material: the value 1 voxel behind the edge. If that
+// is not in the material's interval: the middle of the interval, or the extreme sample around for an outermost
+// interval.
 float carried_value(ivec3 p, uint own, uint material, Edge e) {
     bool outermost = material == 0u || material == ISO_COUNT;
     float value = 0.0;

@@ -1,18 +1,20 @@
-// The planes that cut a kernel beside its face at a crease and at a corner, stored in place of second derivatives. docs/method.md, 2_collect_splats.
+// Packs the planes that cut a kernel besides its face, at creases and corners; stored instead of second derivatives.
+// docs/method.md, 2_collect_splats.
 #ifndef EDGESPLAT_CREASE_RECORD_GLSL
 #define EDGESPLAT_CREASE_RECORD_GLSL
 #include "shaders/edges/edge_record.glsl"
 
-const uint FACE_CREASED = 1u << 31;  // of the first of the two words: a plane, not second derivatives
+const uint FACE_CREASED = 1u << 31;  // in the first of the two words: the record contains a plane, not second derivatives
 
-// A plane: its normal, away from the matter, and its distance from the voxel, CREASE_NONE where there is none.
+// A plane: its normal, which points out of the matter, and its distance from the voxel. CREASE_NONE: no plane.
 const vec4 CREASE_NONE = vec4(0.0, 0.0, 0.0, 1e9);
 
-// A third plane, square to face and crease, by its distance: negative where its normal is against their cross product, CORNER_NONE
-// where there is none.
+// The distance of a third plane, perpendicular to face and crease. Negative if its normal points against their cross
+// product. CORNER_NONE: no third plane.
 const float CORNER_NONE = 1e9;
 
-// Its normal and distance as an edge's; of the corner's plane a sign and 13 bits. Bit 30 is a face's (FACE_MIXED).
+// Normal and distance in the format of an edge; the corner's plane as a sign and 13 bits. Bit 30 belongs to faces
+// (FACE_MIXED).
 uvec2 pack_crease(vec4 plane, float corner) {
     int d = int(round(clamp(plane.w / EDGE_DISTANCE_UNIT, -1.0, 1.0) * 32767.0));
     uint third = min(uint(round(abs(corner) / EDGE_DISTANCE_UNIT * 8190.0)), 8191u) | (corner < 0.0 ? 1u << 13 : 0u);

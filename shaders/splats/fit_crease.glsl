@@ -1,23 +1,23 @@
-// A crease beside a splat: up to three planes between which its matter lies, where no quadric fits. docs/method.md, pass 2,
-// creases; mirrored by engine/reference/creases.h. In shaders/splats/fit_face.glsl.
+// Fits a crease: up to three planes that bound the matter beside a splat where no quadric fits. docs/method.md, pass 2,
+// creases; mirrored by engine/reference/creases.h. Included by shaders/splats/fit_face.glsl.
 #include "shaders/drivers/if_any.glsl"
 
-// No array: what a loop indexes of one in a struct came out wrong on lavapipe 22.3.
+// No array: lavapipe 22.3 read array elements in a struct incorrectly when a loop indexed them.
 struct CreaseFit {
     bool found;
-    vec4 first;  // n, distance from the voxel; the nearest
+    vec4 first;  // n, distance from the voxel; the nearest plane
     vec4 second;
-    vec4 third;  // CREASE_NONE: there are but two
+    vec4 third;  // CREASE_NONE: there are only two planes
 };
 
-// From where it is looked for: the surfel at `middle`, n, nearest to voxel p.
+// The state of the search: voxel p, and its nearest surfel at `middle` with the normal n.
 struct CreaseSight {
     ivec3 p;
     uint material;
     vec3 middle;
     vec3 n;
     uint state;
-    bool sharp;  // samples around have two values alone: the spline rounds what is sharp
+    bool sharp;  // the samples around have only two values: the spline rounds sharp edges
 };
 
 float crease_weight(Surfel s, vec3 middle, uint state) {
@@ -26,7 +26,7 @@ float crease_weight(Surfel s, vec3 middle, uint state) {
     return s.there && !s.border && s.state == state ? w * w : 0.0;
 }
 
-// The normal, of those seen, that is least like some; 0 where all are like one of them.
+// Among the surfels so far, the normal that is least similar to given ones; 0 if all are similar to one of them.
 struct Different {
     vec3 n;
     float like;
@@ -34,14 +34,15 @@ struct Different {
 
 Different none_different(bool sharp) { return Different(vec3(0.0), sharp ? CREASE_ROUNDED : CREASE_TURNED); }
 
-// Of what differs as much the first is taken, whichever way numbers are rounded.
+// The first of equally different normals is kept, independent of rounding.
 void see_different(inout Different most, Surfel s, vec3 middle, uint state, float like) {
     bool better = crease_weight(s, middle, state) > 0.02 && like < most.like - 1e-4;
     most.like = better ? like : most.like;
     most.n = better ? s.n : most.n;
 }
 
-// What only rounds the way between two planes, as seen from where the normal is n, is of neither.
+// True for a surfel on the rounded transition between two planes, relative to the normal n. It belongs to neither
+// plane.
 bool is_rounding(vec3 n, vec3 other) {
     float like = dot(n, other);
     return like > CREASE_ROUNDED && like < CREASE_ALIKE;
@@ -79,7 +80,7 @@ PlaneFit fit_plane(CreaseSight sight, vec3 seed) {
             sum += w;
         }
         fit.place = places / max(sum, 1e-9);
-        // Where the spline rounds, its normals are tilted beside creases, and places say more.
+        // If the spline rounds, its normals are tilted beside creases, and the positions are more reliable.
         mat3 about = spread / max(sum, 1e-9) - outerProduct(fit.place, fit.place) + mat3(CREASE_SPREAD);
         if (sight.sharp) normals = inverse(about) * normals;
         fit.n = sum > 0.05 ? normalize(normals) : vec3(0.0);
@@ -87,15 +88,15 @@ PlaneFit fit_plane(CreaseSight sight, vec3 seed) {
     return fit;
 }
 
-// Whether the plane of one cuts what the other lies on: matter lies inside of all of them, and where a crease is hollow it does not.
-// Planes that face away from each other are a wall's.
+// Whether the plane of one fit cuts off the points of the other. The matter must lie inside all planes; at a hollow
+// crease it does not. Planes that face away from each other belong to a wall.
 bool cuts_other(PlaneFit fit, PlaneFit other) {
     return dot(fit.n, other.place - fit.place) > -CREASE_BEHIND || dot(fit.n, other.n) < -0.5;
 }
 
 vec4 plane_of(PlaneFit fit) { return dot(fit.n, fit.n) > 0.0 ? vec4(fit.n, dot(fit.n, fit.place)) : CREASE_NONE; }
 
-// The nearer comes first.
+// Sorts two planes, the nearer first.
 void order_planes(inout vec4 a, inout vec4 b) {
     bool nearer = b.w < a.w - 1e-4;
     vec4 other = b;
@@ -103,10 +104,10 @@ void order_planes(inout vec4 a, inout vec4 b) {
     a = nearer ? other : a;
 }
 
-// `a`: the normal least like that of the surfel at `middle`.
+// `a`: the normal that is least similar to that of the surfel at `middle`.
 CreaseFit fit_crease(CreaseSight sight, vec3 a) {
     CreaseFit found = CreaseFit(false, CREASE_NONE, CREASE_NONE, CREASE_NONE);
-    // Where all normals are alike, as nearly everywhere, nothing else is looked for.
+    // If all normals are similar, as almost everywhere, the search ends here.
     IF_ANY(dot(a, a) > 0.0) {
         vec3 b = most_different(sight, a, a);
         vec3 c = most_different(sight, a, b);
@@ -126,7 +127,7 @@ CreaseFit fit_crease(CreaseSight sight, vec3 a) {
     return found;
 }
 
-// Of the third plane, where it is square to the first two and passes in front of the voxel; as pack_crease() takes it.
+// The third plane for pack_crease(), if it is perpendicular to the first two and passes in front of the voxel.
 float corner_of(CreaseFit crease) {
     vec3 across = normalize(cross(crease.first.xyz, crease.second.xyz));
     float like = dot(across, crease.third.xyz);
@@ -134,14 +135,14 @@ float corner_of(CreaseFit crease) {
     return kept ? sign(like) * crease.third.w : CORNER_NONE;
 }
 
-// How far a point lies outside.
+// Distance of a point from the planes' intersection region; positive outside.
 float off_crease(CreaseFit crease, vec3 r) {
     float two = max(dot(crease.first.xyz, r) - crease.first.w, dot(crease.second.xyz, r) - crease.second.w);
     return max(two, dot(crease.third.xyz, r) - crease.third.w);
 }
 
-// Squared, summed over the surfels around, by weight, and over samples that lie on the wrong side.
-// Where it is sharp, what lies inside was rounded.
+// Sum of squared distances: of the surfels around, weighted, and of the samples on the wrong side. If the field is
+// sharp, surfels inside the planes are not errors, since the spline has rounded them.
 float crease_error(CreaseSight sight, CreaseFit crease) {
     float error = 0.0;
     ivec3 p = sight.p, around = p + ivec3(round(sight.middle));

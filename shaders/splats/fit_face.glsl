@@ -1,7 +1,6 @@
-// A splat's face: the quadric that fits the surfels around it best, by least squares. docs/method.md, pass 2,
-// faces; mirrored by engine/reference/faces.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
-// `material_at(ivec3)`, `field_gradient(ivec3)` and
-// `trilinear(ivec3, vec3)`.
+// Fits a splat's face: the quadric with the least squared error to the surfels around. docs/method.md, pass 2, faces;
+// mirrored by engine/reference/faces.h. The including shader declares `edges` (rg32ui uimage3D), `dims`,
+// `material_at(ivec3)`, `field_gradient(ivec3)` and `trilinear(ivec3, vec3)`.
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/crease_record.glsl"
@@ -12,18 +11,18 @@ struct Surfel {
     bool there;
     vec3 at;  // relative to the voxel
     vec3 n;   // out of the voxel's material
-    uint state;  // which end of the material's interval it is
-    bool border; // of the volume
+    uint state;  // the end of the material's interval that it lies on
+    bool border; // it lies on the volume's border
 };
 
-// `material`: whose border is wanted, from either side.
+// The surfel of voxel q, relative to voxel p. `material`: the material that it must bound, from either side.
 Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
     Surfel s = Surfel(false, vec3(0.0), vec3(0.0), EDGE_NONE, false);
     bool inside = all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims));
     ivec3 held = clamp(q, ivec3(0), dims - 1);
     uvec2 code = imageLoad(edges, held).xy;
     uint state = code.y >> 26 & 3u;
-    // The volume's border bounds what is inside of it alone.
+    // The volume's border only bounds the material inside it.
     bool at_border = (code.y & EDGE_BORDER) != 0u;
     IF_ANY(inside && state >= EDGE_LOWER) {
         Edge e = unpack_edge(code.x, code.y);
@@ -40,8 +39,8 @@ Surfel surfel_at(ivec3 p, ivec3 q, uint material) {
     return s;
 }
 
-// Of a surfel at r from the middle, where the surface has the normal n: those that face the other way count from further off, since
-// they may be the other side of the same wall.
+// Weight of a surfel with the normal `other` at r from the middle, where the surface has the normal n. Opposite surfels
+// may lie on the other side of the same wall, so they have a larger radius.
 float surfel_weight(vec3 r, vec3 n, vec3 other) {
     float along = dot(r, n);
     float turned = clamp(-2.0 * dot(n, other), 0.0, 1.0);
@@ -54,15 +53,15 @@ float surfel_weight(vec3 r, vec3 n, vec3 other) {
 struct Face {
     Edge edge;
     Bending h;
-    bool mixed;  // what faces the other way around is the other end of the material's interval
+    bool mixed;  // opposite surfels around are the other end of the material's interval
     bool creased;
     vec4 crease;
-    float corner;  // as pack_crease() takes it
-    bool traced;  // it fits badly: rays are to find the surface
-    float steep;  // how much of the field's direction at the voxel is believed, 0 to 1
+    float corner;  // in the format of pack_crease()
+    bool traced;  // the quadric fits badly: rays must find the surface
+    float steep;  // weight of the field's direction at the voxel, 0 to 1
 };
 
-// How far off surfels lie from the quadrics, as sums of w and of w times squares; what the wall measures, by the second.
+// Distances of the surfels from the quadrics, as sums of w * distance^2; for the wall also sums of w and w * distance.
 struct FitErrors {
     float weight;
     float one;
@@ -88,7 +87,7 @@ FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Q
             float own_off = quadric_at(own, r) / max(length(quadric_slope(own, r)), 0.2);
             e.own += w * own_off * own_off;
             e.same += facing > 0.0 ? w * level * level : 0.0;
-            // What faces sideways belongs to no wall.
+            // Sideways surfels do not belong to a wall.
             bool opposed = facing < -0.5;
             e.same += facing <= 0.0 && !opposed ? w : 0.0;
             e.opposite += opposed ? w : 0.0;
@@ -99,8 +98,8 @@ FitErrors fit_errors(ivec3 p, uint material, vec3 middle, vec3 n, Quadric one, Q
     return e;
 }
 
-// The field's own expansion around voxel p, negative where the field is on the voxel's side of `iso`; design (13). Of about
-// unit slope where it is 0; `slope` is the field's there.
+// Second-order expansion of the field around voxel p, negative where the field is on the voxel's side of `iso`; design
+// (13). Scaled to a slope of about 1 at its zero; `slope` is the field's slope there.
 Quadric field_quadric(ivec3 p, float iso, float side, out float slope) {
     ivec3 l = max(p - 1, ivec3(0)), h = min(p + 1, dims - 1);
     float f = voxel(p), off = iso - f;
@@ -116,15 +115,16 @@ Quadric field_quadric(ivec3 p, float iso, float side, out float slope) {
     return Quadric(scale * off, -scale * g, Bending(-scale * diagonal, -scale * mixed));
 }
 
-// The same about another point.
+// The same quadric around another point.
 Quadric quadric_about(Quadric q, vec3 m) { return Quadric(quadric_at(q, m), quadric_slope(q, m), q.h); }
 
 struct Foot {
     vec3 at, slope;
-    bool real;  // else the quadric has no surface in reach
+    bool real;  // false: the quadric has no surface in reach
 };
 
-// The foot point: where the quadric's own normal leads to the voxel, from `at`; all relative to the quadric's middle.
+// The foot point: the surface point whose normal passes through the voxel. Starts at `at`; all positions are relative
+// to the quadric's origin.
 Foot foot_of(Quadric q, vec3 voxel_at, vec3 at) {
     for (int i = 0; i < FOOT_STEPS; ++i) {
         vec3 slope = quadric_slope(q, at);
@@ -140,10 +140,10 @@ Foot foot_of(Quadric q, vec3 voxel_at, vec3 at) {
     return Foot(at, slope, length(slope) >= 0.3 && abs(quadric_at(q, at)) < 0.05 && length(at) < FIT_RADIUS);
 }
 
-// Where matter ends along -n, by surfels that the fit does not look at: level with the face, or, where it is the same end of the
-// interval, tilted against it.
+// The end of the matter along -n, from surfels that the fit does not use. Its normal must be parallel to the face's; if
+// it is the same end of the interval, it may be tilted.
 struct FaceBehind {
-    float away;  // 1e9: none is known
+    float away;  // 1e9: unknown
     vec3 n;
     uint state;
 };
@@ -162,16 +162,16 @@ FaceBehind face_behind(ivec3 p, uint material, vec3 n, uint state) {
     return behind;
 }
 
-// Of a face with the normal n: what lies across n of H n moved to `turn`, by a share. By so much its slope turns a voxel along n;
-// on the face itself that is of third order.
+// Moves the component of H n perpendicular to n towards `turn`, by a share. This is how far the slope turns over a
+// voxel along n. On the face itself the change is of third order.
 Bending turned(Bending h, vec3 n, vec3 turn, float share) {
     vec3 hn = bent(h, n), change = share * (turn - hn);
     change -= dot(change, n) * n;
     return Bending(h.diagonal + 2.0 * n * change, h.mixed + n.yxx * change.zzy + change.yxx * n.zzy);
 }
 
-// By how much samples around lie on the wrong side of each of three quadrics about `middle`, squared: of `one`, of the wall
-// from `wall` to its level, of the field's own.
+// Sums of squared distances of the samples around that lie on the wrong side of three quadrics about `middle`: `one`;
+// the wall between `wall` and its level; the field's `own`.
 vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall, float level, Quadric own) {
     vec3 wrong = vec3(0.0);
     for (int i = 0; i < 27; ++i) {
@@ -188,7 +188,7 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
     return wrong;
 }
 
-// Whether the samples around have two values alone: how the field goes between them is not known then.
+// Whether the samples around have only two values. Then the shape of the field between them is unknown.
 bool has_two_values(ivec3 p) {
     float low = 1e30, high = -1e30;
     for (int i = 0; i < 27; ++i) {
@@ -206,7 +206,7 @@ bool has_two_values(ivec3 p) {
 
 #include "shaders/splats/fit_crease.glsl"
 
-// The face of voxel p's kernel, of its own material or of matter that it lies beside. Without a surface in reach: no edge.
+// The face of voxel p's kernel, for its own material or for a material beside it. No edge if no surface is in reach.
 Face fit_face(ivec3 p, uint material) {
     Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE, false, 0.0);
     vec3 middle = vec3(0.0), n = vec3(0.0);
@@ -219,10 +219,11 @@ Face fit_face(ivec3 p, uint material) {
         ivec3 o = ivec3(i % 5, i / 5 % 5, i / 25) - 2, q = p + o;
         Surfel s = surfel_at(p, q, material);
         float away = s.there ? length(s.at) : 1e9;
-        // The border ends matter however a kernel is cut; a surface beside it is known from its face alone.
+        // The volume's border ends the matter for every kernel, but only a face describes a surface beside it. So
+        // surfaces rank first.
         float rank = away + (s.border ? BORDER_BEHIND : 0.0);
-        // Of what is equally far the first is taken, whichever way numbers are rounded.
-        // What is behind the outermost samples no voxel beside it knows.
+        // The first of equally distant surfels is kept, independent of rounding. For matter beside the voxel, surfels
+        // beyond the outermost samples are ignored.
         vec3 at = vec3(p) + s.at;
         bool known = !beside || (!s.border && all(greaterThanEqual(at, vec3(0.0))) && all(lessThanEqual(at, vec3(dims - 1))));
         bool nearer = away < FACE_SEARCH && known && rank < nearest - 1e-4;
@@ -238,7 +239,7 @@ Face fit_face(ivec3 p, uint material) {
     }
     bool found = nearest < 1e9;
     if (border) {
-        // A plane, and behind it where the volume ends on the other side.
+        // A plane; the second face is the opposite border of the volume.
         float d = dot(middle, n);
         face.edge = Edge(n, d, dot(abs(n), vec3(params.scene.volume_dims)) - d, EDGE_LOWER);
         return face;
@@ -259,7 +260,7 @@ Face fit_face(ivec3 p, uint material) {
             mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
             see_different(different, s, middle, state, dot(s.n, n));
         }
-        // Where none is seen a layer ends at its lower values.
+        // If no opposite surfel is in reach, a layer ends at its lower values.
         face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
         Quadric one = quadric_of(all), wall = quadric_of(same);
         bool upper = state == EDGE_UPPER;
@@ -268,7 +269,7 @@ Face fit_face(ivec3 p, uint material) {
         Quadric centred = field_quadric(p, iso, upper ? -1.0 : 1.0, slope_there);
         Quadric own = quadric_about(centred, middle);
         FitErrors e = fit_errors(p, material, middle, n, one, wall, own);
-        // Both faces of a wall are levels of one quadric, the one that its nearer face fits.
+        // The two faces of a wall are level sets of one quadric, fitted to the nearer face.
         float level = e.opposite_sum / max(e.opposite, 1e-20);
         float wall_error = e.same + max(e.opposite_sum2 - e.opposite_sum * level, 0.0);
         bool is_wall = e.opposite > 0.0 && level < -FIT_THINNEST && wall_error < FIT_WALL * e.one;
@@ -277,7 +278,8 @@ Face fit_face(ivec3 p, uint material) {
         Quadric q = one;
         if (is_wall) q = wall;
         Foot foot = foot_of(q, -middle, vec3(0.0));
-        // Where what is found around fits no single quadric the field's own may: specks, corners, what is thinner than a voxel.
+        // If no single quadric fits the surfels around, the field's own may: at specks, corners, and structures thinner
+        // than a voxel.
         bool is_own = !found || (error > FIT_WELL && e.own + wrong.z < (error > FIT_BADLY ? 1.0 : FIT_OWN) * error);
         IF_ANY(is_own || !foot.real) {
             vec3 d = centred.h.diagonal;
@@ -296,7 +298,7 @@ Face fit_face(ivec3 p, uint material) {
             CreaseFit crease = fit_crease(sight, different.n);
             float left = 1e9;
             IF_ANY(crease.found) left = crease_error(sight, crease);
-            // Where two planes meet at a blunt angle a narrow ridge looks the same.
+            // At a blunt angle, a narrow ridge looks like two planes.
             bool blunt = dot(crease.first.xyz, crease.second.xyz) > CREASE_BLUNT;
             face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best || (sharp && !blunt && left < CREASE_ROUNDED_LEFT);
             face.crease = crease.second;
@@ -311,17 +313,19 @@ Face fit_face(ivec3 p, uint material) {
         face.edge.n = foot.real ? scale * foot.slope : n;
         face.edge.d = dot(about + (foot.real ? foot.at : vec3(0.0)), face.edge.n);
         face.edge.state = is_own && !foot.real ? EDGE_NONE : state;
-        // Beside matter an expansion may make up a surface where the field has none.
+        // Beside matter, the expansion may have a surface where the field has none.
         IF_ANY(is_own && beside) {
             float off = abs(trilinear(p, face.edge.d * face.edge.n) - iso);
             if (is_own && beside && !(off < MADE_UP * slope_there)) face.edge.state = EDGE_NONE;
         }
         face.h = Bending(scale * q.h.diagonal, scale * q.h.mixed);
         if (foot.real && is_wall) face.edge.d2 = max(-level * scale - face.edge.d, 0.0);
-        // Of a layer so thin that samples around have both of its sides, and perhaps none of it, the fit may see one face.
+        // In a layer so thin that the samples around lie on both sides, and perhaps none inside, the fit may contain
+        // only one face.
         bool layer = beside && crossed.x && crossed.y && !is_wall;
         if (layer) face.edge.d2 = (params.scene.iso[material] - params.scene.iso[material - 1u]) / slope_there - face.edge.d;
-        // Of a thicker wall the fit sees one face. What is bent outwards much over its thickness is none.
+        // In a thicker wall the fit contains only one face. No wall if the face bends outwards strongly over the
+        // thickness.
         vec3 out_of = face.edge.n;
         float d = face.edge.d;
         FaceBehind behind = face_behind(p, material, out_of, state);
@@ -329,16 +333,16 @@ Face fit_face(ivec3 p, uint material) {
         bool thick = one_sided && behind.away < 1e9 && largest_bend(face.h) * (d + behind.away) < WALL_BENT;
         face.edge.d2 = thick ? behind.away : face.edge.d2;
         face.mixed = thick ? behind.state != state : layer || face.mixed;
-        // From one face to the other its slope turns from one normal to the other; else, where the fit saw no other side, into
-        // the field's at the voxel. Where that is shallow it changes its direction fast.
+        // In a wall, the slope turns from one face's normal to the other's. Elsewhere, if the fit saw no opposite side,
+        // it turns to the field's slope at the voxel; a shallow slope changes direction quickly.
         bool alone = one_sided && !thick && !is_own && e.opposite == 0.0;
         vec3 turn = behind.n / (-dot(behind.n, out_of) * (d + behind.away));
         IF_ANY(one_sided && !is_own) {
             vec3 g = (upper ? 1.0 : -1.0) * field_gradient(p);
-            float slope = length(g), on_the_way = abs(voxel(p) - iso) / max(abs(d), 1e-6);
+            float slope = length(g), mean_slope = abs(voxel(p) - iso) / max(abs(d), 1e-6);
             float depth = beside ? d : max(d, 0.0);
             if (alone) turn = -g / max(slope, 1e-30) * depth / (depth * depth + TURN_FROM);
-            face.steep = one_sided && !is_own ? clamp((slope / max(on_the_way, 1e-6) - STEEP_FROM) / STEEP_OVER, 0.0, 1.0) : 0.0;
+            face.steep = one_sided && !is_own ? clamp((slope / max(mean_slope, 1e-6) - STEEP_FROM) / STEEP_OVER, 0.0, 1.0) : 0.0;
         }
         float share = thick ? 1.0 : clamp(2.0 * length(centred.g) - 1.0, 0.0, 1.0);
         if (thick || alone) face.h = turned(face.h, out_of, turn, share);

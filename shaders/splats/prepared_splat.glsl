@@ -1,5 +1,6 @@
-// What all pixels of a splat share, found once: where it lies, its kernel, its colour. Kept in records of PREPARED_STRIDE vec4 from
-// 4_prepare_splats to 5_draw_tiles; `prepared_stride` in C++ has the same sum. After shaders/splats/splat_inputs.glsl.
+// Data that all pixels of a splat share, computed once: position, kernel, colour. 4_prepare_splats stores it in records
+// of PREPARED_STRIDE vec4 for 5_draw_tiles; `prepared_stride` in C++ computes the same size. Include after
+// shaders/splats/splat_inputs.glsl.
 #ifndef EDGESPLAT_PREPARED_SPLAT_GLSL
 #define EDGESPLAT_PREPARED_SPLAT_GLSL
 #include "shaders/splats/splat_conic.glsl"
@@ -8,11 +9,11 @@ struct PreparedSplat {
     SplatConic conic;
     vec3 start;      // rays_beside()
     float plane;
-    vec2 slopes;     // of the voxel; with antialias only
+    vec2 slopes;     // slopes of the voxel; only with antialias
     SplatInputs inputs;
 };
 
-// Whether it is traced is the last bit of its depth.
+// The last bit of the depth stores whether the splat is traced.
 float with_traced(float depth, bool traced) { return uintBitsToFloat(floatBitsToUint(depth) & ~1u | (traced ? 1u : 0u)); }
 bool conic_is_traced(SplatConic conic) { return (floatBitsToUint(conic.depth) & 1u) != 0u; }
 
@@ -47,7 +48,7 @@ const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2
 const uint PREPARED_TABLE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
 const uint PREPARED_STRIDE = PREPARED_TABLE + (FOOTPRINTS == TABLE ? 2u : 0u);
 
-// Entries of a chunk are consecutive and no more than there are slots.
+// The entries of a chunk are consecutive, and there are at most as many as slots.
 uint prepared_slot(uint entry) { return (entry & params.frame.prepared_mask) * PREPARED_STRIDE; }
 
 ivec2 prepared_texel(uint at) { return ivec2(at % PREPARED_ROW, at / PREPARED_ROW); }
@@ -94,10 +95,10 @@ SplatConic load_conic(uint entry) {
     return SplatConic(u.xy, vec3(u.zw, v.x), v.yz, v.w);
 }
 
-// Points of rays beside an entry's splat: rays_beside().
+// Reference point of the rays through an entry's splat: rays_beside().
 vec4 load_start(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START)); }
 
-// What draws an entry.
+// Loads the data that draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);
     if (FACES) {

@@ -1,9 +1,10 @@
-// The quadric that fits points of a surface and their normals. docs/method.md, Faces, 2; mirrored by engine/reference/quadrics.h.
+// Fits a quadric to points of a surface and their normals. docs/method.md, Faces, 2; mirrored by
+// engine/reference/quadrics.h.
 #ifndef EDGESPLAT_QUADRIC_GLSL
 #define EDGESPLAT_QUADRIC_GLSL
 #include "shaders/footprints/face_record.glsl"
 
-// Sums over surfels at r with normals m, by weight.
+// Weighted sums over surfels at r with normals m.
 struct Moments {
     float weight;
     vec3 r, m;
@@ -31,7 +32,7 @@ struct Quadric {
 float quadric_at(Quadric q, vec3 r) { return q.c + dot(q.g, r) + 0.5 * dot(r, bent(q.h, r)); }
 vec3 quadric_slope(Quadric q, vec3 r) { return q.g + bent(q.h, r); }
 
-// One of Jacobi's rotations: pq becomes 0.
+// One Jacobi rotation: pq becomes 0.
 void rotate(inout float pp, inout float qq, inout float pq, inout float rp, inout float rq, inout vec3 p, inout vec3 q) {
     float theta = (qq - pp) * 0.5;
     float t = pq / (abs(theta) + sqrt(theta * theta + pq * pq) + 1e-30) * (theta < 0.0 ? -1.0 : 1.0);
@@ -47,8 +48,9 @@ void rotate(inout float pp, inout float qq, inout float pq, inout float rp, inou
     q = s * old_p + c * q;
 }
 
-// Normals are linear in place: H is the symmetric matrix that fits them best, which solves H C + C H = D + D', C and D the
-// covariances of places, and of normals with places. g follows, and c from the places, which lie on the surface.
+// The normals of a quadric are linear in position. H is the symmetric matrix that fits them best: it solves H C + C H =
+// D + D', with C the covariance of positions and D that of normals with positions. g follows from H; c follows because
+// the points lie on the surface.
 Quadric quadric_of(Moments sums) {
     float share = 1.0 / max(sums.weight, 1e-20);
     vec3 r = share * sums.r, m = share * sums.m, squares = share * sums.squares, products = share * sums.products;

@@ -1,4 +1,4 @@
-// The sheet of an entry of `order`: the last one that begins at or before it.
+// The sheet of an entry of `order`: the last sheet that begins at or before it.
 uint sheet_of_entry(uint entry) {
     UintsRef starts = UintsRef(params.frame.sheet_starts);
     uint sheet = 0u;

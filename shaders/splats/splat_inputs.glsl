@@ -1,5 +1,5 @@
-// What a fragment needs of its splat, for all of its pixels: place, footprint, colour. docs/method.md, pass 5. After
-// shaders/splats/splat_projection.glsl, shading.glsl and transfer.glsl.
+// Data of a splat that is the same for all its pixels: position, footprint, colour. docs/method.md, pass 5. Include
+// after shaders/splats/splat_projection.glsl, shading.glsl and transfer.glsl.
 #ifndef EDGESPLAT_SPLAT_INPUTS_GLSL
 #define EDGESPLAT_SPLAT_INPUTS_GLSL
 #include "shaders/drivers/if_any.glsl"
@@ -10,15 +10,16 @@ struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
     vec4 color_sigma;      // payload, extinction per mm
     vec4 normal_distance;  // n, D
-    vec3 shape;            // negative: the splat is not warped; depths of the slice (mm from the voxel)
-    vec3 matter;           // colour before light: what a cut shows; with clip planes only
-    uvec2 number_material; // of the splat, likewise or with faces, and how its surface is lit
-    FaceForm face;         // with faces only: light falls where a ray meets it, and color_sigma has the colour before light
-    vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; with antialias only
-    SelectedFootprint selected;  // with a table only
+    vec3 shape;            // negative: the splat is not warped; then depths of the slice (mm from the voxel)
+    vec3 matter;           // unlit colour, for cuts; only with clip planes
+    uvec2 number_material; // number of the splat; material and lighting bits; only with clip planes or faces
+    FaceForm face;         // only with faces; light is evaluated where a ray meets it, and color_sigma contains the unlit colour
+    vec4 filtered;         // share, weights of distances in pixels and voxels, amplitude; only with antialias
+    SelectedFootprint selected;  // only with a table
 };
 
-// Beyond the volume's border no voxel carries matter: the outermost ones have more, so that there is as much of it.
+// No voxel beyond the volume's border carries matter. The outermost voxels get this weight instead, which keeps the
+// amount of matter.
 float border_weight(ivec3 voxel) {
     ivec3 dims = params.frame.dims;
     ivec3 outermost = (ivec3(equal(voxel, ivec3(0))) | ivec3(equal(voxel, dims - 1))) * ivec3(greaterThan(dims, ivec3(1)));
@@ -33,14 +34,14 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
     else
         material = params.frame.materials[splat.edge >> 28];
-    bool through = (params.frame.seen_through >> (splat.edge >> 28) & 1u) == 1u;
+    bool through = (params.frame.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
     if (FACES) material.a *= through ? border_weight(ivec3(round(p.position + params.frame.anchor))) : 1.0;
-    // A surface faces its lower values, whichever side of it the splat is on.
+    // The outward normal points to lower values, on either side of the surface.
     vec3 outward = e.state == EDGE_UPPER ? -e.n : e.n;
     vec3 world_normal = e.state == EDGE_NONE ? vec3(0.0) : normalize(params.frame.normal_to_world * outward);
     vec3 world_from_eye = params.frame.index_to_world * s.from_eye;
     vec3 to_eye = -unit_or_zero(world_from_eye);
-    // A wall's kernel reaches both faces, and the one that is seen faces the eye.
+    // A wall's kernel reaches both faces; the visible one faces the eye.
     bool turned = FOOTPRINTS != 0u && e.state >= EDGE_LOWER && e.d2 < params.frame.band && dot(world_normal, to_eye) < 0.0;
     if (turned) world_normal = -world_normal;
     float depth = SLICED == 1u ? p.view.z + clamp(0.0, depths.x, depths.y) : p.view.z;

@@ -1,5 +1,6 @@
-// Where a splat's support lies on the screen. The including shader declares the uniform block `params.frame` (its fields are
-// read in place, since a copy of the struct would load all of it for every splat) and the constants FOOTPRINTS, WARP and ANTIALIAS.
+// Projects a splat's support onto the screen. The including shader declares the uniform block `params.frame` and the
+// constants FOOTPRINTS, WARP and ANTIALIAS. The fields of the block are read in place, since a copy of the struct would
+// load all of it for every splat.
 #ifndef EDGESPLAT_SPLAT_PROJECTION_GLSL
 #define EDGESPLAT_SPLAT_PROJECTION_GLSL
 #include "shaders/drivers/if_any.glsl"
@@ -13,9 +14,9 @@
 struct Projection {
     vec3 position;    // voxel centre relative to the anchor, index space
     vec3 view;        // voxel centre, mm: right, down, forward of the eye
-    vec3 centre;      // of the sphere that holds the support, relative to the voxel centre, index space
-    float radius;     // its radius, voxels
-    LowPass filtered; // with antialias only
+    vec3 centre;      // of the bounding sphere of the support, relative to the voxel centre, index space
+    float radius;     // of that sphere, voxels
+    LowPass filtered; // only with antialias
     float depth;      // of the support's centre, mm
     vec2 slope;       // view.xy / view.z of the support's centre
     vec2 low, high;   // box of the support in slopes, relative to `slope`
@@ -28,24 +29,24 @@ vec3 view_position(vec3 position) {
                 dot(params.frame.view_z, position) + params.frame.anchor_z);
 }
 
-// What is known of a face beside its normal and distance.
+// Properties of a face besides its normal and distance.
 struct FaceTraits {
     Bending h;
     vec4 crease;
     float corner;
-    float deepest;  // no deeper under it its kernel is sampled, voxels
+    float deepest;  // the kernel is sampled at most this deep under the face, voxels
 };
 
-// Whether rays find its face.
+// Whether rays find the splat's face.
 bool is_traced(uint number) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
     return (code.x & FACE_CREASED) == 0u && (code.y & FACE_TRACED) != 0u;
 }
 
-// Where one sees through matter the voxels beside it carry what theirs do not: kernels are sampled where they are.
+// Voxels on both sides of a face carry translucent matter. So its kernels are not moved: the depth is 0.
 FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
-    bool hides = (params.frame.seen_through >> material & 1u) == 0u;
+    bool hides = (params.frame.translucent_mask >> material & 1u) == 0u;
     FaceTraits t = FaceTraits(Bending(unpack_bending(code.x), unpack_bending(code.y)), CREASE_NONE, CORNER_NONE, hides ? FACE_DEPTH : 0.0);
     if (CREASES == 1u) {
         bool creased = (code.x & FACE_CREASED) != 0u;
@@ -53,7 +54,7 @@ FaceTraits traits_of(uint number, Edge e, uint material) {
         t.corner = creased ? unpack_corner(code) : t.corner;
         t.h = Bending(creased ? vec3(0.0) : t.h.diagonal, creased ? vec3(0.0) : t.h.mixed);
     }
-    // In the table faces are plane: what bends so little is taken for that. It has no walls.
+    // The table contains plane faces only: slightly bent faces count as plane. It contains no walls.
     bool flat_enough = FOOTPRINTS == TABLE && e.d2 >= params.frame.band && bending_norm(t.h) <= TABLE_BENDING && t.crease.w >= CREASE_REACH;
     t.h = Bending(flat_enough ? vec3(0.0) : t.h.diagonal, flat_enough ? vec3(0.0) : t.h.mixed);
     return t;
@@ -68,7 +69,7 @@ FaceCut cut_of(Edge e, inout FaceTraits t) {
     float thickness = e.d2 < params.frame.band ? max(e.d + e.d2, 0.05) : 1e9;
     FaceCut cut = face_cut(e.d, dot(e.n, bent(t.h, e.n)), bending_norm(t.h), thickness, t.deepest);
     if (CREASES == 1u) {
-        // A plane that cuts nothing is none. That of a corner is the furthest.
+        // A plane that cuts nothing is removed. A corner's plane is the furthest of the three.
         bool cuts = t.crease.w < params.frame.support + cut.depth;
         t.crease = cuts ? t.crease : CREASE_NONE;
         t.corner = cuts ? t.corner : CORNER_NONE;
@@ -77,9 +78,9 @@ FaceCut cut_of(Edge e, inout FaceTraits t) {
     return cut;
 }
 
-// Box of a sphere's perspective image along one screen axis. With s the slope of a plane through the eye, measured from
-// the slope of the centre, the plane touches the sphere where s^2 (z^2 - r^2 |Z|^2) + 2 s r^2 X.Z - r^2 |X|^2 = 0, X the
-// axis functional of slope 0. Relative to the centre nothing cancels, however far the eye.
+// Bounds of a sphere's perspective image along one screen axis. s = slope of a plane through the eye, relative to the
+// centre's slope. The plane touches the sphere if s^2 (z^2 - r^2 |Z|^2) + 2 s r^2 X.Z - r^2 |X|^2 = 0, with X the axis
+// functional of slope 0. Relative to the centre nothing cancels, however far the eye.
 vec2 touching_slopes(vec3 x_axis, vec3 z_axis, float depth, float radius) {
     float r2 = radius * radius;
     float a = depth * depth - r2 * dot(z_axis, z_axis);
@@ -89,8 +90,8 @@ vec2 touching_slopes(vec3 x_axis, vec3 z_axis, float depth, float radius) {
     return vec2(-b - root, -b + root) / a;
 }
 
-// The same for a support that reaches the eye plane. Seen along the other screen axis it is an ellipse; with the eye
-// inside, every slope meets it, else the slopes beyond the one tangent that touches it in front of the eye.
+// The same for a support that reaches the eye plane. Seen along the other screen axis it is an ellipse. If the eye is
+// inside, every slope meets it; otherwise, the slopes beyond the one tangent that touches it in front of the eye.
 vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, float edge) {
     float r2 = radius * radius;
     float a = z * z - r2 * dot(z_axis, z_axis);
@@ -110,7 +111,7 @@ vec2 slopes_at_eye(vec3 x_axis, vec3 z_axis, float x, float z, float radius, flo
     return range;
 }
 
-// The widened kernel lies around the voxel. Splats so near that they may reach the eye stay as they are.
+// The widened kernel is centred at the voxel. Splats so near that they may reach the eye are not widened.
 void filter_splat(inout Projection p) {
     vec2 pixel = p.view.z * params.frame.pixel;
     vec3 u = normalize(p.position - params.frame.eye);
@@ -121,7 +122,7 @@ void filter_splat(inout Projection p) {
     p.centre = p.filtered.share > 0.0 ? vec3(0.0) : p.centre;
 }
 
-// Position and support; project_support() finds where they lie on the screen.
+// Computes position and support; project_support() computes the position on the screen.
 Projection place_splat(uint number, Splat splat, Edge e) {
     Projection p;
     uint nx = uint(params.frame.dims.x), ny = uint(params.frame.dims.y);
@@ -133,7 +134,7 @@ Projection place_splat(uint number, Splat splat, Edge e) {
         FaceTraits traits = traits_of(number, e, splat.edge >> 28);
         FaceCut cut = cut_of(e, traits);
         support = vec2(cut.shift, cut.radius);
-        // Where the surface cuts it only rays will see.
+        // Only the ray will find where the surface cuts the kernel.
         if (TRACED == 1u) support = is_traced(number) ? vec2(0.0, TRACE_REACH) : support;
     }
     p.centre = support.x * e.n;
@@ -142,11 +143,11 @@ Projection place_splat(uint number, Splat splat, Edge e) {
     return p;
 }
 
-// How far from its centre a splat is drawn across the ray.
+// Radius around its centre within which a splat is drawn, across the ray.
 float reach_across(Projection p) { return ANTIALIAS == 1u && p.filtered.share > 0.0 ? max(p.radius, p.filtered.reach) : p.radius; }
 
-// The support's part between two depths, mm relative to the voxel centre: a cap, or what is left of the sphere, lies in
-// the sphere over the circle in which the nearer plane cuts it.
+// Restricts the support to two depths, mm relative to the voxel centre. The part is a cap or a slice of the sphere. It
+// lies in the sphere around the circle in which the nearer plane cuts the support.
 void cut_support(inout Projection p, vec2 depths) {
     float unit = length(params.frame.view_z);
     float middle = dot(params.frame.view_z, p.centre);
@@ -173,23 +174,24 @@ void project_support(inout Projection p) {
         x = touching_slopes(params.frame.view_x - p.slope.x * params.frame.view_z, params.frame.view_z, centre.z, across);
         y = touching_slopes(params.frame.view_y - p.slope.y * params.frame.view_z, params.frame.view_z, centre.z, across);
     }
-    // A filter wider than its distance covers the picture.
+    // A filter wider than its distance covers the whole picture.
     if (ANTIALIAS == 1u && !p.at_eye && centre.z < 1.05 * across * length(params.frame.view_z)) x = y = vec2(-1e9, 1e9);
-    // Clipped to a little more than the picture, so that rounding loses no pixel.
+    // Clipped slightly outside the picture, so that rounding loses no pixel.
     p.low = max(vec2(x.x, y.x), -edge * 1.001 - p.slope);
     p.high = min(vec2(x.y, y.y), edge * 1.001 - p.slope);
     p.visible = p.visible && all(lessThan(p.low, p.high));
 }
 
-// Points of rays, relative to the voxel, index space: xyz is one of the ray with slopes (0, 0), w its depth, mm; the ray with slopes
-// (x, y) passes w * (x ray_x + y ray_y) beside it. At the voxel's depth or, where the splat may reach the eye, where every ray passes.
+// Points on rays, relative to the voxel, index space. xyz: a point of the ray with slopes (0, 0); w: its depth, mm. The
+// ray with slopes (x, y) passes through xyz + w * (x ray_x + y ray_y). The depth is the voxel's, or near_depth if the
+// splat may reach the eye.
 vec4 rays_beside(Projection p, bool at_eye) {
     vec2 slopes = p.view.xy / p.view.z;
     return at_eye ? vec4(params.frame.near_depth * params.frame.ray_z - (p.position - params.frame.eye), params.frame.near_depth)
                   : vec4(-p.view.z * (slopes.x * params.frame.ray_x + slopes.y * params.frame.ray_y), p.view.z);
 }
 
-// Slopes to pixels: x0 y0 x1 y1, half open, clipped.
+// The box in pixels: x0 y0 x1 y1, half open, clipped.
 ivec4 pixel_box(Projection p) {
     vec2 scale = 0.5 * vec2(params.frame.size) / vec2(params.frame.tan_half_x, params.frame.tan_half_y);
     vec2 low = (p.slope + p.low) * scale + 0.5 * vec2(params.frame.size);

@@ -1,6 +1,7 @@
-// One splat at one pixel: the optical depth of its kernel along the pixel's own ray, and that times its colour.
-// docs/method.md, pass 5; design (8). The including shader declares the uniform block `params.frame`, the constants of the
-// draw, and what shaders/splats/splat_inputs.glsl finds, as variables, of faces `face_form`; with antialias `pixels`, from the voxel's centre.
+// One splat in one pixel: (tau * colour, tau) with tau the optical depth of its kernel along the pixel's ray.
+// docs/method.md, pass 5; design (8). The including shader declares the uniform block `params.frame`, the constants of
+// the draw, and the results of shaders/splats/splat_inputs.glsl as variables: with faces `face_form`; with antialias
+// `pixels`, the offset from the voxel's centre.
 #ifndef EDGESPLAT_SPLAT_VALUE_GLSL
 #define EDGESPLAT_SPLAT_VALUE_GLSL
 #include "shaders/drivers/if_any.glsl"
@@ -21,13 +22,13 @@ float footprint(float rho2, float pn, float un, Slice slice) {
     return shape.x < 0.0 ? footprint_isotropic(rho2, slice) : warped;
 }
 
-// |x|^2 of the widened kernel where the ray passes it.
+// |x|^2 in the metric of the widened kernel, at the ray's point nearest to the voxel.
 float filtered_rho2(float rho2) { return filtered.y * dot(pixels, pixels) + filtered.z * rho2; }
 
-// Where the ray passes the voxel's depth, z from p: the pixel's filter lies across the view, and so its kernels keep their depths.
+// z from p where the ray passes the voxel's depth. The pixel filter lies across the view, so kernels keep their depths.
 float voxel_depth_on_ray(vec3 p, vec3 u) { return -dot(params.frame.view_z, p) / dot(params.frame.view_z, u); }
 
-// The footprint, or as much of the widened one as the pixel's size calls for. `z`: voxel_depth_on_ray.
+// The footprint, blended with the widened one according to the pixel size. `z`: voxel_depth_on_ray.
 float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
     float value = footprint(rho2, pn, un, slice);
     if (ANTIALIAS == 1u) {
@@ -37,7 +38,7 @@ float drawn_footprint(float rho2, float pn, float un, float z, Slice slice) {
     return value;
 }
 
-// What a splat carries where a ray enters its matter through a clip plane, z from p.
+// Payload of a splat where a ray enters its matter through a clip plane, at z from p.
 vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     vec3 world_normal = normalize(params.frame.normal_to_world * face);
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
@@ -48,11 +49,11 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     return shade(Surface(matter, number_material.y & MATERIAL_BITS, number_material.x, true, world_normal, false, entry, to_eye, depth));
 }
 
-// What a ray sees of the splat's face. z counts from p, its point nearest to the voxel.
+// The splat's face along a ray. z is measured from p, the ray's point nearest to the voxel.
 struct FaceSight {
     FaceRay ray;
     vec3 slope;  // grad phi at p
-    vec3 turn;   // of it along u
+    vec3 turn;   // derivative of grad phi along u
 };
 
 FaceSight face_sight(vec3 p, vec3 u) {
@@ -67,13 +68,13 @@ FaceSight face_sight(vec3 p, vec3 u) {
     return FaceSight(ray, slope, hu);
 }
 
-// The pixel's ray in the volume, whose border cuts kernels as a face does: from the eye along u, and the border's normals
-// (world, unit). Whoever draws sets it where kernels are cut at faces.
+// The piece of the pixel's ray in the volume. The volume's border cuts kernels as a face does. low, high: from the eye
+// along u; normals: world, unit. Set by the drawing shader if faces cut kernels.
 struct VolumePiece {
     float low;
     float high;
     vec3 normal;
-    vec3 far_normal;  // where it leaves it; where one sees through matter only
+    vec3 far_normal;  // where the ray leaves the volume; only with translucent matter
 };
 VolumePiece volume_piece;
 
@@ -91,7 +92,7 @@ VolumePiece piece_in_volume(vec3 u) {
     return piece;
 }
 
-// Of a corner's third plane, not of unit length; faces of creases are plane.
+// Normal of a corner's third plane, not unit; faces of creases are plane.
 vec3 corner_normal() { return sign(face_form.corner) * cross(face_form.slope, face_form.crease.xyz); }
 
 FaceCrease crease_seen(vec3 p, vec3 u) {
@@ -106,8 +107,8 @@ FaceCrease crease_seen(vec3 p, vec3 u) {
     return seen;
 }
 
-// What the surface shows at one end of the ray's way through the kernel; `border`: the volume's normal where that ends there, else 0.
-// `ahead`: of the eye's way to p.
+// Payload of the surface at one end of the ray's piece in the kernel. `border`: the volume's normal if the piece ends
+// at the border, else 0. `ahead`: distance along u from the eye to p.
 vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead) {
     bool upward = (number_material.y & FACES_UPWARD) != 0u, has_normal = (number_material.y & HAS_NORMAL) != 0u;
     vec3 slope = sight.slope + end.z * sight.turn;
@@ -123,14 +124,14 @@ vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead
     if (at_border) world_normal = border;
     if (PAYLOAD == PAYLOAD_NORMAL) return world_normal;
     vec3 way = params.frame.index_to_world * u;
-    // What the eye is in is seen right before it.
+    // Matter around the eye is seen right in front of it.
     float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal,
                          end.side < 0.0, away * way, -normalize(way), depth));
 }
 
-// What is left of the kernel on the ray: between `slice`, and of one that is cut, within `inside`.
+// The visible part of the kernel on the ray: within `slice` for a plain kernel, within `inside` for a cut one.
 FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice inside, Slice slice) {
     FaceCrease crease;
     if (CREASES == 1u) crease = crease_seen(p, u);
@@ -141,8 +142,8 @@ FaceFootprint cut_footprint(FaceSight sight, vec3 p, vec3 u, bool plain, Slice i
 }
 #include "shaders/footprints/tabulated_footprint.glsl"
 
-// From one face of a layer between two iso-values to the other, where the ray meets both near by, else `way`, which lies between.
-// There the field goes one way; the quadric of which both are levels turns.
+// The piece between the two faces of a layer between two iso-values, if the ray meets both nearby; else `way`, which
+// lies between them. Between the faces the field is monotonic, but the quadric with both as level sets turns.
 vec2 way_between_faces(Quadratic phi, vec2 way) {
     float root2 = phi.b * phi.b - 4.0 * phi.a * phi.c;
     float sum = -0.5 * (phi.b + (phi.b < 0.0 ? -1.0 : 1.0) * sqrt(max(root2, 0.0)));
@@ -152,19 +153,19 @@ vec2 way_between_faces(Quadratic phi, vec2 way) {
     return both ? vec2(min(way.x, low), max(way.y, high)) : way;
 }
 
-// What the splat shows of a ray that goes through it. Where one sees through matter light falls in its depth: the nearer half of
-// the way is lit as where it begins, the farther half as where it ends.
+// Payload of the splat for a ray through it. In translucent matter light is evaluated in depth: the nearer half is lit
+// like the entry, the farther half like the exit.
 vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, float far_border, vec3 u, float ahead, float mm) {
     bool at_border = !plain && volume_piece.low > 0.0 && border > f.entry.z;
     if (ANTIALIAS == 1u) {
-        // A widened kernel is entered as its voxel's centre would be.
+        // A ray enters a widened kernel where the ray through the voxel's centre would.
         float along = dot(face_form.slope, u), begin = along < 0.0 ? -face_form.value / along : -KERNEL_R;
         at_border = at_border || (plain && face_form.value < 0.0 && volume_piece.low > 0.0 && border > max(begin, -KERNEL_R));
     }
     f.entry.z = at_border ? border : f.entry.z;
     vec3 normal = at_border ? volume_piece.normal : vec3(0.0);
     if (FACE_PIECES == 1u || PAYLOAD != PAYLOAD_COLOR || LIGHTS + SILHOUETTE + FOG == 0u) return face_payload(sight, f.entry, normal, u, ahead);
-    bool deep = !plain && (params.frame.seen_through >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
+    bool deep = !plain && (params.frame.translucent_mask >> (number_material.y & MATERIAL_BITS) & 1u) == 1u;
     float half_chord = LIT_WITHIN * sqrt(max(KERNEL_R2 - sight.ray.rho2, 0.0));
     bool to_border = far_border < f.leave.z;
     float leave = max(min(to_border ? far_border : f.leave.z, half_chord), f.entry.z);
@@ -181,7 +182,7 @@ vec3 seen_payload(FaceSight sight, FaceFootprint f, bool plain, float border, fl
     return deep ? mix(near, far, share) : near;
 }
 
-// (integral times payload, integral) of the ray between `slice`; `z`: voxel_depth_on_ray; `mm`: of a voxel along u.
+// (integral * payload, integral) of the ray within `slice`. `z`: voxel_depth_on_ray; `mm`: length of a voxel along u.
 vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice slice, float mm) {
     bool plain = face_form.cut.depth < 0.0;
     float border = volume_piece.low - ahead, far_border = volume_piece.high - ahead;
@@ -197,13 +198,14 @@ vec4 face_value(FaceSight sight, vec3 p, vec3 u, float ahead, float z, Slice sli
     return f.integral * vec4(payload, 1.0);
 }
 
-// The splat between `slice`, in the pieces of the ray that clip planes leave: (sum of integrals times payload, their sum).
+// The splat within `slice`, on the pieces of the ray that clip planes keep: (sum of integral * payload, sum of
+// integral).
 vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice, float mm) {
     FaceSight sight;
     if (FACES) sight = face_sight(p, u);
     float rho2 = dot(p, p), pn = dot(p, normal_distance.xyz), un = dot(u, normal_distance.xyz);
     Kept kept = kept_pieces(from_eye + params.frame.eye + p, u, -dot(from_eye, u));
-    // What begins or ends this far from the voxel does not cut its kernel; a piece that is whole has a closed form.
+    // Ends this far from the voxel do not cut its kernel; a whole piece has a closed form.
     float z = ANTIALIAS == 1u ? voxel_depth_on_ray(p, u) : 0.0;
     float far = ANTIALIAS == 1u ? 8.0 + abs(z) : 8.0;
     vec4 sum = vec4(0.0);
@@ -240,8 +242,8 @@ vec4 clipped_footprint(vec3 p, vec3 u, float ahead, Slice slice, float mm) {
     return sum;
 }
 
-// (tau * payload, tau) of the ray through p, which is its point nearest to the voxel, relative to it, along u (index space,
-// unit); `ahead`: how far along u the eye is before p; `mm`: of a voxel along u.
+// (tau * payload, tau) of the ray with direction u (index space, unit). p: its point nearest to the voxel, relative to
+// the voxel. `ahead`: distance along u from the eye to p; `mm`: length of a voxel along u.
 vec4 splat_value(vec3 p, vec3 u, float ahead, float mm) {
     Slice slice = Slice(-1e9, 1e9);
     float in_front = 1.0;

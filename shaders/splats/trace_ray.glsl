@@ -1,5 +1,6 @@
-// Where a ray meets the cubic field's surface, for splats that no quadric fits: the first pieces of it that lie in the matter.
-// docs/method.md, 5_trace_faces; mirrored by engine/reference/traced_face.h. The including shader declares `coefficients` and `dims`.
+// Finds where a ray meets the surface of the cubic field, for splats that no quadric fits. The result is the ray's
+// first two pieces in the matter. docs/method.md, 5_trace_faces; mirrored by engine/reference/traced_face.h. The
+// including shader declares `coefficients` and `dims`.
 #ifndef EDGESPLAT_TRACE_RAY_GLSL
 #define EDGESPLAT_TRACE_RAY_GLSL
 #include "shaders/common/volume_ends.glsl"
@@ -7,10 +8,10 @@
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/traced_ray.glsl"
 
-// Of the normal out of the matter: its code, and as the last bit whether the values beyond are higher.
+// Packs the normal out of the matter; the last bit says whether the values outside are higher.
 uint pack_end(vec3 n, bool upper) { return (pack_normal(n) & ~1u) | (upper ? 1u : 0u); }
 
-// A cubic with these values and slopes at 0 and 1: where it turns in between, and its value there.
+// The extremum between 0 and 1 of the cubic with these values and slopes at 0 and 1: position and value.
 struct Turn {
     bool there;
     float at;
@@ -24,14 +25,15 @@ Turn turn_of(float f0, float d0, float f1, float d1) {
 
 bool is_matter(float f, vec2 interval) { return f >= interval.x && f < interval.y; }
 
-// A part of a ray, voxels from the eye; none where first >= last.
+// A part of a ray, voxels from the eye; empty if first >= last.
 struct Stretch {
     float first;
     float last;
 };
 const Stretch NO_STRETCH = Stretch(TRACE_NOWHERE, -TRACE_NOWHERE);
 
-// What a kernel may have of a ray that passes it at p, `ahead` along u from the eye.
+// The part of a ray that a kernel may cover. p: the ray's point nearest to the voxel; `ahead`: its distance along u
+// from the eye.
 Stretch kernel_stretch(vec3 p, float ahead) {
     float half_chord = sqrt(max(TRACE_REACH * TRACE_REACH - dot(p, p), 0.0));
     Stretch s = Stretch(max(ahead - half_chord, 0.0), ahead + half_chord);
@@ -39,14 +41,15 @@ Stretch kernel_stretch(vec3 p, float ahead) {
     return s;
 }
 
-// Along u from `from`, matter being where the field is within `interval`. Samples lie TRACE_STEP apart, at
-// places that are the same wherever one begins, and where the field may turn over an end between two of them; ends are then found by
-// Newton's method. Looks no further than the second piece, or TRACE_DEEP into one. Where the volume ends, so does what is looked at.
+// Traces the ray along u from `from`; matter is where the field lies in `interval`. Samples lie TRACE_STEP apart, at
+// positions independent of the beginning. An extra sample lies where the field may have an extremum beyond the
+// interval's end. Ends are refined by Newton's method. Stops after the second piece, TRACE_DEEP inside a piece, or at
+// the end of the volume.
 TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     VolumeEnds ends = volume_ends(from, divisible(u), dims);
     Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
     float until = along.last;
-    // Matter that the ray meets there begins there, with the border's normal.
+    // Matter at the volume's border begins there, with the border's normal.
     bool at_border = whole.first > 0.0 && along.first <= whole.first;
     uint border = pack_end(out_of_entry(ends, whole.first, u), false);
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
@@ -54,18 +57,18 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
     uint pieces = 0u;
     bool begun = false, matter = false, turned = false, probes = false, looks = along.first < along.last;
-    float entered = along.first, probe = 0.0, before = 0.0, value_before = 0.0, slope_before = 0.0;  // the sample before
-    float a = 0.0, b = 0.0, guess = 0.0, level = 0.0;  // between which an end lies
+    float entered = along.first, probe = 0.0, before = 0.0, value_before = 0.0, slope_before = 0.0;  // the previous sample
+    float a = 0.0, b = 0.0, guess = 0.0, level = 0.0;  // bracket of an end
     bool rises = false;
     int searching = 0;
-    // One sample a turn, of the ray or of the search for an end, so that lavapipe has one loop of them.
+    // One sample per iteration, of the ray or of the search for an end, so that lavapipe has a single loop.
     while (looks) {
         bool in_search = searching > 0, walks = !in_search;
         float z = in_search ? guess : probes ? probe : clamp(float(k) * TRACE_STEP, whole.first, whole.last);
         vec4 field = bspline_slope(ivec3(0), from + z * u);
         float slope = dot(field.xyz, u);
         bool inside = is_matter(field.w, interval);
-        // An end.
+        // Refinement of an end.
         bool nearer = (field.w < level) == rises;
         a = in_search && nearer ? z : a;
         b = in_search && !nearer ? z : b;

@@ -1,4 +1,4 @@
-// What a ray meets of splats whose faces are traced. After shaders/edges/edge_record.glsl.
+// The intersections of a ray with traced faces. Include after shaders/edges/edge_record.glsl.
 #ifndef EDGESPLAT_TRACED_RAY_GLSL
 #define EDGESPLAT_TRACED_RAY_GLSL
 
@@ -6,18 +6,18 @@ const float TRACE_NOWHERE = 1e9;
 
 struct TracedRay {
     vec2 one, two;               // pieces of the ray in the matter, voxels from the eye; the first may begin at -TRACE_NOWHERE
-    uint first_end, second_end;  // where they begin: pack_end()
-    float last;                  // how far along the ray was looked
+    uint first_end, second_end;  // normals where they begin: pack_end()
+    float last;                  // the end of the part of the ray that was traced
 };
 
 vec4 pieces_texel(TracedRay t) { return vec4(t.one, t.two); }
 vec4 ends_texel(TracedRay t) { return vec4(uintBitsToFloat(t.first_end), uintBitsToFloat(t.second_end), t.last, 0.0); }
 
-// The same for those who draw.
+// The same, unpacked for drawing.
 struct SeenRay {
     vec2 one, two;
     vec3 first_normal, second_normal;  // out of the matter
-    bvec2 upper;                       // beyond these ends values are higher
+    bvec2 upper;                       // the values beyond these ends are higher
     float last;
 };
 

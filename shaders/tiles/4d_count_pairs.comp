@@ -1,5 +1,5 @@
-// Splats of a chunk to the tiles that they touch, side by side. First step: how many of each block touch each tile; the order in
-// which they come changes no count. A workgroup has PAIR_GROUP entries of a block.
+// Parallel sort of a chunk's splats into tiles, step 1: counts the splats of each block in each tile. The order of
+// additions does not change the counts. A workgroup processes PAIR_GROUP entries of a block at a time.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/tiles/pairs_of_block.glsl"

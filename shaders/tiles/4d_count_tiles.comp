@@ -1,4 +1,5 @@
-// Splats of a chunk to the tiles that they touch, first third: how many of each block touch each tile. docs/method.md, pass 4.
+// Sort of a chunk's splats into tiles, step 1 of 3: counts the splats of each block in each tile. docs/method.md, pass
+// 4.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/tiles/tile_entries.glsl"

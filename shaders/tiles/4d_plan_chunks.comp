@@ -1,6 +1,6 @@
-// Which sheets are drawn at once: the device's own plan_chunks() (engine/compositors/tiles/lists.h), so that the host need not
-// be waited for. One workgroup: it loads the sheets side by side, one invocation goes through them. A chunk that would take more
-// room than there is stays empty; the host sees it afterwards.
+// Plans which sheets are drawn together: plan_chunks() (engine/compositors/tiles/lists.h) on the device, so that the
+// host does not wait. One workgroup: all invocations load sheets, one processes them. A chunk that exceeds its memory
+// stays empty; the host detects this afterwards.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -10,7 +10,7 @@ layout(local_size_x = 256) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 
 const uint SHEETS = gl_WorkGroupSize.x;
-shared uint pairs[SHEETS], ends[SHEETS];  // of the sheets that are gone through
+shared uint pairs[SHEETS], ends[SHEETS];  // of the sheets being processed
 
 uint chunk_count = 0u, sum = 0u, begin;
 

@@ -1,4 +1,4 @@
-// Third step: where each tile's list begins and ends. One workgroup: each invocation has a run of tiles.
+// Parallel sort, step 3: begin and end of each tile's list. One workgroup; each invocation processes a run of tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

@@ -1,5 +1,5 @@
-// Second third: exclusive prefix sum over (tile, block), and each tile's range. One workgroup: each invocation sums a run of
-// counters, the runs are scanned in shared memory.
+// Step 2 of 3: exclusive prefix sum over (tile, block), and each tile's range. One workgroup: each invocation sums a
+// run of counters; the runs are scanned in shared memory.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

@@ -1,4 +1,4 @@
-// Second step: what the blocks of a tile have before one another, and the tile's sum. A workgroup has a tile.
+// Parallel sort, step 2: prefix sums over the blocks of a tile, and the tile's total. One workgroup per tile.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"

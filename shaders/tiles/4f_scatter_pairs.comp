@@ -1,5 +1,5 @@
-// Last step: every pair of a splat and a tile that is not opaque yet goes to its place. A workgroup goes through a block; each pair
-// looks how many entries before it touch the same tile, so that lists stay in the order of the sheets.
+// Parallel sort, last step: writes every pair of a splat and an unsaturated tile to its position. One workgroup per
+// block. Each pair counts the entries before it that touch the same tile, so that lists keep the order of the sheets.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/tiles/pairs_of_block.glsl"
@@ -7,7 +7,7 @@
 STORED_PAIRS(BIND_TILE_ENTRIES, entries_by_tile, tile_entries, load_entry, store_entry)
 TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
 
-shared uint sheets[PAIR_GROUP];  // of the entries
+shared uint sheets[PAIR_GROUP];  // sheet of each entry
 
 bool touches(uvec4 rect, uvec2 tile) {
     return all(lessThanEqual(rect.xy, tile)) && all(lessThan(tile, rect.zw));

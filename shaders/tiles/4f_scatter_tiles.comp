@@ -1,4 +1,4 @@
-// Last third: every pair of a splat and a tile that is not opaque yet goes to its place, sheet by sheet.
+// Step 3 of 3: writes every pair of a splat and an unsaturated tile to its position, sheet by sheet.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/tiles/tile_entries.glsl"

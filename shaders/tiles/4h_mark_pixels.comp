@@ -1,5 +1,5 @@
-// For every entry of a tile's list: which of the tile's pixels its support reaches, row by row, kept as a word a pixel of
-// what each 32 entries have for it. docs/method.md, 4_mark_pixels.
+// For every entry of a tile's list: marks the pixels of the tile that its support reaches, row by row. The result is
+// one word per pixel and 32 entries. docs/method.md, 4_mark_pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/drivers/if_any.glsl"
@@ -43,13 +43,13 @@ layout(push_constant) uniform Push { uint draw_round; };
 
 #include "shaders/tiles/tile_marks.glsl"
 
-// The least distance of two voxels, mm.
+// The smallest distance of two voxels, mm.
 float least_voxel() {
     mat3 m = params.frame.index_to_world;
     return min(length(m[0]), min(length(m[1]), length(m[2])));
 }
 
-const uint ROWS = TILE / gl_WorkGroupSize.x;  // of an invocation
+const uint ROWS = TILE / gl_WorkGroupSize.x;  // per invocation
 const uint OWN = ROWS * TILE / (CELL_X * CELL_Y);
 const float TOO_WIDE = 1e30;
 
@@ -67,7 +67,7 @@ void main() {
     for (uint base = range.x + MARKED_AT_ONCE * gl_LocalInvocationID.y; base < range.y; base += MARKED_AT_ONCE * gl_WorkGroupSize.y) {
         int marks_at = first_mark(base) + int(gl_LocalInvocationID.x * OWN);
         uint count = min(MARKED_AT_ONCE, range.y - base);
-        // Lists that are kept from step to step are marked already, where tiles were not closed.
+        // Lists kept from the previous step already have marks, except in tiles that were saturated.
         if (REFINED == 1u) count = load_mark(marks_at) == ~0u ? count : 0u;
         uint marked[2u * TILE];
         for (uint c = 0u; c < OWN; ++c) marked[c] = 0u;
@@ -99,7 +99,7 @@ void main() {
             IF_ANY(count > 0u && gl_LocalInvocationID.x == 0u) UintsRef(params.frame.traced_entries).at[word_of(base)] = traced;
         }
     }
-    // What is drawn between pixels depends on it, also where no pixel that is drawn was under the splat.
+    // Interpolation between pixels depends on this splat, even if no drawn pixel lies under it.
     if (REFINED == 1u && gl_LocalInvocationID.x == 0u)
         atomicMin(UintsRef(params.frame.tile_finest).at[tile], floatBitsToUint(finest));
 }

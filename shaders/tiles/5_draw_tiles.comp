@@ -1,5 +1,5 @@
-// A chunk of sheets, tile by tile: each pixel adds the splats of a sheet, folds the sheet behind what it has, and stops when it
-// is opaque. Of its tile's list it draws what is marked for it.
+// Draws a chunk of sheets, tile by tile: each pixel adds the splats of a sheet, composites the sheet behind its sum,
+// and stops when it is saturated. It draws only the entries of its tile's list that are marked for it.
 // docs/method.md, 5_draw_tiles.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -71,7 +71,7 @@ SelectedFootprint selected_footprint;
 #include "shaders/splats/use_traced.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
 
-// A pixel takes no more once it is opaque.
+// A saturated pixel does not change any more.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
     sum = open ? folded(sum, sheet) : sum;
     open = open && (PAYLOAD == PAYLOAD_TAU || sum.a < params.frame.saturation);
@@ -88,8 +88,8 @@ void main() {
     uint whole_end = range.y;
     if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
     if (range.x >= range.y) return;
-    // The sheet of the first entry may have begun in the round before, that of the last may go on in the next.
-    bool goes_on = ROUNDS == 1u && range.y < whole_end, went_on = ROUNDS == 1u && draw_round > 0u;
+    // The first entry's sheet may have begun in the previous round; the last entry's may continue in the next.
+    bool continues = ROUNDS == 1u && range.y < whole_end, continued = ROUNDS == 1u && draw_round > 0u;
     ivec2 size = params.frame.size;
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
     ivec2 pixel = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) +
@@ -117,10 +117,10 @@ void main() {
         if (OUTLINES == 1u) outline = load_outline(held.y * size.x + held.x);
         uint current = load_entry(at).y;
         if (ROUNDS == 1u) {
-            bool same = went_on && load_entry(at - (went_on ? 1 : 0)).y == current;
+            bool same = continued && load_entry(at - (continued ? 1 : 0)).y == current;
             sheet_sum = same ? load_unfinished(held.y * size.x + held.x) : vec4(0.0);
-            // A sheet that ended with the round before.
-            IF_ANY(went_on && !same) fold(sum, open, load_unfinished(held.y * size.x + held.x));
+            // The unfinished sheet ended with the previous round.
+            IF_ANY(continued && !same) fold(sum, open, load_unfinished(held.y * size.x + held.x));
         }
         uint length = range.y - range.x;
         for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
@@ -181,13 +181,13 @@ void main() {
                 if (OUTLINES == 1u) outline = sum.a < OUTLINE_OPEN ? min(outline, outline_of(p, u, ahead, value.a)) : outline;
             }
         }
-        // What the next round may go on with is the sheet of the last entry, whether or not it was here.
-        bool kept = goes_on && load_entry(at + int(range.y - range.x) - 1).y == current;
+        // The next round may continue the last entry's sheet, even if this pixel drew nothing of it.
+        bool kept = continues && load_entry(at + int(range.y - range.x) - 1).y == current;
         IF_ANY(!kept) {
             fold(sum, open, sheet_sum);
             sheet_sum = vec4(0.0);
         }
-        IF_ANY(goes_on && inside) store_unfinished(held.y * size.x + held.x, sheet_sum);
+        IF_ANY(continues && inside) store_unfinished(held.y * size.x + held.x, sheet_sum);
         IF_ANY(was_open) {
             store_pixel(held.y * size.x + held.x, sum);
             if (OUTLINES == 1u) store_outline(held.y * size.x + held.x, outline);

@@ -1,5 +1,6 @@
-// Between pixels that are drawn: where the picture is smooth the others follow from those around them, elsewhere they are listed to
-// be drawn. An invocation has a cell of STEP x STEP pixels, of which the first is there. docs/method.md, 5_refine_pixels.
+// Fills in the pixels between drawn ones: interpolates them where the picture is smooth, and lists them for drawing
+// elsewhere. An invocation processes a cell of STEP x STEP pixels; its first pixel is drawn already. docs/method.md,
+// 5_refine_pixels.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
@@ -13,9 +14,9 @@ STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 STORED_WORDS(BIND_TILE_PIXELS, pixels, tile_pixels, load_listed, store_listed)
 #include "shaders/tiles/pixel_in_tile.glsl"
 
-shared uvec2 rough;  // cells that are listed, a bit each: lists are the same whoever comes first
+shared uvec2 rough;  // cells that are listed, one bit each: the lists do not depend on the order of invocations
 
-// Differences of what is shown, not of light: near enough to sRGB, and of finite slope.
+// Differences are computed on displayed values, not on linear light: close to sRGB, with a finite slope.
 vec4 shown(vec4 c) { return vec4(sqrt(max(c.rgb, 0.0) + 0.0015), c.a); }
 
 float largest(vec4 v) { return max(max(v.r, v.g), max(v.b, v.a)); }
@@ -48,7 +49,8 @@ void main() {
     for (int y = 0; y < 3; ++y)
         for (int x = 0; x < 3; ++x)
             bend = max(bend, abs(seen[y][x] - seen[y][x + 1] - seen[y + 1][x] + seen[y + 1][x + 1]));
-    // Not a number is not smooth, nor is what has nothing beyond it. What a voxel narrower than a step shows may lie unseen.
+    // NaN is not smooth, and neither is a cell at the picture's side. Details of voxels narrower than a step may lie
+    // between samples.
     float finest = uintBitsToFloat(UintsRef(params.frame.tile_finest).at[tile]);
     bool smooth_here = largest(bend) <= REFINE_TOLERANCE && all(lessThanEqual(first + int(STEP), last)) && finest >= float(STEP);
 
@@ -69,7 +71,7 @@ void main() {
     barrier();
     uvec2 before = rough & uvec2(me < 32u ? (1u << me) - 1u : 0xffffffffu, me < 32u ? 0u : (1u << (me - 32u)) - 1u);
     if (is_rough) {
-        // Beyond the picture's sides there is nothing to draw; a list that names it does not.
+        // Pixels outside the picture may be listed; they are not drawn.
         uint place = tile * TILE * TILE + 3u * uint(bitCount(before.x) + bitCount(before.y));
         uint code = uint(in_tile.x | in_tile.y << 8), half_code = uint(half_step);
         store_listed(place, code + half_code);

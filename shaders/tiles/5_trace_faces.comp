@@ -1,4 +1,4 @@
-// What the rays of a round's pixels meet of the splats whose faces are traced, before these are drawn.
+// Before a round is drawn: traces its pixels' rays through the splats whose faces rays find.
 // docs/method.md, 5_trace_faces.
 #version 460
 #extension GL_GOOGLE_include_directive : require
@@ -50,7 +50,7 @@ ivec3 dims;
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
 
-// Of a pixel's ray, from the first to the last that kernels of traced entries have of it.
+// The part of a pixel's ray from the first to the last kernel of the traced entries.
 Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_length) {
     Stretch found = NO_STRETCH;
     int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));

@@ -1,20 +1,21 @@
-// Where an outline passes a pixel: the distance across the ray from the pixel's centre to where the face turns away from it, or
-// where two planes of a crease do. After shaders/splats/splat_value.glsl. docs/method.md, 5_draw_tiles, "Outlines".
+// Finds the outline that passes a pixel: the distance across the ray from the pixel's centre to the point where the
+// face, or the edge of a crease, turns away. Include after shaders/splats/splat_value.glsl. docs/method.md,
+// 5_draw_tiles, "Outlines".
 #ifndef EDGESPLAT_OUTLINE_GLSL
 #define EDGESPLAT_OUTLINE_GLSL
 
-// A splat as the pixel's ray sees it.
+// A splat along the pixel's ray.
 struct OutlinedSplat {
     FaceSight sight;
     FaceCrease crease;
-    float ahead;        // of the eye's way to the ray's point nearest to the voxel, voxels
+    float ahead;        // distance along u from the eye to the ray's point nearest to the voxel, voxels
     float depth_along;  // mm of depth per voxel along the ray
-    float tau;          // what the splat shows of the ray
+    float tau;          // optical depth of the splat on the ray
 };
 
-// Matter ends where `level` is 0, and is where it is less; `rate`: by how much it is more a pixel further to the right and down.
-// Of two words the smaller counts: matter of either splat is matter of both.
-// level, pixels, from -1 (12 bits) | down (1) | offset to the right or down, pixels, from -1 (16)
+// Packs an outline. The matter lies where `level` < 0; `rate`: change of `level` per pixel to the right and down. Of
+// two words the smaller counts, since matter of either splat is matter of both.
+// Bits: level in pixels from -1 (12) | axis is down (1) | offset along the axis, pixels, from -1 (16)
 uint outline_word(OutlinedSplat splat, float level, vec2 rate, float z) {
     bool down = abs(rate.y) > abs(rate.x);
     float along = down ? rate.y : rate.x, pixels = level / abs(along), offset = -level / along;
@@ -25,16 +26,17 @@ uint outline_word(OutlinedSplat splat, float level, vec2 rate, float z) {
     return knows && abs(pixels) < 1.0 ? word : NO_OUTLINE;
 }
 
-// How a function with that gradient changes at a depth (mm) from a pixel to the next, to the right and down.
+// Change of a function with this gradient, at a depth (mm), from a pixel to the next to the right and to the next
+// below.
 vec2 rate_across(vec3 gradient, float depth) {
     vec2 pixel = 2.0 * depth * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
     return pixel * vec2(dot(gradient, params.frame.ray_x), dot(gradient, params.frame.ray_y));
 }
 
-// Whether the point z of the ray lies inside of the planes of a corner, but for the first two.
+// Whether the point z of the ray lies inside the third plane of a corner.
 bool inside_corner(OutlinedSplat splat, float z) { return splat.crease.corner_p + z * splat.crease.corner_u < splat.crease.corner_distance; }
 
-// Of the splat's face: phi has its least value on the ray there, or of a wall's other face its largest.
+// Outline of the face, where phi has its minimum on the ray; of a wall's other face, where phi has its maximum.
 uint outline_of_face(OutlinedSplat splat) {
     Quadratic phi = splat.sight.ray.phi;
     bool opens = phi.a >= 0.0;
@@ -47,10 +49,10 @@ uint outline_of_face(OutlinedSplat splat) {
     return there ? outline_word(splat, level, rate, z) : NO_OUTLINE;
 }
 
-// Of the edge between face and crease, where the way between them shrinks to nothing.
+// Outline of the edge between face and crease, where the ray's piece between them shrinks to length 0.
 uint outline_of_crease(OutlinedSplat splat) {
     FaceCrease crease = splat.crease;
-    bool leaves = crease.u > 0.0;  // the matter by the crease's plane
+    bool leaves = crease.u > 0.0;  // the ray leaves the matter through the crease's plane
     float side = leaves ? 1.0 : -1.0;
     FaceRoots roots = face_roots(splat.sight.ray.phi, 0.0);
     float at_face = (splat.sight.ray.phi.a >= 0.0) == leaves ? roots.low : roots.high;
@@ -62,7 +64,7 @@ uint outline_of_crease(OutlinedSplat splat) {
     return there ? outline_word(splat, side * (at_face - at_crease), rate, z) : NO_OUTLINE;
 }
 
-// Of a splat that shows `tau` of the ray; the rest as in splat_value().
+// Outline of a splat with the optical depth `tau` on the ray; other arguments as in splat_value().
 uint outline_of(vec3 p, vec3 u, float ahead, float tau) {
     OutlinedSplat splat;
     splat.sight = face_sight(p, u);

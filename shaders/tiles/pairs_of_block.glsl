@@ -1,5 +1,5 @@
-// Pairs of splats and tiles, PAIR_GROUP entries of `order` at once, a workgroup's: the pairs of its entries are numbered through,
-// so that splats of very different size keep all invocations at work.
+// Pairs of splats and tiles of PAIR_GROUP entries of `order`, processed by one workgroup. The pairs are numbered
+// consecutively, so that all invocations work although splats differ in size.
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
@@ -13,18 +13,19 @@ layout(push_constant) uniform Push { uint chunk; };
 const uint PAIR_GROUP = gl_WorkGroupSize.x;
 shared uvec4 rects[PAIR_GROUP];  // tiles of each entry: x0, y0, x1, y1, half open
 
-// Entries [base, end), as far as a group goes: how many pairs they have; `sums` says where those of each end.
+// Loads the group's entries from `base`, up to `end`; returns their number of pairs. `sums` contains the end of each
+// entry's pairs.
 uint load_pairs(uint base, uint end) {
     uint me = gl_LocalInvocationIndex, entry = base + me;
     uvec4 own = entry < end ? tiles_of(UintsRef(params.frame.order).at[min(entry, end - 1u)]) : uvec4(0u);
-    barrier();  // the last entries are done with
+    barrier();  // the previous entries are no longer used
     rects[me] = own;
     sum_before((own.z - own.x) * (own.w - own.y));
     return sums[PAIR_GROUP - 1u];
 }
 
 struct Pair {
-    uint k;     // of the group's entries
+    uint k;     // index among the group's entries
     uvec2 tile;
 };
 

@@ -1,11 +1,11 @@
-// The walk over a chunk's splats, in the order of their sheets, by which tiles get theirs: each invocation owns a block of
-// consecutive entries and one column of the histogram, so there is no race and the order stays.
+// Iterates over a chunk's splats in the order of their sheets, to sort them into tiles. Each invocation owns a block of
+// consecutive entries and one column of the histogram, so there is no race and the order is kept.
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/drivers/iterations.h"
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 16) in;  // columns are few: a larger workgroup would leave processors idle
+layout(local_size_x = 16) in;  // there are few columns: a larger workgroup would leave processors idle
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, count_at, set_count)
@@ -23,10 +23,10 @@ Block block_of_invocation() {
     return Block(entries.x, column < params.frame.tile_blocks ? entries.y : entries.x, column);
 }
 
-// The pairs of a block, one after another, PAIR_STEPS a dispatch: the next one goes on where this one ends. Splats of very different
-// size lie in one chunk, so that a column may have many times the pairs of another.
+// The pairs of a block, one after another, PAIR_STEPS per dispatch; the next dispatch continues at the end of this one.
+// The splats of a chunk differ in size, so that one column may have many times the pairs of another.
 struct Pairs {
-    uint entry, k;      // into `order`; which of its tiles
+    uint entry, k;      // index into `order`; index of the tile within the splat
     uint number;        // of the splat
     uvec4 tiles;
     uint across, count;

@@ -1,12 +1,13 @@
-// Which pixels of a tile are drawn. After the declaration of `what` and of what loads the tiles' lists of pixels.
+// Selects which pixels of a tile are drawn. Include after the declaration of `what` and of the functions that load the
+// tiles' lists of pixels.
 #include "shaders/tiles/pixel_in_tile.glsl"
 
 uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
 
-// Of refined pixels every REFINE_STEP-th comes first, then those that are listed.
+// Refined pixels: first every REFINE_STEP-th pixel, then the listed ones.
 const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 
-// Selected, not branched for: lavapipe compiles what a push constant decides anew at every bind.
+// Selected without a branch: lavapipe recompiles a branch on a push constant at every bind.
 uint pixels_of(uint tile) { return mix(load_todo(tile), FIRST_PIXELS, what >> 31 == 1u); }
 
 ivec2 place_of(uint tile, uint place) {

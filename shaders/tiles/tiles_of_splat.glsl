@@ -7,7 +7,7 @@ uvec4 tiles_of(uint number) {
     return uvec4(code.x & 0xffffu, code.x >> 16, code.y & 0xffffu, code.y >> 16);
 }
 
-// Whether no pixel of a tile takes more.
+// Whether a tile is saturated: all of its drawn pixels are.
 bool is_closed(uint tile) { return load_closed(tile) == load_todo(tile); }
 
 // Entries of a block of the chunk, half open.

@@ -1,4 +1,4 @@
-// Runs the navigation app with a script in a fresh folder, for the fly_*_test.cpp files.
+// Runs the navigation app with a script in an empty folder, for the fly_*_test.cpp files.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,7 +11,7 @@ namespace edgesplat {
 
 class FlyTest : public CliTest {
   protected:
-    /// Plays the script, with validation on, and expects it to end well; what it wrote lies in the folder.
+    /// Plays the script with validation and expects success; its files are in the folder.
     void fly(const std::string& script, const std::string& arguments = "builtin:torus:32") const {
         const ProgramRun result = try_to_fly(script, arguments);
         EXPECT_EQ(result.status, 0) << result.err;
@@ -25,7 +25,7 @@ class FlyTest : public CliTest {
     Image image(const std::string& name) const { return read_image(folder_ / name).image; }
 };
 
-/// Columns [first, last) of a picture, without its uppermost rows.
+/// Columns [first, last) of a picture, without its top rows.
 inline Image columns(const Image& image, int first, int last, int top = 40) {
     Image out(last - first, image.height - top, image.channels);
     for (int y = 0; y < out.height; ++y)

@@ -1,4 +1,4 @@
-// The navigation app from a script: what is shown, moved, measured, kept, and said when it goes wrong.
+// Plays scripts in the navigation app: display, motion, measuring, saving and error messages.
 #include "tests/fly/fly_program.h"
 
 #include <cstdlib>
@@ -9,7 +9,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-TEST_F(FlyTest, OpensABuiltinSceneWithoutArguments) {
+TEST_F(FlyTest, OpensBuiltinSceneWithoutArguments) {
     fly("settle\nexpect volume == builtin:cube-hole\nexpect finished == yes\nexpect error == none\n"
         "expect level == 0\nexpect scale == 1\nexpect rays == no\nscreenshot a.png\n",
         "");
@@ -18,7 +18,7 @@ TEST_F(FlyTest, OpensABuiltinSceneWithoutArguments) {
     EXPECT_EQ(shown.height, 320);
 }
 
-TEST_F(FlyTest, ASavedSceneIsTheStandstillPicture) {
+TEST_F(FlyTest, SavedSceneRendersStandstillPicture) {
     fly("settle\nkey O\nmove 400 150\npress left\ndrag 440 120 6\nrelease left\nwheel 4\nframes 40\nsettle\n"
         "expect finished == yes\npicture shown.png\nsave kept.toml\n");
     const ProgramRun rendered = run("render kept.toml -o rendered.png");
@@ -29,7 +29,7 @@ TEST_F(FlyTest, ASavedSceneIsTheStandstillPicture) {
     EXPECT_LT(compare_images(black, again).psnr, 20);  // there is something in it
 }
 
-TEST_F(FlyTest, TheWipeIsPlainOnItsLeftAndEdgePreservedOnItsRight) {
+TEST_F(FlyTest, WipeShowsPlainLeftAndEdgesRight) {
     fly("settle\nkey O\nsettle\npicture edges.png\nkey Space\nsettle\nexpect show == plain\npicture plain.png\n"
         "key X\nsettle\nexpect show == wipe\nexpect wipe == 0.5\nmove 360 100\npress left\ndrag 410 140 4\nrelease "
         "left\n"
@@ -37,7 +37,7 @@ TEST_F(FlyTest, TheWipeIsPlainOnItsLeftAndEdgePreservedOnItsRight) {
         "picture sharpened.png\nkey H\nexpect show == edges\n");
     const Image edges = image("edges.png"), plain = image("plain.png"), wipe = image("wipe.png");
     EXPECT_LT(compare_images(edges, plain).psnr, 40);
-    // Without what is written above the picture and the divider's line and knob.
+    // Compare without the labels above the picture and without the divider's line and knob.
     const int width = wipe.width, middle = static_cast<int>(0.708 * width);
     const auto equal = [&](const Image& other, int first, int last) {
         return compare_images(columns(wipe, first, last), columns(other, first, last)).psnr;
@@ -48,8 +48,8 @@ TEST_F(FlyTest, TheWipeIsPlainOnItsLeftAndEdgePreservedOnItsRight) {
     EXPECT_LT(compare_images(image("sharpened.png"), edges).psnr, 40);
 }
 
-TEST_F(FlyTest, ACompletePictureStaysUntilTheNextIsComplete) {
-    // Every frame draws one picture; none of those between two modes may be coarse, or shown under the other's name.
+TEST_F(FlyTest, KeepsPictureUntilNextIsComplete) {
+    // Every frame draws one picture. Between two modes, none may be coarse or shown as the other mode.
     std::string script = "size 1100 800\nsettle\n";
     for (const char* key : {"Space", "Space", "X", "H", "H", "B", "B"}) {
         script += std::string("key ") + key + "\n";
@@ -60,12 +60,12 @@ TEST_F(FlyTest, ACompletePictureStaysUntilTheNextIsComplete) {
     fly(script + "key Space\nsettle\nexpect visible == plain\n", "builtin:torus");
 }
 
-TEST_F(FlyTest, WhatIsNotShownIsNotDrawn) {
+TEST_F(FlyTest, DrawsOnlyShownPictures) {
     fly("settle\nexpect renderers == 1\nkey X\nsettle\nexpect renderers >= 2\nkey X\nsettle\nexpect renderers == 1\n");
 }
 
-TEST_F(FlyTest, PicksAndMeasuresTheSurface) {
-    // A ball of radius 20 around the middle of 64^3 voxels of 1 mm; the picture's middle looks at its nearest point.
+TEST_F(FlyTest, PicksAndMeasuresSurface) {
+    // A ball of radius 20 in the middle of 64^3 voxels of 1 mm; its nearest point is at the picture's centre.
     fly("settle\nhold Ctrl\nclick 360 147\nlet Ctrl\nexpect picks == 1\nexpect pick.value > 0.45\n"
         "expect pick.value < 0.55\nkey M\nclick 360 187\nexpect picks == 2\nexpect ruler > 1\nexpect ruler < 30\n"
         "expect ruler.uncertainty >= 0\nexpect ruler.uncertainty < 1\nclick 242 2\nexpect picks == 2\n"
@@ -73,28 +73,28 @@ TEST_F(FlyTest, PicksAndMeasuresTheSurface) {
         "builtin:sphere:64");
 }
 
-TEST_F(FlyTest, ADoubleClickFliesThereAndHomeComesBack) {
+TEST_F(FlyTest, DoubleClickFliesToTargetAndHomeReturns) {
     fly("settle\nexpect eye.y < -22\ndouble 360 147\nframes 90\nsettle\nexpect eye.y > -15\nkey Home\nframes "
         "120\nsettle\n"
         "expect eye.y < -22\nexpect finished == yes\n",
         "builtin:sphere:64");
 }
 
-TEST_F(FlyTest, WallsHoldAFlightBack) {
+TEST_F(FlyTest, WallsStopFlight) {
     fly("settle\nkey F\nexpect mode == fly\nexpect collisions == on\nstep 0.1\nhold W\nframes 120\nlet W\nexpect room "
         "> 0\n"
         "expect room < 3\nkey C\nexpect collisions == off\nhold W\nframes 20\nlet W\nexpect room < 0\n",
         "builtin:sphere:64");
 }
 
-TEST_F(FlyTest, TravelsAGuidedPath) {
+TEST_F(FlyTest, FollowsGuidedPath) {
     fly("settle\nkey G\nclick 335 147\nclick 380 147\nframes 2\nexpect path > 0\nexpect message has guided path\nkey "
         "Enter\n"
         "frames 20\nexpect path.position > 0\nkey Escape\nsettle\nexpect finished == yes\n",
         "builtin:sphere:64");
 }
 
-TEST_F(FlyTest, ARecordedFlightIsTheSavedScenesMovie) {
+TEST_F(FlyTest, SavesRecordedFlightAsMovie) {
     fly("settle\nkey Ctrl+R\nmove 400 150\npress left\ndrag 460 150 30\nrelease left\nframes 30\nkey Ctrl+R\n"
         "expect recorded > 0.5\nsave flown.toml\n");
     const std::string scene = text_of(folder_ / "flown.toml");
@@ -103,7 +103,7 @@ TEST_F(FlyTest, ARecordedFlightIsTheSavedScenesMovie) {
     EXPECT_EQ(movie.status, 0) << movie.err;
 }
 
-TEST_F(FlyTest, AGamepadFliesAndChangesThePicture) {
+TEST_F(FlyTest, GamepadFliesAndChangesPicture) {
     fly("settle\nkey F\nexpect mode == fly\nexpect eye.y < -1\nsave before.toml\nsticks 0 1 0 0 0\nframes 20\n"
         "sticks 0 0 0 0 0\nframes 1\nsave after.toml\nkey PadX\nexpect show == plain\nkey PadX\nexpect show == edges\n"
         "key PadB\nexpect show == plain\nkey PadB\nexpect show == wipe\nkey PadB\nexpect show == sharpening\n"
@@ -120,7 +120,7 @@ TEST_F(FlyTest, AGamepadFliesAndChangesThePicture) {
     EXPECT_EQ(image("picture-2.png").width, image("picture-1.png").width);
 }
 
-TEST_F(FlyTest, ALookIsTakenByName) {
+TEST_F(FlyTest, ChoosesLookByName) {
     fly("size 900 700\nsettle\nexpect iso_values > 1\ntap scene.look\nframes 2\ntap scene.ct-skull\nframes 2\nsettle\n"
         "expect error == none\nexpect iso_values == 1\nexpect iso == 280\nkey Ctrl+Z\nframes 1\nexpect iso_values > "
         "1\n",
@@ -136,38 +136,38 @@ TEST_F(FlyTest, ResizesAndMinimises) {
     EXPECT_LT(compare_images(image("small.png"), image("help.png")).psnr, 30);
 }
 
-TEST_F(FlyTest, LostDevicesAreOpenedAnew) {
+TEST_F(FlyTest, ReopensLostDevices) {
     const ProgramRun result = try_to_fly(
         "settle\npicture before.png\nlose window\nframes 2\nsettle\nexpect finished == yes\nexpect error == none\n"
         "picture after.png\nlose pictures\nsize 484 320\nsettle\nsize 480 320\nsettle\nexpect finished == yes\n"
         "expect error == none\npicture again.png\n",
         "builtin:torus:32");
     EXPECT_EQ(result.status, 0) << result.err;
-    EXPECT_THAT(result.err, testing::MatchesRegex("edgesplat: warning: the device .* was lost; it is opened anew.*\n"));
+    EXPECT_THAT(result.err, testing::MatchesRegex("edgesplat: warning: the device .* was lost; it is reopened.*\n"));
     EXPECT_GE(compare_images(image("before.png"), image("after.png")).psnr, 60);
     EXPECT_GE(compare_images(image("before.png"), image("again.png")).psnr, 60);
 }
 
-TEST_F(FlyTest, AFileThatCannotBeReadIsSaidAndTheSceneStays) {
+TEST_F(FlyTest, ReportsUnreadableFileAndKeepsScene) {
     std::ofstream(folder_ / "broken.nrrd") << "NRRD0004\ntype: nonsense\n\n";
     fly("settle\ndrop broken.nrrd\nframes 3\nexpect error has broken.nrrd\nexpect volume == builtin:torus:32\n"
         "expect finished == yes\ndrop builtin:sphere:24\nframes 2\nsettle\nexpect volume == builtin:sphere:24\n");
 }
 
-TEST_F(FlyTest, AnExpectationThatDoesNotHoldEndsItWithFileAndLine) {
+TEST_F(FlyTest, FailedExpectationNamesFileAndLine) {
     const ProgramRun result = try_to_fly("frames 1\nexpect show == plain\n", "builtin:sphere:16");
     EXPECT_EQ(result.status, 1);
     EXPECT_THAT(result.err, HasSubstr("script.txt:4: expect: show is edges, expected == plain"));
     const ProgramRun unknown = try_to_fly("expect nothing == plain\n", "builtin:sphere:16");
     EXPECT_EQ(unknown.status, 1);
-    EXPECT_THAT(unknown.err, HasSubstr("'nothing' is no value"));
+    EXPECT_THAT(unknown.err, HasSubstr("'nothing' is not a value"));
     EXPECT_EQ(try_to_fly("", "--size 0x5").status, 2);
     const ProgramRun missing = try_to_fly("open missing.nrrd\n", "builtin:sphere:16");
     EXPECT_EQ(missing.status, 1);
     EXPECT_THAT(missing.err, HasSubstr("missing.nrrd"));
 }
 
-TEST_F(FlyTest, WithoutAScreenItSaysSo) {
+TEST_F(FlyTest, ReportsMissingScreen) {
     const ProgramRun result =
         run_shell("env -u DISPLAY -u WAYLAND_DISPLAY '" EDGESPLAT_FLY "' --no-preferences builtin:sphere:16");
     EXPECT_EQ(result.status, 1);
@@ -175,14 +175,14 @@ TEST_F(FlyTest, WithoutAScreenItSaysSo) {
     EXPECT_EQ(run_shell("'" EDGESPLAT_FLY "' --headless builtin:sphere:16").status, 2);
 }
 
-TEST_F(FlyTest, TheManualKnowsEveryKeyAndCommand) {
+TEST_F(FlyTest, ManualListsEveryKeyAndCommand) {
     const ProgramRun help = run_shell("'" EDGESPLAT_FLY "' --script-help");
     EXPECT_EQ(help.status, 0);
     EXPECT_THAT(help.out, HasSubstr("Space"));
     EXPECT_THAT(text_of(EDGESPLAT_SOURCE_DIR "/docs/fly.md"), HasSubstr(help.out));
 }
 
-TEST_F(FlyTest, RemembersWhatWasOpened) {
+TEST_F(FlyTest, RemembersOpenedFiles) {
     std::ofstream(folder_ / "script.txt") << "size 480 320\nopen builtin:sphere:16\nframes 1\n";
     const ProgramRun result = run_shell("env XDG_CONFIG_HOME=settings '" EDGESPLAT_FLY
                                         "' --headless --validation --script script.txt builtin:torus:16");
@@ -192,7 +192,7 @@ TEST_F(FlyTest, RemembersWhatWasOpened) {
     EXPECT_THAT(kept, HasSubstr("width = 480"));
 }
 
-TEST_F(FlyTest, ThroughTheNose) {
+TEST_F(FlyTest, FliesThroughRealNose) {
     const char* data = std::getenv("EDGESPLAT_DATA");
     const fs::path volume = fs::path(data == nullptr ? "" : data) / "cranium_ct" / "cranium.nhdr";
     if (data == nullptr || !fs::exists(volume)) GTEST_SKIP() << "EDGESPLAT_DATA names no folder with cranium_ct";
@@ -215,7 +215,7 @@ TEST_F(FlyTest, ThroughTheNose) {
 
 class FlyScript : public FlyTest, public testing::WithParamInterface<std::string> {};
 
-TEST_P(FlyScript, Holds) {
+TEST_P(FlyScript, MeetsExpectations) {
     const ProgramRun result =
         run_shell("'" EDGESPLAT_FLY "' --headless --no-preferences --validation --script '" EDGESPLAT_SOURCE_DIR
                   "/tests/scripts/" +

@@ -1,4 +1,4 @@
-// What is kept from run to run: the file of compiled pipelines, behind a byte that says so.
+// The pipeline cache file. The first byte of the input is ignored.
 #include <cstdlib>
 
 #include "engine/gpu/pipeline_cache_file.h"

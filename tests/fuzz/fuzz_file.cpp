@@ -22,7 +22,7 @@ struct Folder {
         if (mkdtemp(name.data()) == nullptr) std::abort();
         path = name;
         setenv("EDGESPLAT_READ_MEMORY", "256", 1);
-        // The user's own presets are none of the fuzzers' business.
+        // The user's own presets must not affect the fuzzers.
         setenv("XDG_CONFIG_HOME", path.c_str(), 1);
         unsetenv("EDGESPLAT_PRESETS");
         unsetenv("EDGESPLAT_VOLUMES");

@@ -1,4 +1,4 @@
-// What the fuzzers share: a folder of the process's own, and files in it.
+// Helpers of the fuzzers: a temporary folder of the process, and files in it.
 #pragma once
 
 #include <cstddef>
@@ -9,19 +9,19 @@
 
 namespace edgesplat::fuzz {
 
-/// Where fuzzed files lie, in memory where the system has such a place; the program's own temporary files go there too,
-/// and readers of volumes get 256 MiB. Made once, removed when the process ends.
+/// The folder of fuzzed files, in memory (/dev/shm) if possible, as are the program's temporary files. Volume readers
+/// may use 256 MiB. Created once, removed when the process ends.
 const std::filesystem::path& folder();
 
-/// Writes FOLDER/`name`, anew.
+/// Writes FOLDER/`name`, replacing an older file; returns its path.
 std::string write(const std::string& name, std::string_view content);
 
 inline std::string_view text_of(const std::uint8_t* data, std::size_t size) {
     return {reinterpret_cast<const char*>(data), size};
 }
 
-/// Reads the content as a volume under that name; its path. Errors are what is expected; anything else that is thrown
-/// ends the fuzzer.
+/// Writes the content under that name, loads it as a volume and returns its path. Error is expected; any other
+/// exception ends the fuzzer.
 std::string load(const std::string& name, std::string_view content);
 
 }  // namespace edgesplat::fuzz

@@ -1,4 +1,4 @@
-// Single keys of a scene, as `--set KEY=VALUE` gives them, one a line.
+// Single keys of a scene as in `--set KEY=VALUE`, one per line.
 #include <algorithm>
 #include <cstdlib>
 

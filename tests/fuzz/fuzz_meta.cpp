@@ -1,4 +1,4 @@
-// MetaImage headers: with their data behind them, or in the 64 bytes of data.raw.
+// MetaImage headers with their data in the same file, or in the 64 bytes of data.raw.
 #include "engine/error.h"
 #include "engine/volume/pack_source_internal.h"
 #include "tests/fuzz/fuzz_file.h"
@@ -6,7 +6,7 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     static const std::string beside = edgesplat::fuzz::write("data.raw", std::string(64, 'x'));
     const std::string path = edgesplat::fuzz::load("volume.mha", edgesplat::fuzz::text_of(data, size));
-    try {  // the way that `edgesplat pack` reads it
+    try {  // as `edgesplat pack` reads it
         edgesplat::Volume description;
         const auto layout = edgesplat::detail::meta_layout(path, description);
         std::vector<float> sample(1);

@@ -1,4 +1,4 @@
-// NIfTI-1, NIfTI-2 and Analyze: a header with its voxels behind it, plain or gzip.
+// NIfTI-1, NIfTI-2 and Analyze: a header followed by its voxels, plain or gzip.
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

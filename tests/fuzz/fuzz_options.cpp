@@ -1,4 +1,4 @@
-// Command lines, an argument a line: everything up to the command's own work.
+// Command lines, one argument per line: parsing up to the command's own work.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>
@@ -16,7 +16,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         const std::size_t end = std::min(rest.find('\n'), rest.size());
         arguments.emplace_back(rest.substr(0, end));
         rest.remove_prefix(std::min(end + 1, rest.size()));
-        if (arguments.back().starts_with("--list-devices")) return 0;  // asks the drivers
+        if (arguments.back().starts_with("--list-devices")) return 0;  // queries the drivers
     }
     std::vector<const char*> argv{"edgesplat"};
     for (const std::string& argument : arguments)
@@ -24,7 +24,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     int exit_status = 0;
     CLI::App app("", "edgesplat");
     add_commands(app, "edgesplat", exit_status);
-    app.parse_complete_callback([] { throw CLI::Success(); });  // comes before any command's
+    app.parse_complete_callback([] { throw CLI::Success(); });  // runs before any command
     try {
         app.parse(static_cast<int>(argv.size()), argv.data());
     } catch (const CLI::ParseError&) {

@@ -1,5 +1,5 @@
-// Packed volumes: a good small one, of which the input changes attributes and datasets through HDF5 itself. What the
-// library makes of bytes that are no HDF5 file is not fuzzed here.
+// Packed volumes: the input changes attributes and datasets of a small valid file through HDF5. Files that are not HDF5
+// are not fuzzed here.
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -42,7 +42,7 @@ class Input {
     std::size_t left_;
 };
 
-// 0: as it should be; else what is wrong with it.
+// `how` 0: valid; otherwise it selects what is wrong with the attribute.
 void put_numbers(Hdf5File& file, Input& in, const char* name, std::vector<double> values) {
     const std::uint8_t how = in.byte();
     if (how == 1) return;
@@ -75,7 +75,7 @@ void put_dataset(Hdf5File& file, Input& in, const std::string& path, Hdf5Extent 
     if (how == 2) extent[in.byte() % extent.size()] += in.byte();
     if (how == 3) extent.push_back(1 + in.byte() % 4);
     if (how == 4) type = static_cast<SampleType>(in.byte() % 10);
-    // As large as it says, with nothing in it.
+    // A large dataset without data.
     if (how == 5) extent[in.byte() % extent.size()] <<= in.byte() % 40;
     const auto dataset = file.create_dataset(path, {.type = type, .extent = extent, .chunk = how == 5 ? 32U : 0U});
     if (how == 5 || how == 6) return;

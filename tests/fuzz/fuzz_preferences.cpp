@@ -1,4 +1,4 @@
-// The viewer's preferences: any file gives some, within their ranges, and these are written and read back the same.
+// The viewer's preferences: every file gives preferences within their ranges, and these round-trip.
 #include <cstdlib>
 
 #include "engine/viewer/preferences.h"

@@ -1,5 +1,5 @@
-// Scene files: what is read is written and read back the same, and what follows from it - scene, camera, path, transfer
-// function - is made for a small volume.
+// Scene files: an accepted document round-trips; its scene, camera, path and transfer function are resolved for a small
+// volume.
 #include <cmath>
 #include <cstdlib>
 
@@ -39,7 +39,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     } catch (const Error&) {
         return 0;
     }
-    // Not within a try: what was accepted must be writable, and readable again.
+    // No try here: an accepted document must be writable and readable again.
     for (const std::string& text : {scene_text(document), commented_scene_text(document)})
         if (!(parse_scene(text, "again.toml", {.folders = {}}) == document)) std::abort();
     try {

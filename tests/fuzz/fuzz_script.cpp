@@ -1,4 +1,4 @@
-// Scripts of the viewer: whatever is accepted has the words that its verb asks for.
+// Viewer scripts: every accepted command has the words that its verb requires.
 #include <cmath>
 #include <cstdlib>
 

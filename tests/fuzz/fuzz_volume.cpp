@@ -1,6 +1,6 @@
-// The formats with small headers: legacy VTK, GIPL, VTI's refusal, raw data whose description is the first line, and
-// the unpacking of zip archives, the walks through DICOM and netCDF files that come before their libraries. GDCM,
-// libminc and OpenImageIO themselves are not fuzzed: what they do with a file that the walks let through is theirs.
+// Formats with small headers: legacy VTK, GIPL, the refusal of VTI, raw data with a description in the first line, zip
+// archives, and the checks of DICOM and netCDF files before their libraries read them. GDCM, libminc and OpenImageIO
+// themselves are not fuzzed.
 #include "engine/error.h"
 #include "engine/volume/load_internal.h"
 #include "tests/fuzz/fuzz_file.h"

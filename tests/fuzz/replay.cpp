@@ -1,4 +1,4 @@
-// Runs a fuzzer's function on the files of folders, without a fuzzer: corpora and findings as ordinary tests.
+// Runs a fuzzer's function once on every file of the given folders: corpora and findings as ordinary tests.
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>

@@ -1,5 +1,5 @@
-// Pictures against those of lavapipe that are kept in tests/image/golden, on any device: `accept` shows what changed
-// and replaces on demand.
+// Compares pictures of any device with the lavapipe pictures in tests/image/golden. `accept` shows the differences and
+// replaces pictures on demand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@
 namespace edgesplat::test {
 namespace {
 
-// A channel, as displayed (sRGB), is the same up to this; so many pixels may be further off.
+// Tolerance of a displayed (sRGB) channel, and the largest share of pixels that may exceed it.
 constexpr double kSameChannel = 8.0 / 255;
 constexpr double kOtherPixels = 0.005;
 
@@ -27,7 +27,7 @@ Image displayed(Image image) {
     return image;
 }
 
-/// What is seen: with a background of two colours that too, so without alpha.
+/// The displayed picture. A background of two colours is part of it, so it has no alpha then.
 Image seen(const ImageCase& c) {
     const Image image = render_on_device(c);
     if (!c.shot.scene.effects.background_top) return image;
@@ -39,16 +39,17 @@ Image seen(const ImageCase& c) {
 
 class Golden : public testing::TestWithParam<ImageCase> {};
 
-TEST_P(Golden, IsTheSame) {
+TEST_P(Golden, MatchesStoredPicture) {
     if (const std::string why = refusal_of_layers(GetParam()); !why.empty()) GTEST_SKIP() << why;
-    // Pictures of a profile that is forced lie apart.
+    // Pictures of a forced device profile have their own folder.
     const char* profile = std::getenv("EDGESPLAT_DEVICE_PROFILE");
     const auto folder = std::filesystem::path(EDGESPLAT_PICTURES) / (profile == nullptr ? "" : profile);
     const auto golden = std::filesystem::path(EDGESPLAT_SOURCE_DIR) / "tests/image/golden" / (GetParam().name + ".png");
     const auto actual = folder / (GetParam().name + ".png"), diff = folder / (GetParam().name + ".diff.png");
     std::filesystem::create_directories(folder);
     write_image(actual, seen(GetParam()));
-    ASSERT_TRUE(std::filesystem::exists(golden)) << "no golden yet; look at " << actual << ", then tests/image/accept";
+    ASSERT_TRUE(std::filesystem::exists(golden))
+        << "no golden picture yet; check " << actual << ", then run tests/image/accept";
     const Image a = displayed(read_image(actual).image), b = displayed(read_image(golden).image);
     const ImageDifference difference = compare_images(a, b, kSameChannel);
     if (difference.share > kOtherPixels) write_image(diff, difference_image(a, b, 10));
@@ -62,7 +63,7 @@ TEST_P(Golden, IsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Pictures, Golden, testing::ValuesIn(golden_cases()),
                          [](const auto& instance) { return instance.param.name; });
 
-TEST(ImageCases, ShowEveryEffect) {
+TEST(ImageCases, CoverEveryEffect) {
     std::vector<ImageCase> cases = golden_cases();
     for (ImageCase& c : reference_cases())
         cases.push_back(std::move(c));
@@ -77,7 +78,7 @@ TEST(ImageCases, ShowEveryEffect) {
                                          .distance = c.output == reference::Output::Distance};
                 return !effect.reason({shot.volume, shot.scene, shot.camera, shot.settings, {64, 64}, outputs}).empty();
             }))
-            << "no picture has the effect `" << effect.name << "`";
+            << "no case shows the effect `" << effect.name << "`";
     }
 }
 

@@ -41,7 +41,7 @@ Shot oblique_orbital() {
     return shot;
 }
 
-/// A wall of 1.6 voxels seen from near by.
+/// A wall of 1.6 voxels seen from nearby.
 Shot near_wall() {
     Shot shot;
     shot.volume =
@@ -68,9 +68,9 @@ Shot with(Shot shot, FootprintMode footprints, EdgeEstimator edges = EdgeEstimat
     return shot;
 }
 
-/// As in the paper.
+/// With the paper's settings.
 Shot flat(Shot shot) {
-    shot.settings = papers_own(shot.settings);
+    shot.settings = paper_settings(shot.settings);
     return shot;
 }
 
@@ -82,7 +82,7 @@ Shot sliced(Shot shot, double spacing) {
 
 Shot small(Shot shot, int side = 48) {
     shot.width = shot.height = side;
-    // The device finishes pixels by groups of sheets of its own: up to 1 - saturation.
+    // The device tests saturation after its own groups of sheets, which costs up to 1 - saturation.
     shot.settings.saturation = 1;
     return shot;
 }
@@ -103,7 +103,7 @@ Shot cut_cavity() {
     return shot;
 }
 
-/// The orbital, a box of it cut out.
+/// The orbital with a box cut out.
 Shot cut_out_box() {
     Shot shot = oblique_orbital();
     const glm::dvec3 middle = shot.volume->geometry.to_world({12, 11, 14}), low = middle - glm::dvec3(1, 40, 1),
@@ -113,7 +113,7 @@ Shot cut_out_box() {
     return shot;
 }
 
-/// Kernels cut by planes of the scene, in every way that they are integrated.
+/// Kernels cut by clip planes, with every method of integration.
 std::vector<ImageCase> clip_cases() {
     using E = EdgeEstimator;
     using F = FootprintMode;
@@ -142,12 +142,12 @@ std::vector<ImageCase> clip_cases() {
     wall.scene.effects.clip.keep = {{{12, 13, 12}, {-1, -0.3, 0.4}}};
     cases.push_back({"near wall, cut", wall});
     for (ImageCase& c : cases)
-        // Where a ray but touches a face rounding decides.
+        // If a ray only touches a face, rounding decides.
         c.smallest_psnr = !draws_faces(c.shot.settings) ? 95 : c.output == Output::Normal ? 50 : 65;
     return cases;
 }
 
-/// Kernels cut at sheets' planes.
+/// Kernels cut by the planes of sliced sheets.
 std::vector<ImageCase> later_cases() {
     using E = EdgeEstimator;
     using F = FootprintMode;
@@ -170,13 +170,13 @@ std::vector<ImageCase> later_cases() {
     cases.push_back({"plane, paper's curve, sliced", sliced(plane, 2)});
     plane.settings.footprints = F::Warp2d;
     cases.push_back({"plane, paper warp2d, sliced", sliced(plane, 0.5)});
-    // Float32 of some tens of splats a sheet: what is better than this is not the same sum.
+    // Float32 sums of tens of splats per sheet limit the agreement.
     for (ImageCase& c : cases)
         c.smallest_psnr = draws_faces(c.shot.settings) ? 80 : 95;  // as above
     return cases;
 }
 
-/// Far away, a pixel of some voxels.
+/// Seen from far away: a pixel covers several voxels.
 Shot far_orbital() {
     Shot shot = oblique_orbital();
     shot.camera.eye += 6.0 * (shot.camera.eye - shot.volume->geometry.to_world({12, 11, 14}));
@@ -185,7 +185,7 @@ Shot far_orbital() {
     return shot;
 }
 
-/// Footprints widened to pixels, and several samples a pixel, in every way that kernels are integrated.
+/// Footprints widened to pixels and several samples per pixel, with every method of integration.
 std::vector<ImageCase> sampling_cases() {
     using E = EdgeEstimator;
     using F = FootprintMode;
@@ -220,7 +220,7 @@ std::vector<ImageCase> sampling_cases() {
     return cases;
 }
 
-/// Footprints from the table, and what it does not have: walls, kernels at clip planes and at the border.
+/// Footprints from the table, and cases that it does not cover: walls, kernels at clip planes and at the border.
 std::vector<ImageCase> table_cases() {
     using F = FootprintMode;
     std::vector<ImageCase> cases;
@@ -269,7 +269,7 @@ std::vector<ImageCase> shading_cases() {
                               {0.4 * top, {1, 0.5, 0.1}, 2},
                               {top, {1, 0.1, 0.1}, 4}};
     cases.push_back({"transfer_function", orbital});
-    // Away from the iso-value the gradient's light is gone.
+    // Away from the iso-value, matter is no longer lit by the gradient.
     orbital.scene.lit = Lit::Edges;
     cases.push_back({"light_on_edges_only", orbital});
     Shot several = torus_shot();
@@ -336,9 +336,9 @@ std::vector<ImageCase> golden_cases() {
     Shot hole = builtin("cube-hole", glm::ivec3(28));
     from(hole, "oblique", 35);
     cases.push_back({"cube_hole", hole});
-    Shot looked_up = torus_shot();
-    looked_up.settings.sheet_format = SheetFormat::Layers;
-    cases.push_back({"torus_from_the_table_in_layers", with(looked_up, FootprintMode::Table)});
+    Shot table_value = torus_shot();
+    table_value.settings.sheet_format = SheetFormat::Layers;
+    cases.push_back({"torus_from_the_table_in_layers", with(table_value, FootprintMode::Table)});
     cases.push_back({"orbital", oblique_orbital()});
     Shot plates = builtin("plates", glm::ivec3(48));
     from(plates, "oblique", 35);

@@ -1,4 +1,4 @@
-// The pictures of the image tests: small scenes that between them use every mode, estimator, output and view.
+// Cases of the image tests: small scenes that together use every mode, estimator, output and view.
 #pragma once
 
 #include <ostream>
@@ -15,20 +15,20 @@ struct ImageCase {
     std::string name;
     Shot shot;
     reference::Output output = reference::Output::Color;
-    double smallest_psnr = 50;  ///< against the reference, dB, of a peak that is the larger of 1 and what there is
+    double smallest_psnr = 50;  ///< against the reference, dB; peak = max(1, largest value)
 };
 
 inline void PrintTo(const ImageCase& image_case, std::ostream* out) {
     *out << image_case.name;
 }
 
-/// Held against the double-precision reference.
+/// Compared with the double-precision reference.
 std::vector<ImageCase> reference_cases();
 
-/// Held against the pictures in tests/image/golden.
+/// Compared with the pictures in tests/image/golden.
 std::vector<ImageCase> golden_cases();
 
-/// Where the device has no layers and the case needs them: what the renderer says. Empty otherwise.
+/// The renderer's refusal if the case needs layers and the device has none; empty otherwise.
 std::string refusal_of_layers(const ImageCase& image_case);
 
 /// The output of a case as the device renders it.

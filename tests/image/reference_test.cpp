@@ -1,4 +1,4 @@
-// Whole pictures of the device against the double-precision reference.
+// Compares whole pictures of the device with the double-precision reference.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ bool is_mean(reference::Output output) {
     return output != reference::Output::Color && output != reference::Output::Tau;
 }
 
-/// Where next to nothing is seen, its mean depth or normal is the ratio of two roundings.
+/// Blanks nearly transparent pixels: their mean depth or normal is the ratio of two rounding errors.
 void blank_unseen(Image& image, const Image& color) {
     for (int y = 0; y < image.height; ++y) {
         for (int x = 0; x < image.width; ++x) {
@@ -33,7 +33,7 @@ void blank_unseen(Image& image, const Image& color) {
 
 class Reference : public testing::TestWithParam<ImageCase> {};
 
-TEST_P(Reference, Agrees) {
+TEST_P(Reference, MatchesDevice) {
     const ImageCase& c = GetParam();
     if (const std::string why = refusal_of_layers(c); !why.empty()) GTEST_SKIP() << why;
     const reference::PreparedVolume prepared(*c.shot.volume, c.shot.scene, c.shot.settings, true);
@@ -50,11 +50,11 @@ TEST_P(Reference, Agrees) {
     const ImageDifference difference = compare_images(scaled(actual, 1 / peak), scaled(expected, 1 / peak));
     EXPECT_GE(difference.psnr, c.smallest_psnr)
         << "largest " << difference.max << " at " << difference.x << ", " << difference.y;
-    EXPECT_GT(evenness(actual).mean * evenness(actual).variation, 0.01) << "an empty picture shows nothing";
+    EXPECT_GT(evenness(actual).mean * evenness(actual).variation, 0.01) << "the picture is empty";
     std::printf("%-40s %6.1f dB, largest %.4f\n", c.name.c_str(), difference.psnr, difference.max);
 }
 
-/// "cut cavity, depth" as ctest may call it.
+/// The name of a case for ctest: every character except letters and digits becomes _.
 std::string test_name(const testing::TestParamInfo<ImageCase>& instance) {
     std::string name = instance.param.name;
     std::ranges::replace_if(

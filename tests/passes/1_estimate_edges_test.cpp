@@ -1,5 +1,5 @@
-// Pass 1 against the reference: the same plane for the same voxel, up to float32 and the 64 stored bits. What is
-// marched to is in faces_test.cpp.
+// Pass 1 against the reference: the same plane for the same voxel, up to float32 and the 64 stored bits. faces_test.cpp
+// tests the other estimators.
 
 #include "tests/passes/pass_fixture.h"
 
@@ -9,7 +9,7 @@ namespace {
 TEST(EstimateEdges, TaylorAgreesWithTheReference) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
-        s.settings = papers_own(s.settings);
+        s.settings = paper_settings(s.settings);
         s.settings.cull_buried = false;  // the reference estimates buried voxels too
         DeviceUnderTest& state = prepared(s);
         const auto field_values = scaled_field(s.volume);
@@ -23,13 +23,13 @@ TEST(EstimateEdges, TaylorAgreesWithTheReference) {
             edges += expected[i].has_edge ? 1U : 0U;
             differ += same_edge(got[i], expected[i]) ? 0U : 1U;
         }
-        EXPECT_GE(edges, expected.size() / 50) << "the scene has too few edges to say anything";
-        // A voxel half-way between two ends of its interval may take either: those are the few that may differ.
+        EXPECT_GE(edges, expected.size() / 50) << "the scene has too few edges for this test";
+        // A voxel half-way between two ends of its interval may choose either; only such voxels may differ.
         EXPECT_LE(static_cast<double>(differ), 0.003 * static_cast<double>(edges)) << differ << " of " << edges;
     }
 }
 
-TEST(EstimateEdgesOff, LeavesNormalsForLightAndNoEdge) {
+TEST(EstimateEdgesOff, StoresNormalsForLightButNoEdges) {
     PassScene s = pass_scenes()[0];
     s.settings.edges = EdgeEstimator::Off;
     DeviceUnderTest& state = prepared(s);
@@ -41,7 +41,7 @@ TEST(EstimateEdgesOff, LeavesNormalsForLightAndNoEdge) {
     EXPECT_GT(normals, 100U);
 }
 
-TEST(EstimateEdgesOff, WithoutLightThereIsNoPassAndNoField) {
+TEST(EstimateEdgesOff, RunsNoPassWithoutLight) {
     PassScene s = pass_scenes()[0];
     s.settings.edges = EdgeEstimator::Off;
     s.scene.lights.clear();

@@ -1,4 +1,4 @@
-// Pass 2 against the reference: exactly the same voxels, brick by brick.
+// Pass 2 against the reference: the same voxels in the same order of bricks.
 #include <cmath>
 
 #include "tests/passes/pass_fixture.h"
@@ -15,7 +15,7 @@ std::vector<reference::SplatRecord> expected_records(const PassScene& s) {
                                      false, {}, carried);
 }
 
-TEST(CollectSplats, TheSameVoxelsBrickByBrick) {
+TEST(CollectSplats, CollectsTheReferencesVoxelsInBrickOrder) {
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const auto got = device_records(prepared(s));
@@ -29,14 +29,14 @@ TEST(CollectSplats, TheSameVoxelsBrickByBrick) {
     }
 }
 
-TEST(CollectSplats, BuriedVoxelsAreDroppedAndOnlyThey) {
+TEST(CollectSplats, CullsOnlyBuriedVoxels) {
     PassScene s = pass_scenes()[0];
     s.volume = sample(sphere_scene({40, 40, 40}, {19.5, 19.5, 19.5}, 15));
     const auto with = device_records(prepared(s));
     s.settings.cull_buried = false;
     const auto without = device_records(prepared(s));
     EXPECT_LT(with.size(), without.size());
-    // Every voxel of the outer layers is still there: 4 voxels behind the surface nothing shows at 4 per mm.
+    // All voxels of the outer layers remain: at an extinction of 4 per mm, nothing deeper than 4 voxels is visible.
     std::size_t outer = 0, kept = 0;
     const auto is_outer = [&](const reference::SplatRecord& r) {
         const auto v = static_cast<int>(r.voxel);
@@ -49,7 +49,7 @@ TEST(CollectSplats, BuriedVoxelsAreDroppedAndOnlyThey) {
     EXPECT_EQ(kept, outer);
 }
 
-TEST(CollectSplats, RecordsHoldThePapersPlanesAsTheyWereFound) {
+TEST(CollectSplats, StoresThePapersPlanesUnchanged) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         s.settings.warp = WarpFamily::Paper;
@@ -67,7 +67,7 @@ TEST(CollectSplats, RecordsHoldThePapersPlanesAsTheyWereFound) {
     }
 }
 
-TEST(CollectSplats, EdgesOnBothSidesAreFoundForFacesAndOnlyThen) {
+TEST(CollectSplats, EstimatesBothSidesOfEdgesOnlyForFaces) {
     PassScene s = pass_scenes()[0];
     const auto with_edges = [&] {
         std::size_t count = 0;
@@ -81,7 +81,7 @@ TEST(CollectSplats, EdgesOnBothSidesAreFoundForFacesAndOnlyThen) {
     EXPECT_GT(with_edges(), visible + visible / 2);
 }
 
-TEST(CollectSplats, AVolumeWithoutVisibleVoxelsGivesAnEmptyListAndTheBackground) {
+TEST(CollectSplats, DrawsTheBackgroundWithoutVisibleVoxels) {
     PassScene s = pass_scenes()[0];
     s.scene.iso_values = {2.0};
     DeviceUnderTest& state = prepared(s);

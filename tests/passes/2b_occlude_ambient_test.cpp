@@ -1,4 +1,4 @@
-// Pass 2b against the reference, and against what closed forms say of planes, corners, boxes and haze.
+// Pass 2b against the reference, and against closed forms for planes, corners, boxes and haze.
 #include <cmath>
 
 #include "engine/reference/2b_occlude_ambient.h"
@@ -9,7 +9,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// First and second: the face that the normal looks out of, and the other.
+/// First: the face that the normal points out of. Second: the other face.
 Reaches device_reaches(const PassScene& s) {
     return reaches_of(s, &SplatLists::occlusion);
 }
@@ -18,7 +18,7 @@ double band(const Settings& settings) {
     return edge_reach(settings);
 }
 
-/// A volume of f(index), two materials: nothing below 1/2, `extinction` above.
+/// A volume of f(index) with two materials: transparent below 1/2, `extinction` above.
 PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm::dvec3&)>& f, double extinction,
                    double radius) {
     PassScene s;
@@ -55,7 +55,7 @@ TEST(OccludeAmbient, EqualsTheReference) {
                 const double want = reference::ambient_reach(record, field, s.scaled(), s.scene, s.volume.geometry,
                                                              band(s.settings), 6, turned);
                 const double difference = std::abs((turned ? got.second[i] : got.first[i]) - want);
-                // A sample that lies on the border of two voxels to seven digits may be either's.
+                // A sample on the border of two voxels, to seven digits, may belong to either.
                 off += difference > 1e-3 ? 1U : 0U;
                 EXPECT_LE(difference, 0.04);
                 sum += difference;
@@ -71,7 +71,7 @@ TEST(OccludeAmbient, EqualsTheReference) {
     }
 }
 
-TEST(OccludeAmbient, AFlatPlaneSeesTheWholeSky) {
+TEST(OccludeAmbient, LeavesAFlatPlaneUnoccluded) {
     for (const glm::dvec3 normal : {glm::dvec3(0, 0, 1), glm::dvec3(0.3, -0.5, 0.8), glm::dvec3(-1, 1, 0.02)}) {
         const glm::dvec3 n = glm::normalize(normal), middle(11.5);
         const PassScene s = scene_of(
@@ -81,18 +81,18 @@ TEST(OccludeAmbient, AFlatPlaneSeesTheWholeSky) {
         for (std::size_t i = 0; i < got.records.size(); ++i) {
             const auto v = static_cast<int>(got.records[i].voxel);
             const glm::ivec3 at(v % 24, v / 24 % 24, v / 576);
-            // The spline is mirrored at the border, which bends a plane that meets it.
+            // The spline is mirrored at the border, which bends a plane there.
             if (!got.records[i].edge.has_edge || at != glm::clamp(at, 3, 20)) continue;
             ++surface;
-            // 16 bits of 1 are 1.
+            // The 16-bit maximum is exactly 1.
             EXPECT_GT(got.first[i], 0.99999);
         }
         EXPECT_GT(surface, 600U);
     }
 }
 
-/// Share of the sky seen from `height` away from an infinite wall at right angles, nothing counting beyond `radius`:
-/// the cosine-weighted share of directions whose way to the wall is longer.
+/// Share of the sky seen at `height` from an infinite wall at right angles, if occluders count up to `radius`: the
+/// cosine-weighted share of directions with a longer distance to the wall.
 double open_beside_wall(double height, double radius) {
     double open = 0;
     const int n = 400;
@@ -105,7 +105,7 @@ double open_beside_wall(double height, double radius) {
     return open / n / n;
 }
 
-TEST(OccludeAmbient, AnInnerCornerIsAsOpenAsItsFormFactorSays) {
+TEST(OccludeAmbient, MatchesTheFormFactorInAnInnerCorner) {
     // A floor z < 9.25 and a wall x < 9.25, both opaque.
     const double radius = 8;
     const PassScene s = scene_of(
@@ -122,11 +122,11 @@ TEST(OccludeAmbient, AnInnerCornerIsAsOpenAsItsFormFactorSays) {
         ++count;
     }
     ASSERT_GT(count, 100);
-    EXPECT_LE(worst, 0.05) << "bound of method.md for the rays that are cast";
+    EXPECT_LE(worst, 0.05) << "bound of method.md for this number of rays";
     EXPECT_LE(std::abs(sum / count), 0.02);
 }
 
-TEST(OccludeAmbient, InsideAClosedBoxItIsDark) {
+TEST(OccludeAmbient, OccludesTheInsideOfAClosedBox) {
     const PassScene s = scene_of(
         glm::ivec3(24),
         [](const glm::dvec3& p) {
@@ -146,27 +146,28 @@ TEST(OccludeAmbient, InsideAClosedBoxItIsDark) {
     EXPECT_GT(inner, 300U);
 }
 
-TEST(OccludeAmbient, BetweenTwoPlanesOnlyTheGrazingRaysGetOut) {
-    // Planes 8 apart, rays of 16: those within 60 degrees of the normal meet the other plane; cos^2 60 = 1/4 are left.
+TEST(OccludeAmbient, PassesOnlyGrazingRaysBetweenTwoPlanes) {
+    // Planes 8 apart, rays of length 16: rays within 60 degrees of the normal meet the other plane, so cos^2 60 = 1/4
+    // remains.
     const PassScene s = scene_of(
         glm::ivec3(40, 40, 24), [](const glm::dvec3& p) { return ramp(std::abs(p.z - 11.5) - 4.0); }, 20, 16);
     const Reaches got = device_reaches(s);
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < got.records.size(); ++i) {
         const int v = static_cast<int>(got.records[i].voxel), x = v % 40, y = v / 40 % 40, z = v / 1600;
-        // Those further out see the sky beyond the border.
+        // Splats further out see the sky beyond the border.
         if (!got.records[i].edge.has_edge || z < 5 || z > 18 || x < 15 || x > 24 || y < 15 || y > 24) continue;
         EXPECT_NEAR(got.first[i], 0.25, 0.08);
         sum += got.first[i];
         ++count;
     }
     ASSERT_GT(count, 100);
-    // From a little above the surface the other plane is nearer: cos^2 of what meets it after 16 - 1.25 is .19 to .25.
+    // From a little above the surface the other plane is nearer: with 16 - 1.25 as distance, cos^2 is .19 to .25.
     EXPECT_NEAR(sum / count, 0.21, 0.04);
 }
 
-TEST(OccludeAmbient, HazeLetsThroughWhatItsThicknessSays) {
-    // Everywhere the same matter but for one voxel, so that no splat far from it has a normal.
+TEST(OccludeAmbient, MatchesTheClosedFormInHaze) {
+    // Uniform matter except for one voxel, so that no splat far from it has a normal.
     const double radius = 6;
     for (const double extinction : {0.02, 0.1, 0.3}) {
         PassScene s = scene_of(
@@ -184,7 +185,7 @@ TEST(OccludeAmbient, HazeLetsThroughWhatItsThicknessSays) {
     }
 }
 
-TEST(OccludeAmbient, WhatIsCutAwayIsInNoOnesWay) {
+TEST(OccludeAmbient, IgnoresMatterThatIsCutAway) {
     PassScene s = scene_of(
         {28, 28, 28}, [](const glm::dvec3& p) { return std::max(ramp(9.25 - p.z), ramp(9.25 - p.x)); }, 20, 8);
     const auto mean_beside_wall = [&] {
@@ -207,7 +208,7 @@ TEST(OccludeAmbient, WhatIsCutAwayIsInNoOnesWay) {
     EXPECT_GT(mean_beside_wall(), 0.97);
 }
 
-TEST(OccludeAmbient, NothingIsThereWithoutIt) {
+TEST(OccludeAmbient, CostsNothingWhenOff) {
     PassScene s = pass_scenes()[0];
     DeviceUnderTest& state = prepared(s);
     EXPECT_FALSE(state.lists().occlusion);
@@ -217,12 +218,12 @@ TEST(OccludeAmbient, NothingIsThereWithoutIt) {
     state.collect(s.scene, s.settings, false);
     EXPECT_EQ(state.lists().occlusion.bytes(), 4 * state.lists().splat_count);
     s.scene.effects.occlusion->strength = 0.25;
-    EXPECT_FALSE(state.collect(s.scene, s.settings, false)) << "only colour depends on the strength";
+    EXPECT_FALSE(state.collect(s.scene, s.settings, false)) << "the strength only changes colours";
     s.scene.effects.occlusion->radius = 3;
     EXPECT_TRUE(state.collect(s.scene, s.settings, false));
     s.scene.lights.clear();
     state.collect(s.scene, s.settings, false);
-    EXPECT_FALSE(state.lists().occlusion) << "colours are shown as they are";
+    EXPECT_FALSE(state.lists().occlusion) << "colours are unlit without lights";
 }
 
 }  // namespace

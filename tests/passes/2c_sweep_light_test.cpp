@@ -1,4 +1,5 @@
-// Passes 2c and 2d against the reference's optical depths, and against closed forms of slabs, balls and cones of light.
+// Passes 2c and 2d against the reference's optical depths, and against closed forms for slabs, balls and cones of
+// light.
 #include <cmath>
 
 #include "engine/reference/2c_sweep_light.h"
@@ -11,8 +12,8 @@ namespace {
 
 class SweepLight : public NeedsLayers<> {};
 
-/// First and second: the lights with shadows.
-Reaches device_reaches(const PassScene& s) {
+/// First and second light with shadows.
+Reaches swept_reaches(const PassScene& s) {
     return reaches_of(s, &SplatLists::shadows);
 }
 
@@ -30,7 +31,7 @@ Light lamp(const glm::dvec3& position) {
     return light;
 }
 
-/// A volume of f(index) in [0, 1]: nothing below 1/4, haze of `haze` per mm to 3/4, opaque above.
+/// A volume of f(index) in [0, 1]: transparent below 1/4, haze of `haze` per mm up to 3/4, opaque above.
 PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm::dvec3&)>& f, double haze) {
     PassScene s;
     s.volume.geometry.dims = dims;
@@ -44,8 +45,8 @@ PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm:
     return s;
 }
 
-/// 0 outside, 1 inside, linear over the voxel around the surface.
-double ramp(double inside) {
+/// 0 outside, 1 inside, linear over one voxel across the surface.
+double shadow_ramp(double inside) {
     return std::clamp(0.5 + inside, 0.0, 1.0);
 }
 
@@ -54,13 +55,13 @@ glm::dvec3 place_of(const reference::SplatRecord& record, const glm::ivec3& dims
     return {v % dims.x, v / dims.x % dims.y, v / dims.x / dims.y};
 }
 
-TEST_F(SweepLight, EqualsTheReferencesOpticalDepths) {
+TEST_F(SweepLight, MatchesTheReferencesOpticalDepths) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const VolumeGeometry& geometry = s.volume.geometry;
         const glm::dvec3 middle = geometry.to_world(0.5 * glm::dvec3(geometry.dims - 1));
         s.scene.lights = {sun({0.4, 0.5, 0.8}), lamp(middle + glm::dvec3(10, -35, 20))};
-        Reaches got = device_reaches(s);
+        Reaches got = swept_reaches(s);
         got.records = drawn_records(s, got.records);
         const auto values = scaled_field(s.volume);
         const reference::Field field{geometry.dims, values, {}};
@@ -92,15 +93,15 @@ TEST_F(SweepLight, EqualsTheReferencesOpticalDepths) {
     }
 }
 
-/// A haze slab over an opaque floor, both across z, seen by light from several directions.
-TEST_F(SweepLight, AnAbsorbingSlabLetsThroughWhatItsThicknessSays) {
+/// A haze slab over an opaque floor, both perpendicular to z, lit from several directions.
+TEST_F(SweepLight, MatchesTheClosedFormBehindASlab) {
     const glm::ivec3 dims(48, 48, 40);
     const double haze = 0.12, thickness = 8;
     for (const glm::dvec3 spacing : {glm::dvec3(1), glm::dvec3(1, 0.8, 1.7)}) {
         PassScene s = scene_of(
             dims,
             [&](const glm::dvec3& p) {
-                return std::max(0.5 * ramp(0.5 * thickness - std::abs(p.z - 22.2)), ramp(8.3 - p.z));
+                return std::max(0.5 * shadow_ramp(0.5 * thickness - std::abs(p.z - 22.2)), shadow_ramp(8.3 - p.z));
             },
             haze);
         s.volume.geometry.index_to_world_axes =
@@ -110,15 +111,15 @@ TEST_F(SweepLight, AnAbsorbingSlabLetsThroughWhatItsThicknessSays) {
         for (const glm::dvec3 towards :
              {glm::dvec3(0, 0, 1), glm::dvec3(0.3, 0, 1), glm::dvec3(-0.3, 0.45, 1), glm::dvec3(0.6, 0.5, 1)}) {
             s.scene.lights = {sun(towards)};
-            const Reaches got = device_reaches(s);
+            const Reaches got = swept_reaches(s);
             const double cosine = glm::normalize(towards).z;
-            // The edge between 0 and 1/2 is at 1/4: half a voxel's ramp, on either side.
+            // The edge between 0 and 1/2 is at 1/4: half a voxel's shadow_ramp on either side.
             const double want = std::exp(-haze * thickness * spacing.z / cosine);
             double worst = 0, count = 0;
             for (std::size_t i = 0; i < got.records.size(); ++i) {
                 const glm::dvec3 p = place_of(got.records[i], dims);
                 if (got.records[i].material != 2 || !got.records[i].edge.has_edge || p.z < 4) continue;
-                // Far enough from the border that the way to the light leads through the slab.
+                // Far enough from the border that the ray to the light passes through the slab.
                 const glm::dvec3 at_slab = p + towards / spacing * ((27.0 - p.z) * spacing.z);
                 if (std::max(std::abs(p.x - 23.5), std::abs(p.y - 23.5)) > 21) continue;
                 if (std::max(std::abs(at_slab.x - 23.5), std::abs(at_slab.y - 23.5)) > 20) continue;
@@ -131,7 +132,7 @@ TEST_F(SweepLight, AnAbsorbingSlabLetsThroughWhatItsThicknessSays) {
     }
 }
 
-/// Splats of an opaque floor z < `top` on the lit side.
+/// Visits the splats of an opaque floor z < `top` on the lit side.
 template <typename Visit>
 void for_floor(const Reaches& got, const glm::ivec3& dims, double top, const Visit& visit) {
     for (std::size_t i = 0; i < got.records.size(); ++i) {
@@ -143,21 +144,21 @@ void for_floor(const Reaches& got, const glm::ivec3& dims, double top, const Vis
     }
 }
 
-TEST_F(SweepLight, ABallsShadowIsAnEllipseAtTheRightPlaceAndThePlateHasNoAcne) {
+TEST_F(SweepLight, CastsABallsShadowAtTheRightPlaceWithoutAcne) {
     const glm::ivec3 dims(48, 48, 40);
     const glm::dvec3 ball(20, 24, 26);
     const double r = 7, top = 6.4;
     PassScene s = scene_of(
-        dims, [&](const glm::dvec3& p) { return ramp(std::max(r - glm::length(p - ball), top - p.z)); }, 0);
+        dims, [&](const glm::dvec3& p) { return shadow_ramp(std::max(r - glm::length(p - ball), top - p.z)); }, 0);
     s.scene.iso_values = {0.5};
     s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, 5}};
     for (const glm::dvec3 towards : {glm::dvec3(0, 0, 1), glm::dvec3(-0.4, 0.2, 1), glm::dvec3(-0.9, 0, 1)}) {
         s.scene.lights = {sun(towards)};
-        const Reaches got = device_reaches(s);
+        const Reaches got = swept_reaches(s);
         const glm::dvec3 l = glm::normalize(towards);
         double lit = 0, dark = 0, border = 0;
         for_floor(got, dims, top, [&](const glm::dvec3& p, std::size_t i) {
-            // Light arrives 1.5 voxels over the plate.
+            // Light is evaluated 1.5 voxels above the plate.
             const glm::dvec3 v = ball - glm::dvec3(p.x, p.y, top + 1.5);
             const double from_axis = glm::length(v - glm::dot(v, l) * l) - r;
             if (from_axis > 1.5) {
@@ -185,23 +186,23 @@ TEST_F(SweepLight, ABallsShadowIsAnEllipseAtTheRightPlaceAndThePlateHasNoAcne) {
     }
 }
 
-TEST_F(SweepLight, APointLightsShadowGrowsWithTheDistance) {
+TEST_F(SweepLight, EnlargesAPointLightsShadowWithDistance) {
     const glm::ivec3 dims(56, 56, 40);
     const glm::dvec3 ball(27.5, 27.5, 22);
     const double r = 4, top = 5.4;
     PassScene s = scene_of(
-        dims, [&](const glm::dvec3& p) { return ramp(std::max(r - glm::length(p - ball), top - p.z)); }, 0);
+        dims, [&](const glm::dvec3& p) { return shadow_ramp(std::max(r - glm::length(p - ball), top - p.z)); }, 0);
     s.scene.iso_values = {0.5};
     s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, 5}};
-    // Outside of the volume, near by, and inside of the box (a cube of six pictures).
+    // Outside the volume, nearby, and inside the box (six pictures of a cube).
     for (const glm::dvec3 at : {glm::dvec3(27.5, 27.5, 90), glm::dvec3(30, 25, 48), glm::dvec3(27.5, 29, 36)}) {
         s.scene.lights = {lamp(at)};
-        const Reaches got = device_reaches(s);
+        const Reaches got = swept_reaches(s);
         double lit = 0, dark = 0;
         for_floor(got, dims, top, [&](const glm::dvec3& p, std::size_t i) {
             const glm::dvec3 place(p.x, p.y, top + 1.5), l = glm::normalize(at - place), v = ball - place;
             const double from_axis = glm::length(v - glm::dot(v, l) * l) - r;
-            // Where the border of the shadow is, a voxel of the floor is so much of one at the ball.
+            // At the shadow's border, a voxel of the floor corresponds to this length at the ball.
             const double shrunk = glm::length(at - ball) / glm::length(at - place);
             if (from_axis > 1.5 * shrunk) {
                 ++lit;
@@ -217,15 +218,15 @@ TEST_F(SweepLight, APointLightsShadowGrowsWithTheDistance) {
     }
 }
 
-TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
+TEST_F(SweepLight, SweepsEachLightIndependentlyOfColour) {
     PassScene s = pass_scenes()[0];
     const Light a = sun({0.3, -0.4, 1}), b = lamp(s.volume.geometry.to_world({-20, 5, 30}));
     s.scene.lights = {a};
-    const auto first = device_reaches(s).first;
+    const auto first = swept_reaches(s).first;
     s.scene.lights = {b};
-    const auto second = device_reaches(s).first;
+    const auto second = swept_reaches(s).first;
     s.scene.lights = {Light{}, a, b};
-    const Reaches both = device_reaches(s);
+    const Reaches both = swept_reaches(s);
     EXPECT_EQ(both.first, first);
     EXPECT_EQ(both.second, second);
     EXPECT_NE(first, second);
@@ -238,7 +239,7 @@ TEST_F(SweepLight, TwoLightsAreIndependentAndColourCountsForNothing) {
     EXPECT_TRUE(state.collect(s.scene, s.settings, false));
 }
 
-TEST_F(SweepLight, NothingIsThereWithoutIt) {
+TEST_F(SweepLight, CostsNothingWhenOff) {
     PassScene s = pass_scenes()[0];
     DeviceUnderTest& state = prepared(s);
     EXPECT_FALSE(state.lists().shadows);
@@ -253,7 +254,7 @@ TEST_F(SweepLight, NothingIsThereWithoutIt) {
     EXPECT_FALSE(state.lists().shadows);
 }
 
-TEST_F(SweepLight, LightsAnywhereGiveFiniteShares) {
+TEST_F(SweepLight, GivesFiniteSharesForLightsAnywhere) {
     PassScene s = pass_scenes()[1];
     const VolumeGeometry& geometry = s.volume.geometry;
     const glm::dvec3 middle = geometry.to_world(0.5 * glm::dvec3(geometry.dims - 1));
@@ -261,7 +262,7 @@ TEST_F(SweepLight, LightsAnywhereGiveFiniteShares) {
     for (const Light& light : {lamp(middle), lamp(geometry.to_world({0, 0, 0})), lamp(middle + glm::dvec3(1e7, 0, 3)),
                                lamp(geometry.to_world({10, 9, 11})), sun({1e-9, 0, 0}), sun({0, 0, -1e9})}) {
         s.scene.lights = {light};
-        const Reaches got = device_reaches(s);
+        const Reaches got = swept_reaches(s);
         double sum = 0;
         for (const double reach : got.first)
             sum += reach;

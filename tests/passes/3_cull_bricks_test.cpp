@@ -1,4 +1,4 @@
-// Bricks outside the picture: which are left out, and that nothing of the picture is.
+// Culling of bricks: which bricks are culled, and that the picture does not change.
 #include <cstdio>
 #include <random>
 
@@ -26,7 +26,7 @@ PassScene waves() {
     return s;
 }
 
-/// Eyes in and around the volume, looking about.
+/// Eyes in and around the volume, with various directions.
 std::vector<Camera> cameras_of(const PassScene& s, int count) {
     std::mt19937 random(5);
     std::uniform_real_distribution<double> in_unit(0, 1);
@@ -43,7 +43,7 @@ std::vector<Camera> cameras_of(const PassScene& s, int count) {
     return cameras;
 }
 
-/// Eyes far away, for which a side of the picture goes through the volume, whose voxels are smaller than pixels.
+/// Distant eyes with a side of the picture through the volume. Voxels are smaller than pixels.
 std::vector<Camera> cameras_past(const PassScene& s, const glm::ivec2& size, int count) {
     std::vector<Camera> cameras;
     const glm::dvec3 middle = s.volume.geometry.to_world(0.5 * glm::dvec3(s.volume.geometry.dims));
@@ -76,15 +76,15 @@ struct Frame {
 Frame frame(DeviceUnderTest& state, const PassScene& s, const Camera& camera, std::uint32_t payload, bool culls,
             const glm::dvec2& offset = {0, 0}) {
     state.drawer.set_culling({.bricks = culls});
-    state.draw(s.scene, camera, drawn_as(s.settings, s.scene), kSize, payload, offset);
+    state.draw(s.scene, camera, canonical_settings(s.settings, s.scene), kSize, payload, offset);
     state.drawer.set_culling({.bricks = false});
     const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
     return {{pixels.begin(), pixels.end()},
             state.targets().drawn.mapped<std::uint32_t>(1)[0],
-            state.plan().params.splat_count - state.plan().looked_at};
+            state.plan().params.splat_count - state.plan().splats_examined};
 }
 
-/// Of every camera, that leaving out bricks changes nothing. How many splats were left out, of how many.
+/// Expects that culling changes no picture of any camera. Returns (culled splats, all splats), summed.
 glm::u64vec2 expect_nothing_lost(const PassScene& s, const std::vector<Camera>& cameras,
                                  std::uint32_t payload = shader::PAYLOAD_COLOR, const glm::dvec2& offset = {0, 0}) {
     DeviceUnderTest& state = prepared(s);
@@ -95,7 +95,7 @@ glm::u64vec2 expect_nothing_lost(const PassScene& s, const std::vector<Camera>& 
         const Frame all = frame(state, s, camera, payload, false, offset);
         const Frame culled = frame(state, s, camera, payload, true, offset);
         EXPECT_TRUE(all.pixels == culled.pixels);
-        // Filters may reach over what is next to them without having anything there.
+        // Pixel filters may widen a splat's box without a contribution there.
         if (!s.scene.effects.antialias) {
             EXPECT_EQ(all.drawn, culled.drawn);
         }
@@ -106,12 +106,12 @@ glm::u64vec2 expect_nothing_lost(const PassScene& s, const std::vector<Camera>& 
     return sums;
 }
 
-TEST(CullBricks, LosesNothingOfThePicture) {
+TEST(CullBricks, ChangesNoPixel) {
     const glm::u64vec2 culled = expect_nothing_lost(waves(), cameras_of(waves(), 30));
-    EXPECT_GT(culled.x, culled.y / 5) << "of these pictures a brick in five should be outside";
+    EXPECT_GT(culled.x, culled.y / 5) << "one brick in five should be outside of these pictures";
 }
 
-TEST(CullBricks, LosesNothingWhateverIsDrawn) {
+TEST(CullBricks, ChangesNoPixelOfOtherOutputsAndSettings) {
     PassScene s = waves();
     const std::vector<Camera> cameras = cameras_of(s, 5);
     EXPECT_GT(expect_nothing_lost(s, cameras, shader::PAYLOAD_TAU).x, 0U);
@@ -120,7 +120,7 @@ TEST(CullBricks, LosesNothingWhateverIsDrawn) {
     EXPECT_GT(expect_nothing_lost(s, cameras).x, 0U);
     s.settings = layered({});
     if (layers_obstacle().empty()) {
-        EXPECT_EQ(expect_nothing_lost(s, cameras).x, 0U) << "sheets in layers are of all splats";
+        EXPECT_EQ(expect_nothing_lost(s, cameras).x, 0U) << "layers draw all splats";
     }
     s.settings = {};
     s.settings.edges = EdgeEstimator::Off;
@@ -134,7 +134,7 @@ TEST(CullBricks, LosesNothingWhateverIsDrawn) {
     EXPECT_GT(expect_nothing_lost(s, cameras).x, 0U);
 }
 
-/// 44 x 120 x 37 voxels of cavities, on either side of which a wall has some holes.
+/// 44 x 120 x 37 voxels of cavities between two walls with a few holes.
 PassScene cavities() {
     PassScene s;
     s.name = "cavities";
@@ -150,44 +150,45 @@ PassScene cavities() {
     return s;
 }
 
-TEST(HiddenBricks, AreNotMissed) {
+TEST(HiddenBricks, ChangeNoPixelWhenSkipped) {
     PassScene s = cavities();
     DeviceUnderTest& state = prepared(s);
-    if (!state.device().profile().front_first) GTEST_SKIP() << "frames are not drawn in two parts with this profile";
+    if (!state.device().profile().front_first) GTEST_SKIP() << "this profile does not draw frames in two parts";
     ASSERT_TRUE(state.level.splats.collected()->buried);
     const glm::ivec2 size(150, 110);
     const auto pixels = [&](const Camera& camera, std::uint32_t payload, std::uint64_t least) {
-        state.drawer.set_culling({.bricks = true, .least_hiding = least});
-        state.draw(s.scene, camera, drawn_as(s.settings, s.scene), size, payload);
+        state.drawer.set_culling({.bricks = true, .min_splats_to_hide = least});
+        state.draw(s.scene, camera, canonical_settings(s.settings, s.scene), size, payload);
         state.drawer.set_culling({.bricks = false});
         const auto mapped = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(size.x * size.y));
         return std::vector<glm::vec4>(mapped.begin(), mapped.end());
     };
-    std::uint64_t all = 0, looked_at = 0;
+    std::uint64_t all = 0, splats_examined = 0;
     for (int i = 0; i < 12; ++i) {
         SCOPED_TRACE(i);
-        // Voxels as wide as two to three pixels.
+        // Voxels are two to three pixels wide.
         const double side = i % 2 == 0 ? -1 : 1;
         look_at(s, glm::dvec3(22 + 4 * (i % 5), 60 + side * (140 + 5 * i), 18 - 3 * (i % 4)), {22, 60, 18}, 17 + i);
         for (const std::uint32_t payload : {shader::PAYLOAD_COLOR, shader::PAYLOAD_DEPTH_DISTANCE}) {
             const auto want = pixels(s.camera, payload, ~std::uint64_t{0});
-            all += state.plan().looked_at;
+            all += state.plan().splats_examined;
             const std::uint32_t drawn = state.targets().drawn.mapped<std::uint32_t>(1)[0];
             EXPECT_TRUE(pixels(s.camera, payload, 100) == want);
-            looked_at += state.plan().looked_at;
+            splats_examined += state.plan().splats_examined;
             EXPECT_LE(state.targets().drawn.mapped<std::uint32_t>(1)[0], drawn);
         }
-        // Of optical depth nothing is hidden, and nothing is divided.
+        // In pictures of optical depth nothing is hidden, and the frame is not divided.
         const auto tau = pixels(s.camera, shader::PAYLOAD_TAU, ~std::uint64_t{0});
-        const std::uint64_t once = state.plan().looked_at;
+        const std::uint64_t once = state.plan().splats_examined;
         EXPECT_TRUE(pixels(s.camera, shader::PAYLOAD_TAU, 100) == tau);
-        EXPECT_EQ(state.plan().looked_at, once);
+        EXPECT_EQ(state.plan().splats_examined, once);
     }
-    std::printf("%.3f of the splats in view looked at\n", static_cast<double>(looked_at) / static_cast<double>(all));
-    EXPECT_LT(static_cast<double>(looked_at), 0.9 * static_cast<double>(all));
+    std::printf("%.3f of the splats in view examined\n",
+                static_cast<double>(splats_examined) / static_cast<double>(all));
+    EXPECT_LT(static_cast<double>(splats_examined), 0.9 * static_cast<double>(all));
 }
 
-TEST(CullBricks, OfNothingInViewNothingIsGoneThrough) {
+TEST(CullBricks, IteratesNoBrickOutsideTheView) {
     PassScene s = waves();
     DeviceUnderTest& state = prepared(s);
     look_at(s, {25, -30, 20}, {25, -60, 20}, 40);
@@ -197,7 +198,7 @@ TEST(CullBricks, OfNothingInViewNothingIsGoneThrough) {
     EXPECT_TRUE(away.pixels == frame(state, s, s.camera, shader::PAYLOAD_COLOR, false).pixels);
 }
 
-TEST(CullBricks, AreThoseOfTheList) {
+TEST(CullBricks, BricksMatchTheSplatList) {
     const PassScene s = waves();
     DeviceUnderTest& state = prepared(s);
     const auto records = device_records(state);
@@ -216,8 +217,8 @@ TEST(CullBricks, AreThoseOfTheList) {
     EXPECT_EQ(next, records.size());
 }
 
-TEST(CullBricks, PartsHoldAllThatShows) {
-    // Against every brick by itself; gaps that are shorter than asked for are closed.
+TEST(CullBricks, PartsContainEveryVisibleSplat) {
+    // Compared with a test of every single brick; gaps shorter than the limit are closed.
     std::mt19937 random(11);
     std::vector<SplatBrick> bricks;
     std::uint32_t first = 0;
@@ -246,12 +247,12 @@ TEST(CullBricks, PartsHoldAllThatShows) {
                 ASSERT_TRUE(in_parts[i] || !shows);
             }
         }
-        std::uint64_t looked_at = 0;
+        std::uint64_t splats_examined = 0;
         for (const glm::uvec2& batch : batches_of(parts)) {
             EXPECT_TRUE(batch.y > 0 && batch.y <= shader::SPLAT_BATCH);
-            looked_at += batch.y;
+            splats_examined += batch.y;
         }
-        EXPECT_EQ(looked_at, static_cast<std::uint64_t>(std::ranges::count(in_parts, true)));
+        EXPECT_EQ(splats_examined, static_cast<std::uint64_t>(std::ranges::count(in_parts, true)));
         EXPECT_LE(batches_of(parts).size() * shader::SPLAT_BATCH, first + shader::SPLAT_BATCH - 1);
         for (std::size_t i = 1; i < parts.size(); ++i)
             EXPECT_GE(parts[i].first - parts[i - 1].end, 64U);

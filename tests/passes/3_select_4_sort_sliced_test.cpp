@@ -1,4 +1,4 @@
-// Passes 3 and 4 with sliced sheets: every splat in exactly the sheets that its support touches.
+// Passes 3 and 4 with sliced sheets: every splat is in exactly the sheets that its support touches.
 #include <algorithm>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{48, 40};
+constexpr glm::ivec2 kSlicedSize{48, 40};
 
 struct SheetRange {
     bool drawn = false;
@@ -24,7 +24,7 @@ struct Drawn {
 };
 
 Drawn drawn(DeviceUnderTest& state, const PassScene& s) {
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSlicedSize, shader::PAYLOAD_COLOR);
     Drawn result;
     for (const std::uint32_t code :
          download<std::uint32_t>(state, state.targets().sheet_of, state.lists().splat_count)) {
@@ -58,32 +58,32 @@ class SlicedSheets : public NeedsLayers<testing::TestWithParam<Variant>> {
     }
 };
 
-TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
+TEST_P(SlicedSheets, ContainEverySplatThatTouchesThem) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with(plain);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
         const auto records = device_records(state);
         const Drawn got = drawn(state, s);
-        const Oracle oracle(s, records, kSize);
+        const Oracle oracle(s, records, kSlicedSize);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         const int base = state.plan().params.sheet_base, count = static_cast<int>(state.plan().params.sheet_count);
-        // The device's box of splats holds whole rows: it may begin earlier.
+        // The device's box of splats contains whole rows: it may begin earlier.
         EXPECT_LE(base, reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints));
 
-        // The sphere that holds a kernel is one around the voxel; of one that a face cuts, it holds the plain kernel
-        // and lies within what a face can make of that. Half extents in sheets, least and most.
+        // The bounding sphere of an uncut kernel is centred at the voxel. The sphere of a kernel that a face cuts
+        // contains the plain kernel, and is bounded by the largest reach. Half extents in sheets: minimum and maximum.
         const double unit =
             glm::length(glm::transpose(s.volume.geometry.index_to_world_axes) * oracle.view.frame.forward) / thickness;
         const auto extents = [&](const reference::VoxelEdge& edge) -> std::pair<double, double> {
             const double uncut = oracle.footprints.kernel().radius;
             if (!draws_warped(s.settings) || !edge.has_edge) return {uncut * unit, uncut * unit};
             const double least = draws_faces(s.settings) ? uncut : kPaperReach;
-            // The sphere may lie to one side of the voxel by as much as it is larger than the uncut kernel.
+            // The sphere's centre may be off the voxel by the difference of the radii.
             const double most = draws_faces(s.settings) ? 2 * kernel_reach(s.settings) - uncut : kPaperReach;
             return {least * unit, most * unit};
         };
-        std::size_t kept = 0, looked_at = 0;
+        std::size_t kept = 0, splats_examined = 0;
         double missed = 0;
         for (std::size_t i = 0; i < records.size(); ++i) {
             const SheetRange& range = got.ranges[i];
@@ -99,14 +99,15 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             const auto clamped = [&](double sheet) {
                 return std::clamp(static_cast<int>(std::floor(sheet)), 0, count - 1);
             };
-            // Within rounding of a plane between sheets either side is right: float32 of some hundred sheets.
+            // Near a plane between sheets either side is right, within the float32 rounding of some hundred sheets.
             ASSERT_GE(range.first, clamped(middle - most - 2e-3));
             ASSERT_LE(range.first, clamped(middle - least + 2e-3));
             ASSERT_GE(range.last, clamped(middle + least - 2e-3));
             ASSERT_LE(range.last, clamped(middle + most + 2e-3));
-            // What those sheets leave out shows nowhere. A few splats will do: the reference asks every pixel.
+            // The splat must be invisible in all other sheets. Only a few splats are tested, since the reference
+            // evaluates every pixel.
             if (kept % 60 != 1) continue;
-            ++looked_at;
+            ++splats_examined;
             const auto& box = oracle.selected[i].box;
             for (int y = box.y0; y < box.y1; y += 3) {
                 for (int column = box.x0; column < box.x1; column += 3) {
@@ -121,19 +122,19 @@ TEST_P(SlicedSheets, EverySplatIsInTheSheetsThatItsSupportTouches) {
             }
         }
         EXPECT_GT(kept, 100U);
-        EXPECT_GT(looked_at, 3U);
+        EXPECT_GT(splats_examined, 3U);
         EXPECT_LE(missed, 1e-6);
     }
 }
 
-TEST_P(SlicedSheets, AreSortedStableAndComplete) {
+TEST_P(SlicedSheets, AreSortedStablyAndCompletely) {
     for (const PassScene& plain : pass_scenes()) {
         const PassScene s = with(plain);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
         const Drawn got = drawn(state, s);
         std::vector<std::uint32_t> want;
-        std::vector<std::size_t> ends;  // of each sheet, in the order
+        std::vector<std::size_t> ends;  // of each sheet, as a position in the order
         for (int sheet = 0; sheet < static_cast<int>(state.plan().params.sheet_count); ++sheet) {
             for (std::uint32_t i = 0; i < got.ranges.size(); ++i) {
                 const SheetRange& range = got.ranges[i];

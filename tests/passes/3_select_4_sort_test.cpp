@@ -1,4 +1,4 @@
-// Passes 3 and 4 against the reference and against what a sort promises.
+// Passes 3 and 4 against the reference, and against the properties of a stable sort.
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,17 +9,17 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{96, 80};
+constexpr glm::ivec2 kSortSize{96, 80};
 
 class SelectFootprints : public NeedsLayers<> {};
 
-struct Drawn {
+struct SortedFrame {
     std::vector<std::uint32_t> sheets, order;
     std::vector<shader::SheetGroup> groups;
 };
 
-Drawn drawn(DeviceUnderTest& state, const PassScene& s) {
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
+SortedFrame sorted_frame(DeviceUnderTest& state, const PassScene& s) {
+    state.draw(s.scene, s.camera, layered(s.settings), kSortSize, shader::PAYLOAD_COLOR);
     const auto n = state.lists().splat_count;
     const std::size_t count = state.targets().drawn.mapped<std::uint32_t>(1)[0];
     const auto groups = state.targets().groups.mapped<shader::SheetGroup>(state.plan().params.group_count);
@@ -28,19 +28,19 @@ Drawn drawn(DeviceUnderTest& state, const PassScene& s) {
             {groups.begin(), groups.end()}};
 }
 
-TEST_F(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
+TEST_F(SelectFootprints, KeepsAndPlacesTheReferencesSplats) {
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
         const auto records = device_records(state);
-        const auto got = drawn(state, s);
-        const Oracle oracle(s, records, kSize);
+        const auto got = sorted_frame(state, s);
+        const Oracle oracle(s, records, kSortSize);
         const auto& want = oracle.selected;
         const double thickness = s.settings.sheet_spacing * oracle.view.mm_per_voxel_along;
         std::size_t kept = 0, moved = 0;
         for (std::size_t i = 0; i < records.size(); ++i) {
             if (got.sheets[i] == shader::SHEET_NONE) {
-                // What the device drops must not show at any pixel of the reference's own box.
+                // A culled splat must be invisible in all pixels of the reference's box.
                 if (!want[i].kept) continue;
                 const auto& box = want[i].box;
                 double seen = 0;
@@ -64,25 +64,25 @@ TEST_F(SelectFootprints, KeepsAndPlacesWhatTheReferenceDoes) {
     }
 }
 
-TEST_F(SelectFootprints, GroupRectanglesHoldEveryPixelThatIsTouched) {
+TEST_F(SelectFootprints, GroupRectanglesContainEveryTouchedPixel) {
     const PassScene s = pass_scenes()[0];
     DeviceUnderTest& state = prepared(s);
-    const auto got = drawn(state, s);
-    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
-    glm::ivec4 all(kSize, 0, 0);
+    const auto got = sorted_frame(state, s);
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSortSize.x * kSortSize.y));
+    glm::ivec4 all(kSortSize, 0, 0);
     for (const auto& group : got.groups) {
         if (group.count == 0) continue;
         EXPECT_LT(group.rect.x, group.rect.z);
         EXPECT_GE(group.rect.x, 0);
-        EXPECT_LE(group.rect.z, kSize.x);
+        EXPECT_LE(group.rect.z, kSortSize.x);
         all = {glm::min(glm::ivec2(all), glm::ivec2(group.rect)),
                glm::max(glm::ivec2(all.z, all.w), glm::ivec2(group.rect.z, group.rect.w))};
     }
-    EXPECT_LT((all.z - all.x) * (all.w - all.y), kSize.x * kSize.y) << "the rectangle is not dirty, it is everything";
+    EXPECT_LT((all.z - all.x) * (all.w - all.y), kSortSize.x * kSortSize.y) << "the rectangle covers the whole picture";
     std::size_t touched = 0;
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            if (pixels[static_cast<std::size_t>(y * kSize.x + x)].a <= 0) continue;
+    for (int y = 0; y < kSortSize.y; ++y) {
+        for (int x = 0; x < kSortSize.x; ++x) {
+            if (pixels[static_cast<std::size_t>(y * kSortSize.x + x)].a <= 0) continue;
             ++touched;
             ASSERT_TRUE(x >= all.x && x < all.z && y >= all.y && y < all.w) << x << "," << y;
         }
@@ -90,12 +90,12 @@ TEST_F(SelectFootprints, GroupRectanglesHoldEveryPixelThatIsTouched) {
     EXPECT_GT(touched, 500U);
 }
 
-TEST(SortSheets, IsAStablePermutationOfWhatIsDrawn) {
+TEST(SortSheets, IsAStablePermutationOfTheDrawnSplats) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     for (const PassScene& s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
-        const auto got = drawn(state, s);
+        const auto got = sorted_frame(state, s);
         std::vector<std::uint32_t> want;
         for (std::uint32_t i = 0; i < got.sheets.size(); ++i) {
             if (got.sheets[i] != shader::SHEET_NONE) want.push_back(i);
@@ -112,12 +112,12 @@ TEST(SortSheets, IsAStablePermutationOfWhatIsDrawn) {
     }
 }
 
-TEST(SortSheets, ThinSheetsByTheThousand) {
+TEST(SortSheets, SortsThousandsOfThinSheets) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     PassScene s = pass_scenes()[0];
     DeviceUnderTest& state = prepared(s);
-    s.settings.sheet_spacing = 0.05;  // the smallest there is
-    const auto got = drawn(state, s);
+    s.settings.sheet_spacing = 0.05;  // the minimum
+    const auto got = sorted_frame(state, s);
     EXPECT_GT(state.plan().params.sheet_count, 400U);
     for (std::size_t i = 1; i < got.order.size(); ++i)
         EXPECT_LE(got.sheets[got.order[i - 1]], got.sheets[got.order[i]]);

@@ -1,4 +1,4 @@
-// Which pixels the entries of tiles are marked for, against footprints in double precision.
+// The pixels that are marked for the entries of tile lists, against footprints in double precision.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -11,21 +11,21 @@ namespace {
 constexpr std::uint32_t kTile = shader::TILE;
 
 struct Marked {
-    std::size_t touched = 0;  ///< pairs of an entry and a pixel that has something of it
-    std::size_t marked = 0;   ///< that are marked
+    std::size_t touched = 0;  ///< pairs of an entry and a pixel in its footprint
+    std::size_t marked = 0;   ///< pairs that are marked
     std::size_t missed = 0;   ///< touched and not marked
-    double peak = 0;          ///< of an entry's optical depth
-    double most_missed = 0;   ///< of it where it is not marked
+    double peak = 0;          ///< largest optical depth of an entry
+    double most_missed = 0;   ///< largest optical depth where it is not marked
 };
 
-/// The last chunk is one that has splats.
+/// Draws so that the last chunk contains splats.
 void draw(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size) {
     FramePlan plan = state.drawer.plan(state.level, s.scene, s.camera, s.settings, size, shader::PAYLOAD_COLOR);
     plan.params.chunk_slots = 0;
     state.drawer.draw(state.level, plan);
 }
 
-/// Of the last chunk that was drawn. `cell`: pixels that one mark is for.
+/// Counts the marks of the last chunk. `cell`: pixels per mark.
 Marked count_marks(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size, const glm::uvec2& cell) {
     const auto records = device_records(state);
     const Oracle oracle(s, records, size);
@@ -63,7 +63,7 @@ Marked count_marks(DeviceUnderTest& state, const PassScene& s, const glm::ivec2&
     return out;
 }
 
-TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
+TEST(MarkPixels, MarksEveryPixelOfAFootprintAndFewOthers) {
     const glm::ivec2 size(70, 45);  // neither side is a multiple of a tile's
     std::size_t touched = 0;
     for (const auto& [edges, footprints, warp] :
@@ -77,30 +77,30 @@ TEST(MarkPixels, EveryPixelOfAFootprintAndFewOthersAre) {
             s.settings.footprints = footprints;
             s.settings.warp = warp;
             s.settings.pixels = PixelChoice::Every;
-            s.settings.saturation = 1;  // no tile closes
-            s.settings = drawn_as(s.settings);
+            s.settings.saturation = 1;  // no tile becomes saturated
+            s.settings = canonical_settings(s.settings);
             DeviceUnderTest& state = prepared(s);
             draw(state, s, size);
             const Marked marks = count_marks(state, s, size, {1, 1});
             touched += marks.touched;
-            // What is warped in two dimensions leaves traces outside the kernel's own support.
+            // Footprints that are warped in two dimensions have small values outside the kernel's support.
             if (footprints == FootprintMode::Warp2d)
                 EXPECT_LE(marks.most_missed, 5e-4 * marks.peak);
             else
                 EXPECT_EQ(marks.missed, 0U);
-            if (marks.touched < 1000) continue;  // a last chunk of a few splats
+            if (marks.touched < 1000) continue;  // the last chunk has only a few splats
             const double share = static_cast<double>(marks.marked) / static_cast<double>(marks.touched);
-            std::printf("%-18s %-10s %-6s marked per pixel with something: %.3f\n", s.name.c_str(),
+            std::printf("%-18s %-10s %-6s marked per touched pixel: %.3f\n", s.name.c_str(),
                         std::string(name_of(footprints)).c_str(), std::string(name_of(warp)).c_str(), share);
-            // Supports of cut and warped kernels lie in spheres, which they fill in part.
+            // The supports of cut and warped kernels only fill a part of their bounding spheres.
             EXPECT_LE(share, footprints == FootprintMode::Isotropic ? 1.1 : 3.3);
         }
     }
     EXPECT_GT(touched, 400000U);
 }
 
-TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
-    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
+TEST(MarkPixels, MarksWholeCellsOfRefinedPixels) {
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "this device draws every pixel";
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const glm::ivec2 size(150, 121);
@@ -115,7 +115,7 @@ TEST(MarkPixels, OfRefinedOnesWhateverSharesACell) {
     }
 }
 
-TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
+TEST(MarkPixels, MarksWholeCellsInVeryLargePictures) {
     for (PassScene s : pass_scenes()) {
         SCOPED_TRACE(s.name);
         const glm::ivec2 size(70, 45);
@@ -133,7 +133,7 @@ TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
         plan.wide_marks = true;
         state.drawer.draw(state.level, plan);
         EXPECT_EQ(count_marks(state, s, size, {4, 2}).missed, 0U);
-        // Outside a support, rounding leaves a footprint something like 1e-8 at most.
+        // Outside a support, rounding leaves a footprint of at most about 1e-8.
         const auto got = pixels();
         for (std::size_t i = 0; i < got.size(); ++i)
             ASSERT_LT(glm::length(got[i] - want[i]), 1e-6F) << i;
@@ -143,8 +143,8 @@ TEST(MarkPixels, OfVeryLargePicturesWhateverSharesACell) {
                     .wide_marks);
 }
 
-TEST(MarkPixels, SplatsAroundTheEyeAreForAll) {
-    // The eye inside a voxel: the conic of a support that may reach the eye is none.
+TEST(MarkPixels, MarksAllPixelsForSplatsAroundTheEye) {
+    // The eye is inside a voxel: a support that may reach the eye has no conic.
     PassScene s = pass_scenes()[2];
     look_at(s, {11.6, 12.4, 11.3}, {13, 13, 12}, 100);
     s.settings.pixels = PixelChoice::Every;

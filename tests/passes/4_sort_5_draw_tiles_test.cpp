@@ -1,4 +1,4 @@
-// Sheets that are summed tile by tile: the lists of tiles, and the picture against that of layers.
+// Sheets summed tile by tile: the lists of the tiles, and the picture against layers.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,17 +12,17 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr int kTile = static_cast<int>(shader::TILE);
-const glm::ivec2 kSize(70, 45);  // neither side is a multiple of a tile's
+constexpr int kTileSide = static_cast<int>(shader::TILE);
+const glm::ivec2 kTilesSize(70, 45);  // neither side is a multiple of a tile's
 
 std::vector<glm::vec4> picture(DeviceUnderTest& state, const PassScene& s, const Settings& settings,
                                std::uint32_t payload) {
-    state.draw(s.scene, s.camera, settings, kSize, payload);
-    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kSize.x * kSize.y));
+    state.draw(s.scene, s.camera, settings, kTilesSize, payload);
+    const auto pixels = state.targets().output.mapped<glm::vec4>(static_cast<std::size_t>(kTilesSize.x * kTilesSize.y));
     return {pixels.begin(), pixels.end()};
 }
 
-/// Draws the last picture again, in chunks of so many pairs. How many there were.
+/// Draws the last picture again, in chunks of at most `limit` pairs. Returns the number of chunks.
 std::size_t in_chunks(DeviceUnderTest& state, std::uint64_t limit) {
     FramePlan plan = state.plan();
     sort_frame(state.commands(), plan, state.targets());
@@ -36,7 +36,7 @@ std::size_t in_chunks(DeviceUnderTest& state, std::uint64_t limit) {
     return chunks.parts.size();
 }
 
-/// Of the last chunk drawn; entries are splat numbers and sheets.
+/// The lists of the last chunk; entries are splat numbers and sheets.
 struct Lists {
     std::vector<glm::uvec2> ranges, entries, rects;
     std::vector<std::uint32_t> sheet_of;
@@ -48,7 +48,7 @@ Lists lists_of(DeviceUnderTest& state) {
     Lists lists;
     lists.ranges = download<glm::uvec2>(state, state.targets().tile_ranges, tiles);
     lists.entries = download<glm::uvec2>(state, state.targets().tile_entries, lists.ranges.back().y);
-    // Each list begins at a multiple of what a word of marks is for.
+    // Each list begins at a multiple of MARKED_AT_ONCE.
     std::vector<glm::uvec2> packed;
     for (glm::uvec2& range : lists.ranges) {
         EXPECT_EQ(range.x % shader::MARKED_AT_ONCE, 0U);
@@ -66,7 +66,7 @@ Lists lists_of(DeviceUnderTest& state) {
     return lists;
 }
 
-TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
+TEST(SortTiles, ListsEachSplatOncePerTileInSheetOrder) {
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         for (const PassScene& s : pass_scenes()) {
             SCOPED_TRACE(s.name);
@@ -74,7 +74,7 @@ TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
             Settings settings = s.settings;
             settings.sheets = sheets;
             settings.sheet_spacing = 1;
-            picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
+            picture(state, s, canonical_settings(settings), shader::PAYLOAD_COLOR);
             in_chunks(state, ~std::uint64_t{0});
             const Lists lists = lists_of(state);
             const auto tiles_x = static_cast<std::size_t>(state.plan().params.tiles.x);
@@ -109,8 +109,8 @@ TEST(SortTiles, EveryTileHasItsSplatsOnceSheetBySheet) {
     }
 }
 
-TEST(SortTiles, AListIsWholeHoweverUnevenTheSplatsAre) {
-    // A plate from just before the eye into the distance: splats over hundreds of tiles, and of one.
+TEST(SortTiles, ListsAllPairsOfVeryUnevenSplats) {
+    // A plate from right in front of the eye into the distance: some splats cover hundreds of tiles, others one.
     PassScene s;
     s.name = "plate";
     s.volume.geometry.dims = {160, 160, 6};
@@ -121,12 +121,12 @@ TEST(SortTiles, AListIsWholeHoweverUnevenTheSplatsAre) {
     s.scene.materials = {{}, {{1, 1, 1}, 2}};
     look_at(s, {2, 2, 4.5}, {80, 80, 2.5}, 130);
     DeviceUnderTest& state = prepared(s);
-    state.draw(s.scene, s.camera, drawn_as(s.settings), {1024, 1024}, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, canonical_settings(s.settings), {1024, 1024}, shader::PAYLOAD_COLOR);
     ASSERT_EQ(in_chunks(state, ~std::uint64_t{0}), 1U);
     const auto& p = state.plan().params;
     const auto pairs = state.targets().sheet_pairs.mapped<std::uint32_t>(p.sheet_count);
     const auto all = std::accumulate(pairs.begin(), pairs.end(), std::uint64_t{0});
-    // More in a column than one invocation could go through at once.
+    // One column has more pairs than one invocation may process in a dispatch.
     const auto starts = state.targets().sheet_starts.mapped<std::uint32_t>(std::size_t{p.sheet_count} + 1);
     EXPECT_GT(most_column_pairs({0, starts.back()}, p.tile_blocks, pairs, starts), 2 * shader::PAIR_STEPS);
     const Lists lists = lists_of(state);
@@ -146,13 +146,13 @@ TEST(SortTiles, AListIsWholeHoweverUnevenTheSplatsAre) {
     EXPECT_EQ(listed, want);
 }
 
-TEST(DrawTiles, PicturesAreThoseOfLayers) {
+TEST(DrawTiles, MatchesThePicturesOfLayers) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     for (const std::uint32_t payload :
          {shader::PAYLOAD_COLOR, shader::PAYLOAD_TAU, shader::PAYLOAD_DEPTH_DISTANCE, shader::PAYLOAD_NORMAL}) {
         for (PassScene s : pass_scenes()) {
             SCOPED_TRACE(s.name);
-            // Layers close pixels group by group, tiles sheet by sheet; layers draw every pixel.
+            // Pixels become saturated group by group in layers, but sheet by sheet in tiles; layers draw every pixel.
             s.settings.saturation = 1;
             s.settings.pixels = PixelChoice::Every;
             DeviceUnderTest& state = prepared(s);
@@ -160,7 +160,7 @@ TEST(DrawTiles, PicturesAreThoseOfLayers) {
             const auto tiles = picture(state, s, s.settings, payload);
             ASSERT_TRUE(state.plan().variant.tiles);
             float peak = 0, worst = 0;
-            // Means are weighed by how opaque they are: at the rim of a footprint one of the two may have nothing.
+            // Means are weighted by opacity: at the rim of a footprint one of the two may be empty.
             const bool means = payload == shader::PAYLOAD_DEPTH_DISTANCE || payload == shader::PAYLOAD_NORMAL;
             for (std::size_t i = 0; i < tiles.size(); ++i) {
                 for (int c = 0; c < 4; ++c) {
@@ -173,14 +173,14 @@ TEST(DrawTiles, PicturesAreThoseOfLayers) {
             EXPECT_GT(peak, 0);
             std::printf("payload %u %-24s worst of peak %.1e\n", payload, s.name.c_str(),
                         static_cast<double>(worst / peak));
-            // Where a ray just misses a curved face the root of a difference near 0 has half a float's digits: 3e-4 of
-            // one splat.
+            // Where a ray just misses a curved face, the root of a difference near 0 has half of float's digits: an
+            // error of 3e-4 of one splat.
             EXPECT_LE(worst, 1e-4F * peak);
         }
     }
 }
 
-TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
+TEST(DrawTiles, CountsSaturatedPixels) {
     PassScene s = pass_scenes()[0];
     for (Material& material : s.scene.materials)
         material.extinction *= 40;
@@ -200,11 +200,11 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
         state, state.targets().tile_closed,
         static_cast<std::size_t>(state.plan().params.tiles.x) * static_cast<std::size_t>(state.plan().params.tiles.y));
     std::vector<std::uint32_t> want(closed.size(), 0);
-    for (int y = 0; y < kSize.y; ++y) {
-        for (int x = 0; x < kSize.x; ++x) {
-            const auto i = static_cast<std::size_t>(y * kSize.x + x);
+    for (int y = 0; y < kTilesSize.y; ++y) {
+        for (int x = 0; x < kTilesSize.x; ++x) {
+            const auto i = static_cast<std::size_t>(y * kTilesSize.x + x);
             const bool full = pixels[i].a >= 0.9F;
-            want[static_cast<std::size_t>(y / kTile * state.plan().params.tiles.x + x / kTile)] += full ? 1 : 0;
+            want[static_cast<std::size_t>(y / kTileSide * state.plan().params.tiles.x + x / kTileSide)] += full ? 1 : 0;
             if (full) {
                 EXPECT_LE(pixels[i].a, whole[i].a + 1e-5F);
             } else {
@@ -216,13 +216,13 @@ TEST(DrawTiles, AClosedPixelIsAsOpaqueAsItSaysAndCounted) {
     EXPECT_GT(*std::ranges::max_element(closed), 0U);
 }
 
-TEST(SortSheets, InSegmentsIsTheSameOrder) {
+TEST(SortSheets, GivesTheSameOrderInSegments) {
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         const PassScene s = pass_scenes()[1];
         DeviceUnderTest& state = prepared(s);
         Settings settings = s.settings;
         settings.sheets = sheets;
-        picture(state, s, drawn_as(settings), shader::PAYLOAD_COLOR);
+        picture(state, s, canonical_settings(settings), shader::PAYLOAD_COLOR);
         const std::size_t entries = state.targets().drawn.mapped<std::uint32_t>(4)[0];
         const auto at_once = download<std::uint32_t>(state, state.targets().order, entries);
         const std::uint32_t per_block =
@@ -245,7 +245,7 @@ TEST(SortSheets, SegmentsCoverEveryList) {
         settings.sheets = sheets;
         for (const std::uint64_t splats : {1ULL, 1000ULL, 586473ULL, 20000000ULL, 300000000ULL}) {
             const FramePlan plan =
-                plan_frame(s.volume, s.scene, s.camera, drawn_as(settings), kSize, shader::PAYLOAD_COLOR,
+                plan_frame(s.volume, s.scene, s.camera, canonical_settings(settings), kTilesSize, shader::PAYLOAD_COLOR,
                            {splats, glm::ivec3(0), s.volume.geometry.dims - 1}, 2.5);
             const std::uint64_t covered = std::uint64_t{plan.sort_segments} * plan.params.sort_segment;
             EXPECT_GE(covered * shader::SORT_BLOCKS, splats);
@@ -254,8 +254,8 @@ TEST(SortSheets, SegmentsCoverEveryList) {
     }
 }
 
-TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
-    // One sheet of them, each of which the picture shows.
+TEST(DrawTiles, GivesTheSamePictureBeyondThePreparedSplats) {
+    // A single sheet with more splats than are prepared; all are visible.
     PassScene s;
     s.volume.geometry.dims = {400, 400, 5};
     for (std::size_t i = 0; i < s.volume.geometry.voxel_count(); ++i)
@@ -270,7 +270,7 @@ TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
     in_chunks(state, ~std::uint64_t{0});
     const auto parts = state.targets().chunks.mapped<glm::uvec2>(1);
     ASSERT_GT(parts[0].y - parts[0].x, state.plan().params.prepared_mask + 1);
-    // The same splats, few enough at a time.
+    // The same splats in thin sheets, few enough per sheet.
     Settings thin = s.settings;
     thin.sheet_spacing = 0.02;
     const auto few = picture(state, s, thin, shader::PAYLOAD_TAU);
@@ -285,7 +285,7 @@ TEST(DrawTiles, MoreSplatsThanArePreparedMakeTheSamePicture) {
     EXPECT_GT(want[want.size() / 2].a, 0.1F);
 }
 
-TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
+TEST(PlanChunks, GivesWholeSheetsWithinTheLimit) {
     const std::vector<std::uint32_t> pairs{5, 0, 4, 3, 20, 1, 0, 2}, starts{0, 2, 2, 4, 6, 9, 10, 10, 12};
     const Chunks chunks = plan_chunks(pairs, starts, 10);
     const std::vector<glm::uvec2> want{{0, 4}, {4, 6}, {6, 9}, {9, 12}};
@@ -296,13 +296,13 @@ TEST(PlanChunks, AreWholeSheetsWithinTheLimit) {
     EXPECT_EQ(plan_chunks(pairs, starts, 1000, 4).parts, (std::vector<glm::uvec2>{{0, 4}, {4, 6}, {6, 10}, {10, 12}}));
 }
 
-TEST(PlanChunks, TheDevicePlansAsTheHostDoes) {
+TEST(PlanChunks, GivesTheSameChunksOnDeviceAndHost) {
     PassScene s = pass_scenes()[1];
     s.settings.sheet_spacing = 0.05;
     DeviceUnderTest& state = prepared(s);
     picture(state, s, s.settings, shader::PAYLOAD_COLOR);
     auto& p = state.targets().frame.mapped<shader::FrameParams>(1)[0];
-    ASSERT_GT(p.sheet_count, 512U) << "more than a workgroup loads at once";
+    ASSERT_GT(p.sheet_count, 512U) << "more than a workgroup loads together";
     const std::uint32_t places = p.prepared_mask + 1;
     for (const std::uint32_t limit : {1U, 100U, 3000U, 1U << 20U}) {
         for (const std::uint32_t entries : {places, 64U}) {
@@ -335,7 +335,7 @@ TEST(PlanChunks, TheDevicePlansAsTheHostDoes) {
     p.prepared_mask = places - 1;
 }
 
-TEST(DrawTiles, ManyChunksMakeTheSamePicture) {
+TEST(DrawTiles, GivesTheSamePictureInManyChunks) {
     const PassScene s = pass_scenes()[1];
     DeviceUnderTest& state = prepared(s);
     const auto once = picture(state, s, s.settings, shader::PAYLOAD_COLOR);
@@ -344,9 +344,9 @@ TEST(DrawTiles, ManyChunksMakeTheSamePicture) {
     EXPECT_TRUE(std::ranges::equal(pixels, once));
 }
 
-TEST(RefinePixels, ManyChunksMakeTheSamePicture) {
-    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
-    // Seen through and not, so that tiles close or stay open behind chunks whose lists are kept, or have to make room.
+TEST(RefinePixels, GivesTheSamePictureInManyChunks) {
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "this device draws every pixel";
+    // Translucent and opaque: behind chunks whose lists are kept or discarded, tiles become saturated or not.
     for (const double extinction : {0.05, 3.0}) {
         PassScene s = pass_scenes()[2];
         s.scene.materials[1].extinction = extinction;

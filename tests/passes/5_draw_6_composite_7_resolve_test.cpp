@@ -1,4 +1,4 @@
-// Passes 5, 6 and 7 against the reference, each fed with what the device's pass before it left.
+// Passes 5, 6 and 7 against the reference; each gets the output of the device's previous pass.
 #include <algorithm>
 #include <cmath>
 
@@ -10,10 +10,10 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{72, 64};
-constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+constexpr glm::ivec2 kSheetSize{72, 64};
+constexpr std::size_t kPixels = static_cast<std::size_t>(kSheetSize.x) * kSheetSize.y;
 
-/// Thick sheets, so that all of them are in one group and still on the device after the frame.
+/// Thick sheets: all are in one group, and still on the device after the frame.
 PassScene in_one_group(PassScene s, FootprintMode mode, WarpFamily warp) {
     s.settings.sheet_spacing = 6;
     s.settings.footprints = mode;
@@ -22,23 +22,23 @@ PassScene in_one_group(PassScene s, FootprintMode mode, WarpFamily warp) {
     return s;
 }
 
-struct Variant {
+struct SheetVariant {
     FootprintMode mode;
     WarpFamily warp;
 };
 
-class DrawSplats : public NeedsLayers<testing::TestWithParam<Variant>> {};
+class DrawSplats : public NeedsLayers<testing::TestWithParam<SheetVariant>> {};
 
 TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
     for (PassScene s : pass_scenes()) {
         s = in_one_group(s, GetParam().mode, GetParam().warp);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
-        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kSheetSize);
         ASSERT_EQ(state.plan().params.group_count, 1U);
         const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
 
-        const Oracle oracle(s, records, kSize);
+        const Oracle oracle(s, records, kSheetSize);
         double peak = 0, worst = 0;
         for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
@@ -48,7 +48,7 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
             std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
             oracle.drawer.draw(splats, reference::Payload::Color, {}, want);
             for (std::size_t i = 0; i < kPixels; ++i) {
-                const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+                const int x = static_cast<int>(i) % kSheetSize.x, y = static_cast<int>(i) / kSheetSize.x;
                 // Outside the group's rectangle the sheets are neither cleared nor read.
                 const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
                 const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
@@ -57,9 +57,9 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
                     worst = std::max(worst, std::abs(got[c] - want[i][c]));
             }
         }
-        // Some tens of float32 splats add up in a sheet. A table is blended by the device, which may do it in steps of
-        // 1/256. The paper's map is endlessly steep at its knots, where a kernel moved by it is off by more than
-        // rounding: 4.4e-5 on lavapipe, 5.6e-5 on a GPU.
+        // A sheet adds some tens of float32 splats. The device blends table layers, possibly in steps of 1/256. The
+        // paper's map has an infinite slope at its knots, which amplifies rounding: 4.4e-5 on lavapipe, 5.6e-5 on a
+        // GPU.
         const auto mode = GetParam().mode;
         const double good_to = mode == FootprintMode::Table ? 5e-4 : mode == FootprintMode::Warp2d ? 1e-4 : 5e-5;
         EXPECT_GT(peak, 0.5);
@@ -69,28 +69,28 @@ TEST_P(DrawSplats, SheetsAgreeWithTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DrawSplats,
-                         testing::Values(Variant{FootprintMode::Isotropic, WarpFamily::Paper},
-                                         Variant{FootprintMode::Warp2d, WarpFamily::Paper},
-                                         Variant{FootprintMode::Procedural, WarpFamily::Paper},
-                                         Variant{FootprintMode::Table, WarpFamily::Face}),
+                         testing::Values(SheetVariant{FootprintMode::Isotropic, WarpFamily::Paper},
+                                         SheetVariant{FootprintMode::Warp2d, WarpFamily::Paper},
+                                         SheetVariant{FootprintMode::Procedural, WarpFamily::Paper},
+                                         SheetVariant{FootprintMode::Table, WarpFamily::Face}),
                          [](const auto& test) { return std::string(name_of(test.param.mode)); });
 
-class DrawSlices : public NeedsLayers<testing::TestWithParam<Variant>> {};
+class DrawSlices : public NeedsLayers<testing::TestWithParam<SheetVariant>> {};
 
 TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
-    // The reference inverts the paper's cosine step by step, which takes seconds: one scene will do.
+    // The reference inverts the paper's cosine iteratively, which takes seconds: one scene is enough.
     const bool paper = GetParam().mode != FootprintMode::Isotropic;
     for (const std::size_t number : paper ? std::vector<std::size_t>{2} : std::vector<std::size_t>{0, 1, 2}) {
         PassScene s = in_one_group(pass_scenes()[number], GetParam().mode, GetParam().warp);
         s.settings.sheets = SheetCut::Sliced;
-        s.settings = drawn_as(s.settings);
+        s.settings = canonical_settings(s.settings);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
-        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kSheetSize);
         ASSERT_EQ(state.plan().params.group_count, 1U);
         const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
 
-        const Oracle oracle(s, records, kSize);
+        const Oracle oracle(s, records, kSheetSize);
         const int reference_base =
             reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
@@ -98,7 +98,7 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
         for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<std::uint32_t> splats;
             for (std::uint32_t i = 0; i < records.size(); ++i) {
-                // The reference says itself what belongs here: the device may have left some out.
+                // The reference decides which splats belong to this sheet; the device may have culled some.
                 const int place = static_cast<int>(sheet) + state.plan().params.sheet_base - reference_base;
                 const bool touches = oracle.selected[i].sheet <= place && place <= oracle.selected[i].last_sheet;
                 if (touches && sheet_of[i] != shader::SHEET_NONE) splats.push_back(i);
@@ -108,7 +108,7 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
             const reference::DepthRange cut{thickness * first, thickness * (first + 1)};
             oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
             for (std::size_t i = 0; i < kPixels; ++i) {
-                const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+                const int x = static_cast<int>(i) % kSheetSize.x, y = static_cast<int>(i) / kSheetSize.x;
                 const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
                 const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
                 peak = std::max(peak, want[i].a);
@@ -122,9 +122,9 @@ TEST_P(DrawSlices, SheetsAgreeWithTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DrawSlices,
-                         testing::Values(Variant{FootprintMode::Isotropic, WarpFamily::Paper},
-                                         Variant{FootprintMode::Warp2d, WarpFamily::Paper},
-                                         Variant{FootprintMode::Procedural, WarpFamily::Paper}),
+                         testing::Values(SheetVariant{FootprintMode::Isotropic, WarpFamily::Paper},
+                                         SheetVariant{FootprintMode::Warp2d, WarpFamily::Paper},
+                                         SheetVariant{FootprintMode::Procedural, WarpFamily::Paper}),
                          [](const auto& test) { return std::string(name_of(test.param.mode)); });
 
 TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
@@ -133,16 +133,16 @@ TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
         s = in_one_group(s, FootprintMode::Procedural, WarpFamily::Face);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
-        state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
+        state.draw(s.scene, s.camera, layered(s.settings), kSheetSize, shader::PAYLOAD_COLOR);
         const auto sheets = download<glm::vec4>(state, state.targets().sheets);
         const auto got = download<glm::vec4>(state, state.targets().accumulated);
         const auto rect = state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect;
         std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
         for (std::uint32_t sheet = 0; sheet < state.plan().params.sheet_count; ++sheet) {
             std::vector<glm::dvec4> layer(kPixels, glm::dvec4(0));
-            for (int y = rect.y; y < rect.w; ++y) {  // outside the rectangle the layers are never cleared
+            for (int y = rect.y; y < rect.w; ++y) {  // layers are not cleared outside the rectangle
                 for (int x = rect.x; x < rect.z; ++x) {
-                    const auto at = static_cast<std::size_t>(y * kSize.x + x);
+                    const auto at = static_cast<std::size_t>(y * kSheetSize.x + x);
                     layer[at] = sheets[sheet * kPixels + at];
                 }
             }
@@ -155,7 +155,7 @@ TEST(CompositeSheet, AgreesWithTheReferenceOnTheSameSheets) {
     }
 }
 
-TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
+TEST(Resolve, AddsTheBackgroundAndComputesMeans) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
     PassScene s = in_one_group(pass_scenes()[1], FootprintMode::Procedural, WarpFamily::Face);
     s.scene.background = {0.1, 0.3, 0.7};
@@ -167,35 +167,36 @@ TEST(Resolve, BackgroundLiesBehindAndMeansAreMeans) {
             frame.emplace_back(pixel);
         return frame;
     };
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
-    const Image color = reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background);
+    state.draw(s.scene, s.camera, layered(s.settings), kSheetSize, shader::PAYLOAD_COLOR);
+    const Image color = reference::resolve_color(accumulated(), kSheetSize.x, kSheetSize.y, s.scene.background);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
         ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], color.pixels[i], 1e-6F);
     EXPECT_FALSE(state.plan().gradient);
     s.scene.effects.background_top = glm::dvec3(0.9, 0, 0.25);
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_COLOR);
+    state.draw(s.scene, s.camera, layered(s.settings), kSheetSize, shader::PAYLOAD_COLOR);
     EXPECT_TRUE(state.plan().gradient);
-    const Image two =
-        reference::resolve_color(accumulated(), kSize.x, kSize.y, s.scene.background, s.scene.effects.background_top);
+    const Image two = reference::resolve_color(accumulated(), kSheetSize.x, kSheetSize.y, s.scene.background,
+                                               s.scene.effects.background_top);
     for (std::size_t i = 0; i < kPixels * 4; ++i)
         ASSERT_NEAR(output()[i / 4][static_cast<int>(i % 4)], two.pixels[i], 1e-6F);
-    // Where nothing is hit, the first row is the top's colour and the last the bottom's, to the bit.
+    // In empty pixels, the first row has exactly the top colour, and the last row exactly the bottom colour.
     int seen = 0;
-    for (const auto& [y, plain] : {std::pair{0, *s.scene.effects.background_top}, {kSize.y - 1, s.scene.background}})
-        for (int x = 0; x < kSize.x; ++x) {
-            const glm::vec4 pixel = output()[static_cast<std::size_t>(y * kSize.x + x)];
+    for (const auto& [y, plain] :
+         {std::pair{0, *s.scene.effects.background_top}, {kSheetSize.y - 1, s.scene.background}})
+        for (int x = 0; x < kSheetSize.x; ++x) {
+            const glm::vec4 pixel = output()[static_cast<std::size_t>(y * kSheetSize.x + x)];
             if (pixel.a > 0) continue;
             ++seen;
             ASSERT_EQ(glm::vec3(pixel), glm::vec3(plain)) << "row " << y;
         }
-    EXPECT_GT(seen, kSize.x);
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_DEPTH_DISTANCE);
+    EXPECT_GT(seen, kSheetSize.x);
+    state.draw(s.scene, s.camera, layered(s.settings), kSheetSize, shader::PAYLOAD_DEPTH_DISTANCE);
     EXPECT_FALSE(state.plan().gradient);
-    const Image depth = reference::resolve_mean(accumulated(), kSize.x, kSize.y);
+    const Image depth = reference::resolve_mean(accumulated(), kSheetSize.x, kSheetSize.y);
     for (std::size_t i = 0; i < kPixels; ++i)
         ASSERT_NEAR(output()[i].x, depth.pixels[i], 1e-4F);
-    state.draw(s.scene, s.camera, layered(s.settings), kSize, shader::PAYLOAD_NORMAL);
-    const Image normal = reference::resolve_normal(accumulated(), kSize.x, kSize.y);
+    state.draw(s.scene, s.camera, layered(s.settings), kSheetSize, shader::PAYLOAD_NORMAL);
+    const Image normal = reference::resolve_normal(accumulated(), kSheetSize.x, kSheetSize.y);
     for (std::size_t i = 0; i < kPixels * 3; ++i)
         ASSERT_NEAR(output()[i / 3][static_cast<int>(i % 3)], normal.pixels[i], 1e-5F);
 }
@@ -211,7 +212,7 @@ TEST(Frame, RepeatsBitForBit) {
         const auto render = [&, format = format] {
             state.level.splats.drop();
             state.collect(s.scene, s.settings, false);
-            state.draw(s.scene, s.camera, format == SheetFormat::Tiles ? s.settings : layered(s.settings), kSize,
+            state.draw(s.scene, s.camera, format == SheetFormat::Tiles ? s.settings : layered(s.settings), kSheetSize,
                        shader::PAYLOAD_COLOR);
             const auto pixels = state.targets().output.mapped<glm::vec4>(kPixels);
             return std::vector<glm::vec4>(pixels.begin(), pixels.end());

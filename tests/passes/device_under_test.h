@@ -1,4 +1,4 @@
-// The one device of a test program, with validation and synchronization validation on.
+// The single device of a test program, with validation and synchronization validation.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -12,11 +12,11 @@
 
 namespace edgesplat::test {
 
-/// The owners of what a renderer holds, without what decides which splats it holds.
+/// The owners of a renderer's data, without SplatProvider.
 struct DeviceUnderTest {
     explicit DeviceUnderTest(const DeviceChoice& choice) : session(choice) {}
 
-    /// Passes 1 to 2d, as far as they are to run. Whether any did.
+    /// Runs passes 1 to 2d as far as needed. Returns whether any ran.
     bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
         const bool found = level.provide(scene, settings, keep_buried, cost);
@@ -35,10 +35,10 @@ struct DeviceUnderTest {
     const TargetResources& targets() { return drawer.targets().resources(); }
     const FramePlan& plan() const { return drawer.drawn(); }
 
-    Orders orders;
+    RenderOptions options;
     DeviceSession session;
     LevelStore level{session};
-    PictureDrawer drawer{session, orders};
+    PictureDrawer drawer{session, options};
     SetupCost cost;  ///< of the last collect()
 };
 
@@ -47,7 +47,7 @@ inline std::unique_ptr<DeviceUnderTest>& held_device() {
     return device;
 }
 
-/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one ("gpu"). Opened when first asked for.
+/// The device, opened at the first call. EDGESPLAT_TEST_DEVICE selects it; "gpu" or unset: the first usable one.
 inline DeviceUnderTest& device_under_test() {
     auto& state = held_device();
     if (state == nullptr) {
@@ -58,12 +58,12 @@ inline DeviceUnderTest& device_under_test() {
     return *state;
 }
 
-/// Why the device under test draws no sheets in layers, and so no shadows either; empty where it does.
+/// Why the device cannot draw sheets in layers, and therefore no shadows; empty if it can.
 inline const std::string& layers_obstacle() {
     return device_under_test().device().layers_obstacle();
 }
 
-/// Tests of sheets in layers: skipped, with the reason, on a device that has none.
+/// Base of tests of sheets in layers: skips them, with the reason, on a device without layers.
 template <typename Base = testing::Test>
 class NeedsLayers : public Base {
   protected:
@@ -72,14 +72,14 @@ class NeedsLayers : public Base {
     }
 };
 
-/// Closes the device before main ends: the validation layer's own statics are gone when ours would be destroyed.
+/// Closes the device before main ends: later, the validation layer's static data is already destroyed.
 class DeviceClosesInMain : public testing::Environment {
     void TearDown() override { held_device().reset(); }
 };
-/// In every program that may open it.
+/// Registered in every program that may open the device.
 inline const testing::Environment* const kDeviceCloses = testing::AddGlobalTestEnvironment(new DeviceClosesInMain);
 
-/// Fails any test during which validation spoke.
+/// Fails every test with a validation message.
 class ValidationIsSilent : public testing::EmptyTestEventListener {
     void OnTestEnd(const testing::TestInfo&) override {
         const auto now = device_under_test().device().validation_messages();

@@ -1,4 +1,4 @@
-// Faces against the reference: the surface's points that voxels find, the quadrics that fit them, and pictures of both.
+// Faces against the reference: surfels, fitted quadrics, and pictures of both.
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,8 +10,8 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{72, 64};
-constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+constexpr glm::ivec2 kFacesSize{72, 64};
+constexpr std::size_t kFacesPixels = static_cast<std::size_t>(kFacesSize.x) * kFacesSize.y;
 
 PassScene with_faces(PassScene s, EdgeEstimator edges = EdgeEstimator::Cubic) {
     s.settings.warp = WarpFamily::Face;
@@ -19,7 +19,7 @@ PassScene with_faces(PassScene s, EdgeEstimator edges = EdgeEstimator::Cubic) {
     return s;
 }
 
-/// Where a record's voxel lies.
+/// The position of a record's voxel.
 glm::dvec3 place_of(std::uint32_t voxel, const glm::ivec3& dims) {
     return reference::Field{dims, {}, {}}.voxel(voxel);
 }
@@ -45,8 +45,8 @@ TEST_P(Surfels, AgreeWithTheReference) {
             differ += same_edge(got[i], want) ? 0U : 1U;
         }
         EXPECT_GT(surfels, got.size() / 50);
-        // At the limits of distance and slant one may be found on one side and not on the other, and where the surface
-        // bends within a voxel Newton's method does not settle.
+        // At the limits of distance and slant, only one side may find a surfel. Where the surface bends within a voxel,
+        // Newton's method does not converge.
         EXPECT_LE(static_cast<double>(differ), 0.03 * static_cast<double>(surfels)) << differ << " of " << surfels;
     }
 }
@@ -59,7 +59,7 @@ INSTANTIATE_TEST_SUITE_P(All, Surfels, testing::Values(EdgeEstimator::March, Edg
 
 class FaceRecords : public testing::TestWithParam<EdgeEstimator> {};
 
-TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
+TEST_P(FaceRecords, StoreTheFittedQuadrics) {
     std::vector<PassScene> scenes = pass_scenes();
     scenes.push_back(scenes[0]);
     scenes.back().name = "cube with a hole";
@@ -69,7 +69,7 @@ TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
         PassScene s = with_faces(plain, GetParam());
         SCOPED_TRACE(s.name);
         const bool is_wall = s.name == "wall from inside";
-        // Of thinner ones a single quadric often fits both faces, of thicker ones a voxel sees one.
+        // In thinner walls one quadric often fits both faces; in thicker ones a voxel sees only one.
         if (is_wall) s.volume = sample(slab_scene({24, 24, 24}, {0.3, 1, 0.2}, {11.5, 13, 11.5}, 2.5));
         DeviceUnderTest& state = prepared(s);
         const auto values = scaled_field(s.volume);
@@ -106,15 +106,15 @@ TEST_P(FaceRecords, HoldTheQuadricsThatFit) {
         EXPECT_GT(faces, 500U);
         EXPECT_GT(most_bent, is_wall ? 1e-4 : 0.1);
         if (is_wall) std::printf("%zu of %zu are walls\n", walls, faces);
-        // On the trilinear field one quadric holds both faces.
+        // On the trilinear field one quadric fits both faces.
         EXPECT_TRUE(!is_wall || GetParam() == EdgeEstimator::March || 2 * walls > faces);
-        // Which of two surfels is nearer, or of two fits better, may be a matter of rounding.
+        // Rounding may decide which of two surfels is nearer, or which of two quadrics fits better.
         EXPECT_LE(static_cast<double>(differ), 0.01 * static_cast<double>(faces)) << differ << " of " << faces;
     }
 }
 
-TEST_P(FaceRecords, TurnUnderTheFaceAsTheFieldDoes) {
-    // Below a plane surface the gradient turns, by up to 5 degrees: light that falls in the depth of matter follows it.
+TEST_P(FaceRecords, TurnLikeTheFieldBelowTheFace) {
+    // Below a plane surface the gradient turns by up to 5 degrees; light inside translucent matter follows it.
     constexpr double kTurn = 0.02;
     const glm::dvec3 center(11.5);
     AnalyticScene scene;
@@ -143,8 +143,8 @@ TEST_P(FaceRecords, TurnUnderTheFaceAsTheFieldDoes) {
     EXPECT_GT(deep, 500);
 }
 
-TEST(Faces, AWedgeHasBothItsFaces) {
-    // Between two planes that are 25 degrees off parallel, 3.4 voxels apart in the middle.
+TEST(Faces, FitBothFacesOfAWedge) {
+    // The matter lies between two planes, 25 degrees off parallel and 3.4 voxels apart in the middle.
     const glm::dvec3 center(11.5), a(0, 0.216440, 0.976296), b(0, 0.216440, -0.976296);
     const auto inside_of = [&](const glm::dvec3& n, const glm::dvec3& x) { return 1.66 - glm::dot(n, x - center); };
     AnalyticScene scene;
@@ -177,14 +177,14 @@ TEST(Faces, AWedgeHasBothItsFaces) {
     std::ranges::sort(off);
     std::ranges::sort(turned);
     EXPECT_LE(off[off.size() * 9 / 10], 0.1);
-    // Taken for level it would be .42.
+    // With parallel faces it would be .42.
     EXPECT_LE(turned[turned.size() * 9 / 10], 0.05);
 }
 
 INSTANTIATE_TEST_SUITE_P(All, FaceRecords, testing::Values(EdgeEstimator::March, EdgeEstimator::Cubic), estimator_of);
 
-TEST(Faces, ASphereIsFoundExactly) {
-    // What its samples say of a ball is a ball, but for the spline: distances to .01 voxel, curvature to a tenth.
+TEST(Faces, FitASphereExactly) {
+    // The samples of a ball, up to the errors of the spline: distances to .01 voxel, curvature to a tenth.
     PassScene s = with_faces(pass_scenes()[0]);
     const glm::dvec3 center(13.3, 12.6, 9.4);
     s.volume = sample(sphere_scene({28, 26, 20}, center, 6.3));
@@ -197,7 +197,7 @@ TEST(Faces, ASphereIsFoundExactly) {
         const double error = record.edge.D - (6.3 - glm::length(x - center));
         worst = std::max(worst, std::abs(error));
         sum2 += error * error;
-        // Across the view of the foot point every direction bends by 1 / radius.
+        // Perpendicular to the normal at the foot point, every direction has the curvature 1 / radius.
         const glm::dvec3 n = record.edge.n, across = glm::normalize(glm::cross(n, glm::dvec3(0.3, 0.9, 0.2)));
         bent += glm::dot(across, record.edge.bending * across);
         ++count;
@@ -208,8 +208,8 @@ TEST(Faces, ASphereIsFoundExactly) {
     EXPECT_NEAR(bent / count * 6.3, 1, 0.1);
 }
 
-TEST(Faces, ABoxHasItsEdges) {
-    // Of a voxel near an edge both planes are faces of the box.
+TEST(Faces, FitTheEdgesOfABox) {
+    // For a voxel near an edge, both planes are faces of the box.
     PassScene s = with_faces(pass_scenes()[0]);
     const AnalyticScene box = analytic_scene("box");
     s.volume = sample(box);
@@ -222,26 +222,26 @@ TEST(Faces, ABoxHasItsEdges) {
         const auto& edge = record.edge;
         if (!edge.has_edge || !(edge.crease.D < 2)) continue;
         const glm::dvec3 x = place_of(record.voxel, dims);
-        // A point of the second plane that lies well inside of the first is a point of the surface.
+        // A point of the second plane that lies well inside the first is a point of the surface.
         const glm::dvec3 along = edge.n - glm::dot(edge.n, edge.crease.n) * edge.crease.n;
         const glm::dvec3 at = x + edge.crease.D * edge.crease.n - 2.0 * glm::normalize(along);
         off.push_back(std::abs(box.signed_distance(at)));
     }
     ASSERT_GT(off.size(), 150U);
     std::ranges::sort(off);
-    // Two voxels away from the edge; the data are blurred by .7 voxel, which turns the second plane by some degrees.
+    // Two voxels from the edge; the data are blurred by .7 voxel, which tilts the second plane by some degrees.
     EXPECT_LE(off[off.size() / 2], 0.1);
     EXPECT_LE(off[off.size() * 9 / 10], 0.4);
 }
 
-struct Drawn {
+struct FacesCase {
     const char* name;
     std::size_t scene;
     SheetCut sheets = SheetCut::Whole;
     bool clip = false;
 };
 
-class DrawFaces : public NeedsLayers<testing::TestWithParam<Drawn>> {};
+class DrawFaces : public NeedsLayers<testing::TestWithParam<FacesCase>> {};
 
 TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
     std::vector<PassScene> scenes = pass_scenes();
@@ -255,12 +255,12 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
         const glm::dvec3 middle = s.volume.geometry.to_world(glm::dvec3(s.volume.geometry.dims) * 0.5);
         s.scene.effects.clip.keep = {{middle, {0.3, -1, 0.4}}};
     }
-    s.settings = drawn_as(s.settings, s.scene);
+    s.settings = canonical_settings(s.settings, s.scene);
     DeviceUnderTest& state = prepared(s);
-    const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
+    const auto [records, sheets, rect] = drawn_sheets(state, s, kFacesSize);
     ASSERT_EQ(state.plan().params.group_count, 1U);
     EXPECT_EQ(state.plan().variant.traced, GetParam().scene >= pass_scenes().size());
-    const Oracle oracle(s, records, kSize);
+    const Oracle oracle(s, records, kFacesSize);
     const auto sheet_of = download<std::uint32_t>(state, state.targets().sheet_of, records.size());
     const double thickness = reference::sheet_thickness(oracle.view, s.settings);
     const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
@@ -276,14 +276,14 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
             const bool there = sliced ? touches && sheet_of[i] != shader::SHEET_NONE : sheet_of[i] == sheet;
             if (there) splats.push_back(i);
         }
-        std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
+        std::vector<glm::dvec4> want(kFacesPixels, glm::dvec4(0));
         std::optional<reference::DepthRange> cut;
         if (sliced) cut = {thickness * place, thickness * (place + 1)};
         oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
-        for (std::size_t i = 0; i < kPixels; ++i) {
-            const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+        for (std::size_t i = 0; i < kFacesPixels; ++i) {
+            const int x = static_cast<int>(i) % kFacesSize.x, y = static_cast<int>(i) / kFacesSize.x;
             const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
-            const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
+            const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kFacesPixels + i]) : glm::dvec4(0);
             peak = std::max(peak, want[i].a);
             double worst = 0;
             for (int c = 0; c < 4; ++c)
@@ -293,17 +293,18 @@ TEST_P(DrawFaces, SheetsAgreeWithTheReference) {
         }
     }
     EXPECT_GT(peak, 0.5);
-    ASSERT_GT(compared, kPixels / 10);
-    // A ray that but touches a face meets it on one side and not on the other: few pixels, along outlines.
+    ASSERT_GT(compared, kFacesPixels / 10);
+    // A ray that barely touches a face may meet it on one side only: few pixels, along outlines.
     EXPECT_LE(static_cast<double>(differ), 0.003 * static_cast<double>(compared)) << differ << " of " << compared;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, DrawFaces,
-                         testing::Values(Drawn{"torus", 0}, Drawn{"orbital", 1}, Drawn{"wall", 2},
-                                         Drawn{"torus_sliced", 0, SheetCut::Sliced},
-                                         Drawn{"orbital_clipped", 1, SheetCut::Whole, true}, Drawn{"traced_opening", 3},
-                                         Drawn{"traced_gyroid", 4}, Drawn{"traced_gyroid_sliced", 4, SheetCut::Sliced},
-                                         Drawn{"traced_cut", 5}),
+                         testing::Values(FacesCase{"torus", 0}, FacesCase{"orbital", 1}, FacesCase{"wall", 2},
+                                         FacesCase{"torus_sliced", 0, SheetCut::Sliced},
+                                         FacesCase{"orbital_clipped", 1, SheetCut::Whole, true},
+                                         FacesCase{"traced_opening", 3}, FacesCase{"traced_gyroid", 4},
+                                         FacesCase{"traced_gyroid_sliced", 4, SheetCut::Sliced},
+                                         FacesCase{"traced_cut", 5}),
                          [](const auto& test) { return std::string(test.param.name); });
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Pictures whose sheets are divided: the arithmetic on the host, and several renderers against one.
+// Pictures with divided sheets: the host's arithmetic, and several renderers against one.
 #include "engine/distribute/parts.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ float distance_of(const glm::vec4& a, const glm::vec4& b) {
     return std::max({d.r, d.g, d.b, d.a});
 }
 
-TEST(Over, IsAssociativeButForRoundingAndNotCommutative) {
+TEST(Over, IsAssociativeButNotCommutative) {
     std::mt19937 random(7);
     float worst = 0, least_turned = 1;
     for (int i = 0; i < 10000; ++i) {
@@ -44,7 +44,7 @@ TEST(Over, IsAssociativeButForRoundingAndNotCommutative) {
     EXPECT_EQ(over(red, glm::vec4(0)), red);
 }
 
-TEST(SheetParts, AreAllSheetsOnceWithLikeShares) {
+TEST(SheetParts, CoverAllSheetsOnceInSimilarShares) {
     std::mt19937 random(3);
     for (const std::size_t sheets : {0U, 1U, 3U, 50U, 400U}) {
         std::vector<std::uint32_t> pairs(sheets);
@@ -70,7 +70,7 @@ TEST(SheetParts, AreAllSheetsOnceWithLikeShares) {
     }
 }
 
-/// A volume of 300^3 in blocks, of which those around the middle hold nothing.
+/// A volume of 300^3 in blocks; the blocks around the middle are empty.
 std::vector<CollectionBlock> blocks_of(const VolumeGeometry& geometry) {
     std::vector<CollectionBlock> blocks;
     for (int i = 0; i < 27; ++i) {
@@ -82,7 +82,7 @@ std::vector<CollectionBlock> blocks_of(const VolumeGeometry& geometry) {
     return blocks;
 }
 
-TEST(Slabs, AreAllSheetsOnceAndKnowTheirBlocks) {
+TEST(Slabs, CoverAllSheetsOnceAndContainTheirBlocks) {
     constexpr double kReach = 3.6;
     VolumeGeometry geometry;
     geometry.dims = glm::ivec3(300);
@@ -92,7 +92,7 @@ TEST(Slabs, AreAllSheetsOnceAndKnowTheirBlocks) {
     std::uniform_real_distribution<double> unit(-1, 1);
     for (int view = 0; view < 20; ++view) {
         const glm::dvec3 away = glm::normalize(glm::dvec3(unit(random), unit(random), unit(random)) + 1e-3);
-        // From outside, from the edge and from inside.
+        // From outside, from the edge, and from inside.
         const double distance = view % 3 == 0 ? 2000 : view % 3 == 1 ? 150 : 5;
         const Camera camera{.eye = geometry.center() + distance * away, .direction = -away};
         const CameraFrame frame = camera_frame(camera);
@@ -138,7 +138,7 @@ TEST(Slabs, AreAllSheetsOnceAndKnowTheirBlocks) {
     }
 }
 
-TEST(Slabs, AreCountedFromThePicturesFirstSheet) {
+TEST(Slabs, CountFromThePicturesFirstSheet) {
     const std::vector<std::uint32_t> pairs(10, 1);
     const auto sheets = [&](int from, int to, int base) {
         return Division{.part = {1, 3}, .slab = glm::ivec2(from, to)}.sheets(pairs, base);
@@ -151,7 +151,7 @@ TEST(Slabs, AreCountedFromThePicturesFirstSheet) {
     EXPECT_EQ((Division{.part = {}, .slab = {}}.sheets(pairs, 100)), glm::uvec2(0, 10));
 }
 
-/// Sheets folded until a pixel is closed.
+/// Composites sheets until a pixel is saturated.
 glm::vec4 folded(const glm::vec4& before, std::span<const glm::vec4> sheets, float saturation) {
     glm::vec4 sum = before;
     for (const glm::vec4& sheet : sheets)
@@ -159,7 +159,7 @@ glm::vec4 folded(const glm::vec4& before, std::span<const glm::vec4> sheets, flo
     return sum;
 }
 
-TEST(PixelsBehind, CloseWhereTheWholePictureCloses) {
+TEST(PixelsBehind, SaturateWhereTheWholePictureSaturates) {
     constexpr float kSaturation = 0.9F;
     constexpr std::size_t kSheets = 12, kParts = 3, kEach = kSheets / kParts;
     const glm::ivec2 size(37, 20), tiles(3, 2);
@@ -205,10 +205,10 @@ TEST(PixelsBehind, CloseWhereTheWholePictureCloses) {
         without = std::max(without, distance_of(want, unclosed[i]));
     }
     EXPECT_LE(worst, 2e-6F);
-    EXPECT_GT(without, 0.05F) << "closing changes nothing here";
+    EXPECT_GT(without, 0.05F) << "saturation changes nothing here";
 }
 
-/// Renderers in threads of one process. With `turned` the last part is taken to be in front.
+/// Renderers in threads of one process. With `turned`, the parts are composited in reverse order.
 class ThreadExchange : public PartExchange {
   public:
     struct Table {
@@ -293,7 +293,7 @@ std::vector<RenderResult> in_parts(std::vector<Renderer>& renderers, const PassS
     return results;
 }
 
-/// Of a mean, as far as the pixel is opaque, since at the rim of a footprint there may be nothing.
+/// Largest error of a mean, weighted by opacity, since the rim of a footprint may be empty.
 double worst_of_mean(const Image& a, const Image& b, const Image& color) {
     double worst = 0, peak = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
@@ -304,7 +304,7 @@ double worst_of_mean(const Image& a, const Image& b, const Image& color) {
     return worst / peak;
 }
 
-TEST(DividedSheets, PicturesAreThoseOfOneRenderer) {
+TEST(DividedSheets, MatchThePictureOfOneRenderer) {
     const DeviceChoice choice{.validation = true};
     std::vector<Renderer> renderers;
     for (int i = 0; i < 3; ++i)
@@ -328,8 +328,8 @@ TEST(DividedSheets, PicturesAreThoseOfOneRenderer) {
                 redrawn += part.stats.share->redraw_milliseconds;
                 EXPECT_EQ(part.stats.validation_messages, 0U);
             }
-            std::printf("%-18s %s: %.1f dB, %.2f ms drawn again\n", s.name.c_str(),
-                        std::string(name_of(sheets)).c_str(), psnr, redrawn);
+            std::printf("%-18s %s: %.1f dB, %.2f ms redrawn\n", s.name.c_str(), std::string(name_of(sheets)).c_str(),
+                        psnr, redrawn);
             EXPECT_GE(psnr, 90);
             double peak = 0;
             for (const float tau : one.tau->pixels)
@@ -339,7 +339,7 @@ TEST(DividedSheets, PicturesAreThoseOfOneRenderer) {
             EXPECT_LE(worst_of_mean(*one.distance, *parts[0].distance, one.color), 1e-4);
             EXPECT_LE(worst_of_mean(*one.normal, *parts[0].normal, one.color), 1e-4);
             EXPECT_LT(compare_images(one.color, in_parts(renderers, s, settings, true)[0].color).psnr, 60);
-            // Alone again, nothing is left of the parts.
+            // Afterwards, a renderer alone draws the undivided picture.
             EXPECT_EQ(renderers[0].render(s.scene, s.camera, settings, 48, 32).color.pixels, one.color.pixels);
         }
     }
@@ -350,8 +350,8 @@ bool is_refined(const RenderResult& result) {
                                [](const PassTime& pass) { return pass.name == "5_refine_pixels"; });
 }
 
-TEST(DividedSheets, RefinedPicturesToo) {
-    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "every pixel is drawn on such a device";
+TEST(DividedSheets, MatchRefinedPictures) {
+    if (!device_under_test().device().profile().refines) GTEST_SKIP() << "this device draws every pixel";
     const glm::ivec2 size(203, 154);
     std::vector<Renderer> renderers;
     for (int i = 0; i < 3; ++i)
@@ -359,7 +359,7 @@ TEST(DividedSheets, RefinedPicturesToo) {
     const PassScene s = pass_scenes()[2];
     for (Renderer& renderer : renderers)
         renderer.set_volume(std::make_shared<const Volume>(s.volume));
-    for (const double extinction : {0.3, 2.0}) {  // of which nothing and much closes
+    for (const double extinction : {0.3, 2.0}) {  // saturates nothing, and much
         PassScene seen = s;
         seen.scene.materials[1].extinction = extinction;
         const RenderResult one = renderers[0].render(seen.scene, seen.camera, seen.settings, size.x, size.y);

@@ -1,4 +1,4 @@
-// A device with validation, small scenes, and what the passes left on the device in the reference's own terms.
+// A device with validation, small scenes, and the passes' results converted to the reference's types.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -37,7 +37,7 @@ std::vector<T> download(DeviceUnderTest& state, const gpu::GpuImage& image) {
     return {mapped.begin(), mapped.end()};
 }
 
-/// A voxel's edge from its two stored words (shaders/shared/scene_params.h).
+/// Decodes a voxel's edge from its two stored words (shaders/shared/scene_params.h).
 inline reference::VoxelEdge decode_edge(std::uint32_t normal, std::uint32_t code) {
     reference::VoxelEdge edge;
     const std::uint32_t state = code >> 26U & 3U;
@@ -60,7 +60,7 @@ inline reference::VoxelEdge decode_edge(std::uint32_t normal, std::uint32_t code
     return edge;
 }
 
-/// Whether an edge of the device is the reference's. D is stored in steps of 1.2e-4; float32 sampling and normalisation
+/// Whether a device's edge equals the reference's. D is stored in steps of 1.2e-4; float32 sampling and normalisation
 /// add less than 1e-3 voxel.
 inline bool same_edge(const reference::VoxelEdge& got, const reference::VoxelEdge& want) {
     constexpr double kDistanceBound = 2e-3;
@@ -75,7 +75,7 @@ inline bool same_edge(const reference::VoxelEdge& got, const reference::VoxelEdg
     return same;
 }
 
-/// One scene, rendered by the passes on the device.
+/// One scene for the passes on the device.
 struct PassScene {
     std::string name;
     Volume volume;
@@ -93,7 +93,7 @@ inline void look_at(PassScene& s, const glm::dvec3& eye, const glm::dvec3& targe
     s.camera.fov_y = fov;
 }
 
-/// Torus, opaque; orbital, two materials, one translucent, on an oblique left-handed anisotropic grid; a wall.
+/// An opaque torus; an orbital with two materials, one translucent, on an oblique left-handed anisotropic grid; a wall.
 inline std::vector<PassScene> pass_scenes() {
     std::vector<PassScene> scenes(3);
     auto& torus = scenes[0];
@@ -125,7 +125,7 @@ inline std::vector<PassScene> pass_scenes() {
     return scenes;
 }
 
-/// What pass 1 left for every voxel: in the bits of D2 there is what lies beside it.
+/// The edge field of pass 1. The bits of D2 are ignored: they contain the neighbouring materials.
 inline std::vector<reference::VoxelEdge> device_field(DeviceUnderTest& state) {
     std::vector<reference::VoxelEdge> edges;
     for (const auto& words : download<glm::uvec2>(state, state.lists().edges)) {
@@ -135,7 +135,7 @@ inline std::vector<reference::VoxelEdge> device_field(DeviceUnderTest& state) {
     return edges;
 }
 
-/// Device and volume ready, passes 1 and 2 run.
+/// Returns the device with the scene's volume; passes 1 and 2 have run.
 inline DeviceUnderTest& prepared(const PassScene& s) {
     DeviceUnderTest& state = device_under_test();
     state.drawer.set_culling({.bricks = false});  // a splat's number is its slot's
@@ -145,7 +145,7 @@ inline DeviceUnderTest& prepared(const PassScene& s) {
     return state;
 }
 
-/// A face's second derivatives from their two stored words (shaders/footprints/face_record.glsl).
+/// Decodes a face's second derivatives from their two stored words (shaders/footprints/face_record.glsl).
 inline glm::dmat3 decode_bending(const glm::uvec2& code) {
     const auto part = [](std::uint32_t word, int k) {
         const int bits = static_cast<int>(word << (22 - 10 * k)) >> 22;
@@ -157,8 +157,8 @@ inline glm::dmat3 decode_bending(const glm::uvec2& code) {
     return {glm::dvec3(xx, xy, xz), glm::dvec3(xy, yy, yz), glm::dvec3(xz, yz, zz)};
 }
 
-/// The device's splat list as the reference writes it, with bendings and classification where the device has them. Of
-/// what is traced the interval is not there.
+/// The device's splat list in the reference's format, with second derivatives and classification if the device has
+/// them. Traced splats have no interval yet.
 inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat : download<shader::Splat>(state, state.lists().splats, state.lists().splat_count)) {
@@ -193,7 +193,7 @@ inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state
     return records;
 }
 
-/// As the device lists them: brick by brick.
+/// Sorts records like the device: brick by brick.
 inline void sort_by_brick(std::vector<reference::SplatRecord>& records, const glm::ivec3& dims) {
     std::ranges::stable_sort(records, {}, [&](const reference::SplatRecord& record) {
         const auto voxel = static_cast<int>(record.voxel);
@@ -202,7 +202,7 @@ inline void sort_by_brick(std::vector<reference::SplatRecord>& records, const gl
     });
 }
 
-/// What of the light reaches each splat: two unorm16.
+/// The share of the light that reaches each splat: two unorm16.
 struct Reaches {
     std::vector<reference::SplatRecord> records;
     std::vector<double> first, second;
@@ -218,17 +218,17 @@ inline Reaches reaches_of(const PassScene& s, gpu::Buffer SplatLists::*buffer) {
     return out;
 }
 
-/// With sheets in layers, which can be looked at.
+/// The settings with sheets in layers, which tests can read.
 inline Settings layered(Settings settings) {
     settings.sheet_format = SheetFormat::Layers;
     return settings;
 }
 
-/// The sheets of a picture's last group: all of them where there is one group.
+/// The sheets of a picture's last group: all sheets if there is only one group.
 struct DrawnSheets {
     std::vector<reference::SplatRecord> records;
     std::vector<glm::vec4> pixels;  ///< (sheet, y, x)
-    glm::ivec4 rect;                ///< what the group touches; elsewhere pixels mean nothing
+    glm::ivec4 rect;                ///< pixels that the group touches; other pixels are undefined
 };
 
 inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, const glm::ivec2& size) {
@@ -237,7 +237,7 @@ inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, cons
             state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
-/// The records as the scene has them drawn: traced in their material's interval, or not; one sees through them or not.
+/// Adds to the records how the scene draws them: traced or not, translucent or opaque.
 inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
                                                          std::vector<reference::SplatRecord> records) {
     const bool traces = traced_material(s.settings, s.scene, s.volume.geometry).has_value();
@@ -245,7 +245,7 @@ inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
     for (reference::SplatRecord& record : records) {
         const auto material = static_cast<int>(record.material);
         if (!traces) record.edge.traced.reset();
-        const bool through = scaled.seen_through[record.material] && draws_faces(s.settings);
+        const bool through = scaled.is_translucent[record.material] && draws_faces(s.settings);
         if (through) record.edge.deepest = 0;
         const reference::Field field{s.volume.geometry.dims, {}, {}};
         record.weight = reference::border_weight(field, scaled, s.settings, field.voxel(record.voxel), material);
@@ -254,7 +254,7 @@ inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
     return records;
 }
 
-/// The reference's passes 3 and 5 on a splat list of the device. Its members refer to one another.
+/// The reference's passes 3 and 5 on the device's splat list. Not copyable: members refer to one another.
 struct Oracle {
     Oracle(const PassScene& s, const std::vector<reference::SplatRecord>& listed, const glm::ivec2& size)
         : values(scaled_field(s.volume)),
@@ -262,9 +262,8 @@ struct Oracle {
           field{s.volume.geometry.dims, values, coefficients},
           records(drawn_records(s, listed)),
           view(s.camera, s.volume.geometry, size.x, size.y),
-          footprints(
-              s.settings, table_depth(s.scene, s.volume.geometry),
-              one_piece_is_enough(s.settings, s.scene, s.volume.geometry) ? FacePieces::Longer : FacePieces::Both),
+          footprints(s.settings, table_depth(s.scene, s.volume.geometry),
+                     has_single_piece(s.settings, s.scene, s.volume.geometry) ? FacePieces::Longer : FacePieces::Both),
           selected(reference::select_footprints(records, field, view, s.settings, footprints)),
           drawer(records, selected, field, s.scene, view, s.settings, footprints) {}
     Oracle(const Oracle&) = delete;

@@ -1,4 +1,4 @@
-// Compiled pipelines on disk: read when whole, ignored when not, and never in the way.
+// The cache of compiled pipelines on disk: read if intact, ignored if damaged, and not required.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@ struct Folder {
     fs::path path = fs::path(testing::TempDir()) / ("pipeline_cache_" + std::to_string(::getpid()));
 };
 
-/// Starts anew with what the folder holds, compiles a pipeline: bytes that were read.
+/// Starts with the folder's cache and compiles a pipeline. Returns the number of bytes read.
 std::size_t start(const fs::path& folder) {
     gpu::Pipelines pipelines(device_under_test().device(), folder);
     EXPECT_TRUE(pipelines.compute("7_resolve.comp", {}));
@@ -33,7 +33,7 @@ fs::path only_file(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const auto& entry : fs::directory_iterator(folder))
         files.push_back(entry.path());
-    EXPECT_EQ(files.size(), 1U) << "no temporary is left";
+    EXPECT_EQ(files.size(), 1U) << "no temporary file remains";
     return files.empty() ? fs::path() : files.front();
 }
 
@@ -43,7 +43,7 @@ TEST(PipelineCache, IsReadByTheNextStart) {
     EXPECT_EQ(start(folder.path) + 24, fs::file_size(only_file(folder.path)));
 }
 
-TEST(PipelineCache, IsIgnoredWhereItIsDamaged) {
+TEST(PipelineCache, IsIgnoredIfDamaged) {
     const Folder folder;
     start(folder.path);
     const fs::path file = only_file(folder.path);
@@ -58,10 +58,10 @@ TEST(PipelineCache, IsIgnoredWhereItIsDamaged) {
     EXPECT_EQ(start(folder.path), 0U) << "shorter";
     fs::resize_file(file, 10);
     EXPECT_EQ(start(folder.path), 0U) << "without a header";
-    EXPECT_GT(start(folder.path), 0U) << "and written anew each time";
+    EXPECT_GT(start(folder.path), 0U) << "and rewritten each time";
 }
 
-TEST(PipelineCache, IsNotNeeded) {
+TEST(PipelineCache, IsOptional) {
     EXPECT_EQ(start({}), 0U) << "no folder";
     const Folder folder;
     const fs::path file = folder.path / "file";

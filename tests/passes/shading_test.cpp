@@ -8,8 +8,8 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr glm::ivec2 kSize{56, 48};
-constexpr std::size_t kPixels = static_cast<std::size_t>(kSize.x) * kSize.y;
+constexpr glm::ivec2 kShadingSize{56, 48};
+constexpr std::size_t kShadingPixels = static_cast<std::size_t>(kShadingSize.x) * kShadingSize.y;
 
 Light point_light(const glm::dvec3& position, const glm::dvec3& color = glm::dvec3(1), double intensity = 0.85) {
     Light light;
@@ -20,7 +20,7 @@ Light point_light(const glm::dvec3& position, const glm::dvec3& color = glm::dve
     return light;
 }
 
-/// Colour and extinction ramps over the orbital's values, with so many iso-values.
+/// Colour and extinction ramps over the orbital's values, with `iso_count` iso-values.
 void ramp(PassScene& s, std::size_t iso_count) {
     const double top = static_cast<double>(s.volume.max_value);
     s.scene.transfer = {{0.05 * top, {0.1, 0.3, 1}, 0},
@@ -29,23 +29,23 @@ void ramp(PassScene& s, std::size_t iso_count) {
                         {0.7 * top, {1, 0.2, 0.1}, 3}};
     s.scene.iso_values.resize(iso_count);
     s.scene.materials.resize(iso_count + 1);
-    s.settings = drawn_as(s.settings, s.scene);
+    s.settings = canonical_settings(s.settings, s.scene);
 }
 
-/// A core with an edge in a haze without.
+/// A core with an edge, in a haze without edges.
 void haze(PassScene& s) {
     ramp(s, 1);
     s.scene.iso_values = {0.4 * static_cast<double>(s.volume.max_value)};
 }
 
-struct Variant {
+struct ShadingVariant {
     const char* name;
     void (*change)(PassScene&);
     std::vector<std::size_t> scenes = {0, 1};
-    void (*usual)(PassScene&) = [](PassScene&) {};  ///< what the change is compared with
+    void (*usual)(PassScene&) = [](PassScene&) {};  ///< the picture to compare with
 };
 
-void PrintTo(const Variant& variant, std::ostream* out) {
+void PrintTo(const ShadingVariant& variant, std::ostream* out) {
     *out << variant.name;
 }
 
@@ -53,8 +53,8 @@ glm::dvec3 beside(const PassScene& s) {
     return s.volume.geometry.to_world({30, -6, 25});
 }
 
-const std::vector<Variant>& variants() {
-    static const std::vector<Variant> all{
+const std::vector<ShadingVariant>& variants() {
+    static const std::vector<ShadingVariant> all{
         {"unlit", [](PassScene& s) { s.scene.lights.clear(); }},
         {"point_light", [](PassScene& s) { s.scene.lights = {point_light(beside(s))}; }, {0, 1, 2}},
         {"point_light_in_the_volume",
@@ -103,12 +103,12 @@ const std::vector<Variant>& variants() {
          [](PassScene& s) {
              s.scene.lit = Lit::Edges;
              s.settings.edges = EdgeEstimator::Off;
-             s.settings = drawn_as(s.settings);
+             s.settings = canonical_settings(s.settings);
          },
          {0, 1},
          [](PassScene& s) {
              s.settings.edges = EdgeEstimator::Off;
-             s.settings = drawn_as(s.settings);
+             s.settings = canonical_settings(s.settings);
          }},
         {"fog",
          [](PassScene& s) {
@@ -129,7 +129,7 @@ const std::vector<Variant>& variants() {
              s.scene.lights.clear();
              s.scene.effects.silhouette = Silhouette{{1, 0, 0}, 1, 0.25};
              s.settings.edges = EdgeEstimator::Off;
-             s.settings = drawn_as(s.settings);
+             s.settings = canonical_settings(s.settings);
          }},
         {"everything",
          [](PassScene& s) {
@@ -153,16 +153,16 @@ const std::vector<Variant>& variants() {
     return all;
 }
 
-PassScene changed(const Variant& variant, std::size_t number) {
+PassScene changed(const ShadingVariant& variant, std::size_t number) {
     PassScene s = pass_scenes()[number];
-    // Thick sheets, so that all of them are in one group and still on the device after the frame.
+    // Thick sheets: all are in one group, and still on the device after the frame.
     s.settings.sheet_spacing = 6;
     s.settings.saturation = 1;
     variant.change(s);
     return s;
 }
 
-class Shading : public testing::TestWithParam<Variant> {};
+class Shading : public testing::TestWithParam<ShadingVariant> {};
 
 TEST_P(Shading, SheetsAgreeWithTheReference) {
     if (!layers_obstacle().empty()) GTEST_SKIP() << layers_obstacle();
@@ -170,10 +170,10 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
         const PassScene s = changed(GetParam(), number);
         SCOPED_TRACE(s.name);
         DeviceUnderTest& state = prepared(s);
-        const auto [records, sheets, rect] = drawn_sheets(state, s, kSize);
+        const auto [records, sheets, rect] = drawn_sheets(state, s, kShadingSize);
         ASSERT_EQ(state.plan().params.group_count, 1U);
 
-        const Oracle oracle(s, records, kSize);
+        const Oracle oracle(s, records, kShadingSize);
         const int base = reference::first_sheet(records, oracle.field, oracle.view, s.settings, oracle.footprints);
         const double thickness = reference::sheet_thickness(oracle.view, s.settings);
         double peak = 0, worst = 0;
@@ -188,12 +188,12 @@ TEST_P(Shading, SheetsAgreeWithTheReference) {
             std::optional<reference::DepthRange> cut;
             const double first = base + static_cast<double>(place);
             if (s.settings.sheets == SheetCut::Sliced) cut = {thickness * first, thickness * (first + 1)};
-            std::vector<glm::dvec4> want(kPixels, glm::dvec4(0));
+            std::vector<glm::dvec4> want(kShadingPixels, glm::dvec4(0));
             oracle.drawer.draw(splats, reference::Payload::Color, {}, want, cut);
-            for (std::size_t i = 0; i < kPixels; ++i) {
-                const int x = static_cast<int>(i) % kSize.x, y = static_cast<int>(i) / kSize.x;
+            for (std::size_t i = 0; i < kShadingPixels; ++i) {
+                const int x = static_cast<int>(i) % kShadingSize.x, y = static_cast<int>(i) / kShadingSize.x;
                 const bool inside = x >= rect.x && x < rect.z && y >= rect.y && y < rect.w;
-                const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kPixels + i]) : glm::dvec4(0);
+                const glm::dvec4 got = inside ? glm::dvec4(sheets[sheet * kShadingPixels + i]) : glm::dvec4(0);
                 for (int c = 0; c < 4; ++c) {
                     peak = std::max(peak, want[i][c]);
                     worst = std::max(worst, std::abs(got[c] - want[i][c]));
@@ -210,20 +210,20 @@ TEST_P(Shading, ChangesThePicture) {
     const std::size_t number = GetParam().scenes.front();
     const auto picture = [](const PassScene& s) {
         DeviceUnderTest& state = prepared(s);
-        state.draw(s.scene, s.camera, s.settings, kSize, shader::PAYLOAD_COLOR);
-        const auto pixels = state.targets().output.mapped<glm::vec4>(kPixels);
+        state.draw(s.scene, s.camera, s.settings, kShadingSize, shader::PAYLOAD_COLOR);
+        const auto pixels = state.targets().output.mapped<glm::vec4>(kShadingPixels);
         return std::vector<glm::vec4>(pixels.begin(), pixels.end());
     };
     const auto usual = picture(changed({"usual", GetParam().usual}, number));
     const auto other = picture(changed(GetParam(), number));
     float most = 0;
-    for (std::size_t i = 0; i < kPixels; ++i) {
+    for (std::size_t i = 0; i < kShadingPixels; ++i) {
         for (int c = 0; c < 4; ++c) {
             ASSERT_TRUE(std::isfinite(other[i][c]));
             most = std::max(most, std::abs(other[i][c] - usual[i][c]));
         }
     }
-    // Where no edge is drawn there is nothing that light could be kept to.
+    // Without edges, lighting only edges changes nothing.
     if (std::string(GetParam().name) == "lit_edges_without_edges")
         EXPECT_EQ(most, 0.0F);
     else
@@ -233,7 +233,7 @@ TEST_P(Shading, ChangesThePicture) {
 INSTANTIATE_TEST_SUITE_P(All, Shading, testing::ValuesIn(variants()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
+TEST(TransferFunction, CollectsTheReferencesSplatsAndValues) {
     for (const std::size_t iso_count : {0U, 1U, 2U}) {
         SCOPED_TRACE(iso_count);
         PassScene s = pass_scenes()[1];
@@ -259,13 +259,13 @@ TEST(TransferFunction, TheSameSplatsWithTheSameValues) {
             ASSERT_NEAR(got[i].classified->extinction, want[i].classified->extinction, 5e-5);
         }
         if (iso_count > 0)
-            EXPECT_GT(moved, 100U) << "no voxel was classified from further on";
+            EXPECT_GT(moved, 100U) << "no voxel was classified by a point further inside";
         else
             EXPECT_EQ(moved, 0U);
     }
 }
 
-TEST(TransferFunction, WithoutOneNothingIsThereForIt) {
+TEST(TransferFunction, CostsNothingWhenOff) {
     PassScene s = pass_scenes()[1];
     DeviceUnderTest& state = prepared(s);
     EXPECT_FALSE(state.lists().values);
@@ -280,7 +280,7 @@ TEST(TransferFunction, WithoutOneNothingIsThereForIt) {
     EXPECT_FALSE(state.lists().transfer);
 }
 
-TEST(TransferFunction, AChangedPointIsSeen) {
+TEST(TransferFunction, RecollectsSplatsAfterAChangedPoint) {
     PassScene s = pass_scenes()[1];
     ramp(s, 1);
     DeviceUnderTest& state = prepared(s);

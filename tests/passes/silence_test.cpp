@@ -1,4 +1,4 @@
-// Registers the listener that fails any test of this program during which validation spoke, and what closes the device.
+// Registers the listener that fails every test of this program with a validation message; closes the device.
 #include <exception>
 
 #include "tests/passes/device_under_test.h"
@@ -16,10 +16,10 @@ TEST(Device, ListensToValidation) {
     EXPECT_FALSE(device_under_test().device().info().name.empty());
 }
 
-TEST(Device, RejectsWhatDoesNotExistWithEveryReason) {
+TEST(Device, RejectsUnknownNamesWithReasons) {
     try {
         DeviceUnderTest state({.device = "no such device"});
-        FAIL() << "a device that does not exist was opened";
+        FAIL() << "opened a device that does not exist";
     } catch (const std::exception& error) {
         EXPECT_NE(std::string(error.what()).find("no such device"), std::string::npos) << error.what();
         EXPECT_NE(std::string(error.what()).find("usable"), std::string::npos) << error.what();

@@ -38,7 +38,7 @@ enum Op : std::uint32_t {
 
 struct Instruction {
     std::uint32_t op;
-    std::span<const std::uint32_t> words;  ///< the first holds length and opcode
+    std::span<const std::uint32_t> words;  ///< the first contains length and opcode
 };
 
 std::vector<Instruction> instructions_of(std::span<const std::uint32_t> module) {
@@ -85,7 +85,7 @@ struct Tables {
                            name == member_names.end() ? std::to_string(index) : name->second);
     }
 
-    /// Everything within a type that is read as a whole.
+    /// Adds all members of a type that is read as a whole.
     void add_whole(std::uint32_t type, std::set<std::string>& found) const {
         const auto at = types.find(type);
         if (at == types.end()) return;
@@ -118,7 +118,7 @@ std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> module, co
         .RegisterPerformancePasses();
     std::vector<std::uint32_t> out;
     spvtools::OptimizerOptions options;
-    options.set_run_validator(false);  // the validation layer does that
+    options.set_run_validator(false);  // the validation layer does this
     if (!optimizer.Run(module.data(), module.size(), &out, options)) fail("SPIR-V: {}", complaints);
     return out;
 }

@@ -1,4 +1,4 @@
-// What is left of a shader once its specialization constants are set and what they rule out is gone.
+// The code of a shader after its specialization constants are set and dead code is removed.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace edgesplat::test {
 
-/// The module with the constants set and frozen, and optimised by SPIRV-Tools for speed. Throws Error if that fails.
+/// The module with the constants set and frozen, optimised by SPIRV-Tools for speed. Throws Error on failure.
 std::vector<std::uint32_t> specialised(std::span<const std::uint32_t> module, const gpu::Specialization& constants);
 
-/// Instructions of functions' bodies; declarations and names do not count.
+/// Number of instructions in function bodies; declarations and names do not count.
 std::size_t instruction_count(std::span<const std::uint32_t> module);
 
-/// "FrameParams.saturation": every member of a struct that an access chain goes through. A struct that is loaded whole
-/// counts with all its members.
+/// "FrameParams.saturation": every struct member that an access chain reads. If a struct is loaded as a whole, all its
+/// members count.
 std::set<std::string> members_read(std::span<const std::uint32_t> module);
 
 }  // namespace edgesplat::test

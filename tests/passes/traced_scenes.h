@@ -5,7 +5,8 @@
 
 namespace edgesplat::test {
 
-/// A plate of three voxels with a round opening of radius 1, a gyroid, and a thin wall that the border cuts; opaque.
+/// An opaque plate of three voxels with a round opening of radius 1, an opaque gyroid, and an opaque thin wall that the
+/// border cuts.
 inline std::vector<PassScene> traced_scenes() {
     std::vector<PassScene> scenes(3);
     auto& plate = scenes[0];

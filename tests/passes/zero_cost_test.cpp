@@ -1,4 +1,4 @@
-// An effect that is off leaves nothing in the frame: every row of the table of effects is drawn with and without.
+// An effect that is off costs nothing in the frame: every row of the table of effects is drawn with and without.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -15,15 +15,15 @@
 namespace edgesplat::test {
 namespace {
 
-/// What one picture ran and held.
-struct Frame {
+/// The passes, pipelines and memory of one picture.
+struct FrameCost {
     std::vector<gpu::PipelineVariant> variants;
     std::set<std::string> passes;
     std::map<std::string, std::uint64_t> memory;
     std::uint64_t splats = 0;
 };
 
-std::uint64_t total(const Frame& frame) {
+std::uint64_t total(const FrameCost& frame) {
     return std::accumulate(frame.memory.begin(), frame.memory.end(), std::uint64_t{0},
                            [](std::uint64_t sum, const auto& entry) { return sum + entry.second; });
 }
@@ -34,8 +34,8 @@ FrameRequest request_for_rows() {
         {std::make_shared<Volume>(scene.volume), scene.scene, scene.camera, scene.settings, {40, 40}, {}});
 }
 
-/// The picture and its extra outputs, in a renderer that holds nothing of others.
-Frame draw(const FrameRequest& request) {
+/// Draws the picture and its extra outputs in a renderer without data of other pictures.
+FrameCost draw(const FrameRequest& request) {
     DeviceUnderTest& state = device_under_test();
     state.drawer.targets().drop();
     state.level = LevelStore(state.session);
@@ -44,7 +44,7 @@ Frame draw(const FrameRequest& request) {
     state.level.volume.hold(request.volume, 0);
     const Settings settings = drawn_settings(request);
     state.collect(request.scene, settings, keeps_buried(request));
-    Frame frame;
+    FrameCost frame;
     for (const PassTime& pass : state.cost.times)
         frame.passes.insert(pass.name);
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
@@ -59,8 +59,8 @@ Frame draw(const FrameRequest& request) {
     return frame;
 }
 
-/// The value of a constant in the shaders of a frame; -1 where none has it.
-std::set<std::uint32_t> values_of(const Frame& frame, std::uint32_t id) {
+/// The values of a constant in the shaders of a frame; empty if no shader has it.
+std::set<std::uint32_t> values_of(const FrameCost& frame, std::uint32_t id) {
     std::set<std::uint32_t> values;
     for (const auto& variant : frame.variants)
         for (const auto& [constant, value] : variant.constants)
@@ -68,13 +68,13 @@ std::set<std::uint32_t> values_of(const Frame& frame, std::uint32_t id) {
     return values;
 }
 
-/// Members of FrameParams and SceneParams that the frame's shaders read, and how many instructions they have.
+/// Members of FrameParams and SceneParams that the frame's shaders read, and their numbers of instructions.
 struct Code {
     std::set<std::string> members;
     std::map<std::string, std::size_t> instructions;
 };
 
-Code code_of(const Frame& frame) {
+Code code_of(const FrameCost& frame) {
     static std::map<std::string, std::pair<std::set<std::string>, std::size_t>> known;
     Code code;
     for (const auto& variant : frame.variants) {
@@ -98,7 +98,7 @@ class ZeroCost : public testing::TestWithParam<std::size_t> {
   protected:
     void SetUp() override {
         if (effect().name == "refined pixels" && !device_under_test().device().profile().refines)
-            GTEST_SKIP() << "every pixel is drawn on such a device";
+            GTEST_SKIP() << "this device draws every pixel";
         try {
             need_layers(device_under_test().device(), with().scene, with().settings);
         } catch (const Error& error) {
@@ -123,8 +123,8 @@ std::set<std::string> strings(const std::vector<std::string_view>& names) {
     return {names.begin(), names.end()};
 }
 
-TEST_P(ZeroCost, OffItHasNoPassNoBufferAndNoBytes) {
-    const Frame off = draw(without()), on = draw(with());
+TEST_P(ZeroCost, HasNoPassBufferOrBytesWhenOff) {
+    const FrameCost off = draw(without()), on = draw(with());
     std::set<std::string> more_passes;
     std::ranges::set_difference(on.passes, off.passes, std::inserter(more_passes, more_passes.end()));
     EXPECT_EQ(more_passes, strings(effect().passes));
@@ -142,7 +142,7 @@ TEST_P(ZeroCost, OffItHasNoPassNoBufferAndNoBytes) {
     EXPECT_EQ(more_memory, strings(effect().resources));
     EXPECT_THAT(strings(effect().resized), testing::IsSupersetOf(resized));
 
-    // Nothing else differs: the bytes are its share.
+    // Nothing else differs: the difference in bytes is the effect's own.
     std::int64_t share = 0;
     for (const auto& names : {more_memory, resized})
         for (const std::string& name : names) {
@@ -152,14 +152,14 @@ TEST_P(ZeroCost, OffItHasNoPassNoBufferAndNoBytes) {
         }
     EXPECT_EQ(static_cast<std::int64_t>(total(on)) - static_cast<std::int64_t>(total(off)), share);
 
-    // And what it left is gone again.
-    const Frame again = draw(without());
+    // Afterwards everything of the effect is gone.
+    const FrameCost again = draw(without());
     EXPECT_EQ(again.memory, off.memory);
     EXPECT_EQ(again.passes, off.passes);
 }
 
-TEST_P(ZeroCost, OffNoShaderHasAnInstructionOfIt) {
-    const Frame off = draw(without()), on = draw(with());
+TEST_P(ZeroCost, HasNoShaderInstructionWhenOff) {
+    const FrameCost off = draw(without()), on = draw(with());
     for (const EffectConstant& constant : effect().constants) {
         const auto off_values = values_of(off, constant.id), on_values = values_of(on, constant.id);
         EXPECT_THAT(off_values, testing::AnyOf(testing::IsEmpty(), testing::ElementsAre(constant.off)))
@@ -170,8 +170,8 @@ TEST_P(ZeroCost, OffNoShaderHasAnInstructionOfIt) {
     const auto check = [&](const std::vector<std::string_view>& fields, const std::string& structure) {
         for (const std::string_view field : fields) {
             const std::string member = structure + "." + std::string(field);
-            EXPECT_FALSE(off_code.members.contains(member)) << member << " is read without it";
-            EXPECT_TRUE(on_code.members.contains(member)) << member << " is not read with it";
+            EXPECT_FALSE(off_code.members.contains(member)) << member << " is read without the effect";
+            EXPECT_TRUE(on_code.members.contains(member)) << member << " is not read with the effect";
         }
     };
     check(effect().frame_fields, "FrameParams");
@@ -182,7 +182,7 @@ TEST_P(ZeroCost, OffNoShaderHasAnInstructionOfIt) {
             off_total += count;
         for (const auto& [shader, count] : on_code.instructions)
             on_total += count;
-        EXPECT_LT(off_total, on_total) << "its instructions are counted";
+        EXPECT_LT(off_total, on_total) << "the effect adds no instructions";
     }
 }
 
@@ -194,7 +194,7 @@ INSTANTIATE_TEST_SUITE_P(Effects, ZeroCost, testing::Range(std::size_t{0}, effec
                              return name;
                          });
 
-TEST(PlainFrame, ReadsNoMemberThatSomeEffectCallsItsOwn) {
+TEST(PlainFrame, ReadsNoMemberOwnedByAnEffect) {
     const Code code = code_of(draw(request_for_rows()));
     for (const Effect& effect : effect_table()) {
         for (const std::string_view field : effect.frame_fields)

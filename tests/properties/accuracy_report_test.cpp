@@ -1,4 +1,4 @@
-// A whole accuracy report on a tiny scene: stopped by Ctrl-C, resumed, and made a second time: every error is the same.
+// A whole accuracy report on a tiny scene: interrupted by Ctrl-C, resumed, and repeated. All errors must be the same.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -24,7 +24,7 @@ class AccuracyReport : public CliTest {
 
     std::string journal(const std::string& folder) const { return text_of(folder_ / folder / "journal.jsonl"); }
 
-    /// Starts it, waits for a few finished measurements, and presses Ctrl-C. The exit status.
+    /// Starts the report, waits for a few finished measurements, and presses Ctrl-C. Returns the exit status.
     int interrupted(const std::string& folder) const {
         return CliTest::interrupted("accuracy " + std::string(kArguments) + " --report " + folder, [&] {
             const std::string lines = journal(folder);
@@ -32,7 +32,7 @@ class AccuracyReport : public CliTest {
         });
     }
 
-    /// The report without what may differ between two runs.
+    /// The report without the parts that may differ between two runs.
     ordered_json errors_of(const std::string& folder) const {
         ordered_json json = ordered_json::parse(text_of(folder_ / folder / "report.json"));
         json.erase("command");
@@ -48,14 +48,14 @@ class AccuracyReport : public CliTest {
     }
 };
 
-TEST_F(AccuracyReport, GoesOnAfterCtrlCAndRepeatsItsErrorsExactly) {
+TEST_F(AccuracyReport, ResumesAfterCtrlCWithExactlyTheSameErrors) {
     EXPECT_EQ(interrupted("r"), 130);
     const std::string before = journal("r");
     EXPECT_FALSE(std::filesystem::exists(folder_ / "r" / "report.json"));
 
     const ProgramRun resumed = report("r");
     ASSERT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_THAT(journal("r"), StartsWith(before)) << "something finished was done again";
+    EXPECT_THAT(journal("r"), StartsWith(before)) << "a finished measurement was repeated";
     for (const char* file : {"index.html", "report.json", "steps.csv"})
         EXPECT_TRUE(std::filesystem::exists(folder_ / "r" / file)) << file;
 
@@ -90,7 +90,7 @@ TEST_F(AccuracyReport, GoesOnAfterCtrlCAndRepeatsItsErrorsExactly) {
     EXPECT_THAT(page, HasSubstr("<svg"));
     EXPECT_THAT(page, HasSubstr("data:image/png;base64,"));
     for (const char* outside : {"src=\"http", "href=\"http", "url(", "<script", "@import"})
-        EXPECT_THAT(page, ::testing::Not(HasSubstr(outside))) << "the page must need nothing else";
+        EXPECT_THAT(page, ::testing::Not(HasSubstr(outside))) << "the page must be self-contained";
 }
 
 }  // namespace

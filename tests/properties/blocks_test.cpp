@@ -1,4 +1,4 @@
-// A volume that the device holds block by block gives the picture of the whole one.
+// A volume that the device holds block by block gives the same picture as the whole volume.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// Surfaces everywhere, across every border between blocks: those of a gyroid, bent.
+/// Surfaces everywhere, also across every border between blocks: a bent gyroid.
 VolumePointer gyroid(const glm::ivec3& dims) {
     return sampled(
         dims,
@@ -43,7 +43,7 @@ Shot gyroid_shot(const glm::ivec3& dims = {300, 28, 16}) {
     return shot;
 }
 
-/// Frees the device of a budget again, whatever the test does.
+/// Sets a memory budget, and removes it at the end of the test.
 struct Budget {
     explicit Budget(std::uint64_t bytes) { test_renderer().set_memory_budget(bytes); }
     Budget(const Budget&) = delete;
@@ -51,7 +51,7 @@ struct Budget {
     ~Budget() { test_renderer().set_memory_budget(0); }
 };
 
-/// Of all there is in a picture's forecast, what the volume's own images take.
+/// Bytes of the volume's own images in a picture's forecast.
 std::uint64_t bytes_of_images(const Shot& shot) {
     const FrameRequest request{shot.volume, shot.scene, shot.camera, shot.settings, {shot.width, shot.height}, {}};
     std::uint64_t bytes = 0;
@@ -64,7 +64,7 @@ struct Pair {
     RenderResult whole, blocks;
 };
 
-/// Whoever would rather see something at once has the volume in blocks.
+/// Draws the whole volume, and then in blocks, which a finite patience causes.
 Pair both(const Shot& shot, const AovRequest& aovs = {}) {
     Pair pair;
     pair.whole = render(shot, aovs);
@@ -76,13 +76,13 @@ Pair both(const Shot& shot, const AovRequest& aovs = {}) {
     return pair;
 }
 
-/// Within a billionth of the square of a picture's range.
+/// The mean squared difference is below a billionth of the squared range.
 void expect_equal(const Pair& pair, const char* what) {
     EXPECT_GE(compare_images(pair.blocks.color, pair.whole.color).psnr, 90) << what;
     EXPECT_GT(pair.blocks.stats.splats_collected, 10000U) << what;
 }
 
-TEST(Blocks, ArePicturesOfTheWholeInLessMemory) {
+TEST(Blocks, MatchTheWholeVolumeInLessMemory) {
     const Shot shot = gyroid_shot({300, 182, 14});
     const RenderResult whole = render(shot);
     EXPECT_FALSE(whole.stats.in_blocks);
@@ -98,12 +98,12 @@ TEST(Blocks, ArePicturesOfTheWholeInLessMemory) {
     EXPECT_EQ(blocks.stats.edge_splats, whole.stats.edge_splats);
 }
 
-TEST(Blocks, ArePicturesOfTheWholeWithEveryKindOfSplat) {
+TEST(Blocks, MatchTheWholeVolumeWithEveryKindOfSplat) {
     for (const char* what : {"march", "taylor", "paper", "plain", "sliced"}) {
         Shot shot = gyroid_shot();
         const std::string name = what;
         if (name == "march") shot.settings.edges = EdgeEstimator::March;
-        if (name == "paper") shot.settings = papers_own(shot.settings);
+        if (name == "paper") shot.settings = paper_settings(shot.settings);
         if (name == "taylor") shot.settings.edges = EdgeEstimator::Taylor;
         if (name == "plain") shot.settings.edges = EdgeEstimator::Off;
         if (name == "sliced") shot.settings.sheets = SheetCut::Sliced;
@@ -111,7 +111,7 @@ TEST(Blocks, ArePicturesOfTheWholeWithEveryKindOfSplat) {
     }
 }
 
-TEST(Blocks, ArePicturesOfTheWholeWithEffects) {
+TEST(Blocks, MatchTheWholeVolumeWithEffects) {
     Shot cut = gyroid_shot();
     cut.scene.effects.clip.keep.push_back({cut.volume->geometry.to_world({129, 0, 0}), {1, 0.2, 0.1}});
     expect_equal(both(cut), "clip");
@@ -124,7 +124,7 @@ TEST(Blocks, ArePicturesOfTheWholeWithEffects) {
     EXPECT_GE(compare_images(*tau.blocks.tau, *tau.whole.tau).psnr + 20 * std::log10(range), 90);
 }
 
-/// A rod of five blocks with a wall across its beginning and surfaces everywhere behind it.
+/// A rod of five blocks with a wall across its beginning, and surfaces everywhere behind it.
 Shot walled_rod() {
     Shot shot;
     const auto behind = gyroid({20, 20, 600});
@@ -139,19 +139,19 @@ Shot walled_rod() {
     return shot;
 }
 
-TEST(Blocks, BehindWhatIsOpaqueAreLeftOut) {
-    // Rays find no faces in blocks.
+TEST(Blocks, AreSkippedIfOccluded) {
+    // In blocks, rays find no faces.
     Shot shot = walled_rod();
     shot.settings.edges = EdgeEstimator::March;
     const Pair before = both(shot);
     EXPECT_EQ(before.blocks.stats.blocks, 5U);
     EXPECT_EQ(before.blocks.stats.blocks_held, 1U);
     EXPECT_LT(before.blocks.stats.splats_collected, before.whole.stats.splats_collected / 3);
-    // A pixel that is full stops where the blocks in front end, too.
+    // A saturated pixel may stop earlier, at the end of the front blocks.
     EXPECT_GE(compare_images(before.blocks.color, before.whole.color).psnr, 80);
     EXPECT_GE(std::ranges::min(before.whole.color.pixels), 0.0F);
 
-    // Beside the wall one sees past it, and from the other end whatever that end does not hide.
+    // Beside the wall everything behind it is visible; from the other end, everything that end does not occlude.
     Shot beside = shot;
     beside.camera = look(*shot.volume, {60, 9.5, -60}, {9.5, 9.6, 100}, 60);
     const Pair past = both(beside);
@@ -163,7 +163,7 @@ TEST(Blocks, BehindWhatIsOpaqueAreLeftOut) {
     EXPECT_GE(compare_images(other.blocks.color, other.whole.color).psnr, 90);
 }
 
-TEST(Blocks, AreAllThereForWhatNeedsThem) {
+TEST(Blocks, AreAllCollectedIfNeeded) {
     Shot unsaturated = walled_rod();
     unsaturated.settings.saturation = 1;
     EXPECT_EQ(both(unsaturated).blocks.stats.blocks_held, 5U);
@@ -176,7 +176,7 @@ TEST(Blocks, AreAllThereForWhatNeedsThem) {
     EXPECT_EQ(both(clear).blocks.stats.blocks_held, 5U);
 }
 
-/// Deleted when done with.
+/// Deleted at the end of the test.
 struct PackedFile {
     explicit PackedFile(const Volume& volume) { pack_volume(volume, path); }
     PackedFile(const PackedFile&) = delete;
@@ -185,7 +185,7 @@ struct PackedFile {
     std::string path = testing::TempDir() + "blocks_test_" + std::to_string(::getpid()) + ".esv";
 };
 
-TEST(Blocks, FromAFileArePicturesOfTheVolumeInMemory) {
+TEST(Blocks, FromAFileMatchTheVolumeInMemory) {
     Shot shot = gyroid_shot();
     const RenderResult whole = render(shot);
     const PackedFile file(*shot.volume);
@@ -195,7 +195,7 @@ TEST(Blocks, FromAFileArePicturesOfTheVolumeInMemory) {
     EXPECT_TRUE(packed.stats.in_blocks && packed.stats.complete);
     expect_equal({whole, packed}, "packed");
     EXPECT_EQ(packed.stats.splats_collected, whole.stats.splats_collected);
-    // In far less memory a coarser level is drawn, and said to be.
+    // With far less memory a coarser level is drawn and reported.
     std::uint64_t bytes = packed.stats.device_bytes;
     RenderResult coarser = packed;
     for (; coarser.stats.level == 0 && bytes > packed.stats.device_bytes / 4; bytes -= bytes / 10) {
@@ -210,7 +210,7 @@ TEST(Blocks, FromAFileArePicturesOfTheVolumeInMemory) {
     EXPECT_THROW(render(shot), Error);
 }
 
-TEST(Blocks, AreHeldAsFarAsThePictureShowsThem) {
+TEST(Blocks, AreHeldIfVisible) {
     Shot shot = gyroid_shot();
     shot.camera = look(*shot.volume, {30, 12, 60}, {30, 12, 0}, 30);
     const Pair corner = both(shot);
@@ -219,7 +219,7 @@ TEST(Blocks, AreHeldAsFarAsThePictureShowsThem) {
     EXPECT_LT(corner.blocks.stats.splats_collected, corner.whole.stats.splats_collected / 2);
 }
 
-TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
+TEST(Blocks, AreFreedIfNoLongerVisible) {
     Shot shot = gyroid_shot({900, 28, 16});
     const std::array<double, 4> places = {30, 330, 630, 898};
     const auto at = [&](double x) {
@@ -231,8 +231,8 @@ TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
     for (std::size_t i = 0; i < places.size(); ++i)
         roomy[i] = at(places[i]);
     const std::uint64_t most = roomy.back().stats.blocks_held;
-    EXPECT_GE(most, 4U) << "there is room for more than is shown";
-    // The smallest budget in which these pictures are drawn at all is between half of it and all.
+    EXPECT_GE(most, 4U) << "there is room for more than the visible blocks";
+    // The smallest budget for these pictures is between half of this and all of it.
     std::uint64_t fewest = most;
     for (double share = 0.95; share > 0.5; share -= 0.05) {
         SCOPED_TRACE(share);
@@ -242,7 +242,7 @@ TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
             try {
                 const RenderResult again = at(places[i]);
                 EXPECT_LE(again.stats.device_bytes, bytes);
-                // Where a ray but touches a face, rounding decides: a pixel or two.
+                // If a ray barely touches a face, rounding decides: one or two pixels may differ.
                 EXPECT_GE(compare_images(again.color, roomy[i].color).psnr, 65);
                 fewest = std::min(fewest, again.stats.blocks_held);
             } catch (const Error& refused) {
@@ -253,17 +253,17 @@ TEST(Blocks, ThatAreNoLongerShownMakeRoom) {
     test_renderer().set_patience(std::numeric_limits<double>::infinity());
 }
 
-/// A rod of eight blocks along x, seen from `distance`: one block from nearby, all from afar.
+/// A rod of eight blocks along x, seen from `distance`: one block from nearby, all from far away.
 Shot long_shot(double x, double distance) {
     static const VolumePointer volume = gyroid({900, 28, 16});
     Shot shot = gyroid_shot({20, 20, 16});
     shot.volume = volume;
-    shot.settings.saturation = 1;  // no block hides another
+    shot.settings.saturation = 1;  // no block occludes another
     shot.camera = look(*volume, {x, 12, distance}, {x, 12, 0}, 30);
     return shot;
 }
 
-/// After `ends_early` has drawn the whole rod and come as far as its second block, that block is seen.
+/// After `ends_early` has started the whole rod and collected its second block, that block is drawn.
 void expect_second_block_after(const std::function<void(const Shot&)>& ends_early) {
     test_renderer().set_patience(1e9);
     EXPECT_EQ(render(long_shot(30, 60)).stats.blocks_held, 1U);
@@ -277,14 +277,14 @@ void expect_second_block_after(const std::function<void(const Shot&)>& ends_earl
     EXPECT_GE(compare_images(blocks.color, render(second).color).psnr, 90);
 }
 
-TEST(Blocks, OfAPictureThatWasNotFinishedAreSeenInTheNext) {
+TEST(Blocks, AreKeptAfterAnUnfinishedPicture) {
     expect_second_block_after([](const Shot& all) {
         test_renderer().set_patience(0);
         EXPECT_FALSE(render(all).stats.complete);
     });
 }
 
-TEST(Blocks, OfAnInterruptedPictureAreSeenInTheNext) {
+TEST(Blocks, AreKeptAfterAnInterruptedPicture) {
     expect_second_block_after([](const Shot& all) {
         int asked = 0;
         test_renderer().set_interruption([&] { return ++asked > 1; });
@@ -293,7 +293,7 @@ TEST(Blocks, OfAnInterruptedPictureAreSeenInTheNext) {
     });
 }
 
-TEST(Blocks, StandInCoarselyUntilTheyAreThere) {
+TEST(Blocks, AreReplacedByACoarserLevelUntilCollected) {
     const Shot shot = gyroid_shot();
     const RenderResult whole = render(shot);
     test_renderer().set_patience(0);
@@ -302,17 +302,17 @@ TEST(Blocks, StandInCoarselyUntilTheyAreThere) {
         shown.push_back(render(shot));
     while (!shown.back().stats.complete && shown.size() < 10);
     test_renderer().set_patience(std::numeric_limits<double>::infinity());
-    ASSERT_EQ(shown.size(), 3U) << "a block a picture";
+    ASSERT_EQ(shown.size(), 3U) << "one block per picture";
     EXPECT_EQ(shown[0].stats.level, 1);
     EXPECT_EQ(shown[0].stats.wanted_level, 0);
     EXPECT_EQ(shown[2].stats.level, 0);
     EXPECT_EQ(shown[2].stats.validation_messages, 0U);
-    EXPECT_GE(compare_images(shown[0].color, whole.color).psnr, 15) << "something like it";
+    EXPECT_GE(compare_images(shown[0].color, whole.color).psnr, 15) << "similar to the whole picture";
     EXPECT_GE(compare_images(shown.back().color, whole.color).psnr, 90);
-    EXPECT_EQ(compare_images(shown[0].color, shown[1].color).rmse, 0) << "what stands in stands still";
+    EXPECT_EQ(compare_images(shown[0].color, shown[1].color).rmse, 0) << "the coarse picture does not change";
 }
 
-/// Radius minus distance from the middle of 384^3 voxels, as its file would tell: bounds only.
+/// Radius minus distance from the middle of 384^3 voxels, as a file source with bounds only.
 class Ball : public SampleSource {
   public:
     Ball() { geometry_.dims = glm::ivec3(384); }
@@ -335,7 +335,7 @@ Scene ball_scene(double iso) {
     return scene;
 }
 
-TEST(Blocks, ThatAreTransparentOrBuriedHoldNothing) {
+TEST(Blocks, AreEmptyIfTransparentOrBuried) {
     const Ball ball;
     Volume outline;
     outline.geometry = ball.geometry();
@@ -347,18 +347,18 @@ TEST(Blocks, ThatAreTransparentOrBuriedHoldNothing) {
         return blocks_with_splats(ball, outline, plan).size();
     };
     EXPECT_EQ(blocks(130, true), 27U);
-    EXPECT_EQ(blocks(130, false), 26U) << "the middle one is buried";
-    EXPECT_EQ(blocks(60, false), 1U) << "the ball lies in the middle one";
+    EXPECT_EQ(blocks(130, false), 26U) << "the middle block is buried";
+    EXPECT_EQ(blocks(60, false), 1U) << "the ball lies in the middle block";
 }
 
-TEST(Levels, AreAsCoarseAsPixelsAreWide) {
+TEST(Levels, MatchTheWidthOfPixels) {
     VolumeGeometry g;
     g.dims = {100, 100, 100};
     Camera camera;
     camera.direction = {0, 0, -1};
     camera.up = {0, 1, 0};
     camera.fov_y = 90;
-    // At distance 256 of a picture of 512 pixels a mm is a pixel.
+    // At distance 256 a pixel of a picture of 512 pixels is 1 mm wide.
     const auto level_at = [&](double distance, double pixels) {
         camera.eye = {50, 50, 99 + distance};
         return level_for(g, 4, camera, {640, 512}, pixels);
@@ -374,30 +374,30 @@ TEST(Levels, AreAsCoarseAsPixelsAreWide) {
     EXPECT_EQ(level_at(-500, 1), 0);
 }
 
-TEST(Levels, HaveNoMoreVoxelsThanASplatCanNumber) {
+TEST(Levels, HaveVoxelNumbersThatFitASplat) {
     VolumeGeometry g;
     g.dims = {1 << 16, 1 << 15, 2};  // 2^32
     EXPECT_EQ(countable_level(g, 4, 0), 0);
-    EXPECT_EQ(countable_level(g, 4, 2), 2) << "what is asked for is fine enough";
+    EXPECT_EQ(countable_level(g, 4, 2), 2) << "the requested level is coarse enough";
     g.dims.z = 3;
     EXPECT_EQ(countable_level(g, 4, 0), 1);
-    g.dims = {1 << 20, 1 << 14, 1 << 6};  // 2^40, the most that a packed volume has
+    g.dims = {1 << 20, 1 << 14, 1 << 6};  // 2^40, the maximum of a packed volume
     EXPECT_EQ(countable_level(g, 4, 0), 3);
-    EXPECT_EQ(countable_level(g, 3, 0), 3) << "no level of the three";
+    EXPECT_EQ(countable_level(g, 3, 0), 3) << "none of the three levels";
 }
 
-TEST(Levels, KeepPlacesAndMeans) {
+TEST(Levels, KeepPositionsAndMeans) {
     const auto volume = sampled(
         {37, 20, 9}, [](const glm::dvec3& p) { return 2 * p.x - 3 * p.y + 5 * p.z; },
         glm::dmat3(glm::dvec3(1, 0.1, 0), glm::dvec3(0, 2, 0), glm::dvec3(0.2, 0, 3)));
     const Volume half = halved(*volume);
     EXPECT_EQ(half.geometry.dims, glm::ivec3(19, 10, 5));
     for (const glm::ivec3 p : {glm::ivec3(0), glm::ivec3(17, 9, 3), glm::ivec3(4, 2, 1)}) {
-        // A linear field's mean is its value at the centre.
+        // The mean of a linear field is its value at the centre.
         const glm::dvec3 at = volume->geometry.to_index(half.geometry.to_world(p));
         EXPECT_NEAR(half.at(p.x, p.y, p.z), 2 * at.x - 3 * at.y + 5 * at.z, 1e-5);
     }
-    // At an odd end the mean is over what there is.
+    // At an odd end the mean is over the existing samples.
     EXPECT_NEAR(half.at(18, 0, 0), 2 * 36 - 3 * 0.5 + 5 * 0.5, 1e-5);
     EXPECT_EQ(half.min_value, volume->min_value);
     EXPECT_EQ(level_geometry(volume->geometry, 1).origin, half.geometry.origin);
@@ -417,7 +417,7 @@ TEST(Levels, ShowTheSameSurfaceCoarser) {
     EXPECT_EQ(coarse.stats.level, 1);
     EXPECT_LT(coarse.stats.splats_collected * 3, 40U * 40U * 13U * 12U);
     EXPECT_GE(compare_images(coarse.color, fine).psnr, 32);
-    // Another scene, and the levels of the one before are not those of this one.
+    // In a picture of the full volume again, no coarse level is reused.
     shot.settings.detail = 0;
     EXPECT_EQ(compare_images(render(shot).color, fine).rmse, 0);
 }

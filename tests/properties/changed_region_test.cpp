@@ -1,5 +1,5 @@
-// A volume that differs from the one before in a box: what is found again, and that it is what would be found from
-// scratch.
+// A volume that differs from the previous one within a box: which edges are estimated again, and that the result equals
+// one from scratch.
 #include <gtest/gtest.h>
 
 #include "engine/volume/changed_box.h"
@@ -12,7 +12,7 @@ Renderer own_renderer() {
     return Renderer({.device = test_renderer().device().name, .validation = true});
 }
 
-/// A torus in n^3 voxels, opaque in a translucent shell.
+/// An opaque torus in a translucent shell, in n^3 voxels.
 Shot torus_of(int n) {
     Shot shot = torus_shot();
     const glm::dvec3 middle(0.47 * n);
@@ -21,7 +21,7 @@ Shot torus_of(int n) {
     return shot;
 }
 
-/// With a ball of radius `radius` voxels around `center` of another value.
+/// The volume with a ball of `radius` voxels around `center` set to `value`.
 std::shared_ptr<Volume> with_ball(const Volume& volume, const glm::dvec3& center, double radius, float value) {
     auto out = std::make_shared<Volume>(volume);
     const glm::ivec3 dims = volume.geometry.dims;
@@ -55,7 +55,7 @@ struct Change {
     float value;
 };
 
-TEST(ChangedRegion, PicturesAreThoseFromScratch) {
+TEST(ChangedRegion, MatchesPicturesFromScratch) {
     Shot shot = torus_of(48);
     for (const EdgeEstimator edges :
          {EdgeEstimator::March, EdgeEstimator::Taylor, EdgeEstimator::Cubic, EdgeEstimator::Off}) {
@@ -83,7 +83,7 @@ TEST(ChangedRegion, PicturesAreThoseFromScratch) {
             const RenderResult whole = picture(fresh, shot, settings);
             expect_same(changed, whole);
             EXPECT_GT(changed.stats.setup_milliseconds, 0);
-            EXPECT_FALSE(changed.color.pixels == before.color.pixels) << "nothing to see";
+            EXPECT_FALSE(changed.color.pixels == before.color.pixels) << "the change is invisible";
             before = changed;
             EXPECT_EQ(changed.stats.validation_messages, 0U);
             if (edges == EdgeEstimator::Cubic || edges == EdgeEstimator::Off) continue;
@@ -94,7 +94,7 @@ TEST(ChangedRegion, PicturesAreThoseFromScratch) {
     }
 }
 
-TEST(ChangedRegion, SeveralChangesBeforeAPictureAreAllSeen) {
+TEST(ChangedRegion, AppliesSeveralChangesBeforeAPicture) {
     const Shot shot = torus_of(48);
     Renderer renderer = own_renderer();
     renderer.set_volume(shot.volume);
@@ -106,13 +106,13 @@ TEST(ChangedRegion, SeveralChangesBeforeAPictureAreAllSeen) {
     Renderer fresh = own_renderer();
     fresh.set_volume(twice);
     expect_same(picture(renderer, shot, {}), picture(fresh, shot, {}));
-    // With a scene of its own as well, what changed counts too.
+    // With another scene at the same time, the change counts, too.
     Shot other = shot;
     other.scene.iso_values = {0.25, 0.6};
     renderer.set_volume(shot.volume);
     fresh.set_volume(shot.volume);
     expect_same(picture(renderer, other, {}), picture(fresh, other, {}));
-    // And rays.
+    // Also with rays.
     renderer.raycast(shot.scene, shot.camera, {}, {.filter = RaycastFilter::Cubic}, 64, 48);
     renderer.set_volume(once);
     Renderer rays = own_renderer();
@@ -123,7 +123,7 @@ TEST(ChangedRegion, SeveralChangesBeforeAPictureAreAllSeen) {
     expect_same(picture(renderer, shot, {}), picture(rays, shot, {}));
 }
 
-TEST(ChangedRegion, NothingIsFoundAgainForTheSameSamples) {
+TEST(ChangedRegion, EstimatesNothingForTheSameSamples) {
     const Shot shot = torus_of(32);
     Renderer renderer = own_renderer();
     renderer.set_volume(shot.volume);
@@ -136,8 +136,8 @@ TEST(ChangedRegion, NothingIsFoundAgainForTheSameSamples) {
     expect_same(first, again);
 }
 
-/// Rays that find faces need the field when all splats are collected, too.
-TEST(ChangedRegion, FacesThatRaysFindAreTheSameForTheSameSamples) {
+/// Rays that find faces need the field even if all splats are already collected.
+TEST(ChangedRegion, KeepsTracedFacesForTheSameSamples) {
     Shot shot = torus_of(32);
     shot.volume = std::make_shared<const Volume>(builtin_volume("builtin:gyroid:32"));
     shot.scene.iso_values = builtin_scene("builtin:gyroid:32").iso_values;
@@ -152,7 +152,7 @@ TEST(ChangedRegion, FacesThatRaysFindAreTheSameForTheSameSamples) {
     expect_same(first, again);
 }
 
-TEST(ChangedRegion, AnotherRangeOrGridIsAnotherVolume) {
+TEST(ChangedRegion, TreatsAnotherRangeOrGridAsANewVolume) {
     const Shot shot = torus_of(24);
     auto brighter = with_ball(*shot.volume, {12, 12, 12}, 1, shot.volume->max_value + 1);
     EXPECT_FALSE(changed_box(*shot.volume, *brighter));

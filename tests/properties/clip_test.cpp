@@ -1,4 +1,4 @@
-// Clip planes and boxes: where the cut lies, what is left of matter, and numbers wherever the planes and the eye are.
+// Clip planes and boxes: position of the cut, remaining matter, and finite numbers for every plane and eye.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -32,7 +32,7 @@ std::vector<Plane> box(const glm::dvec3& low, const glm::dvec3& high) {
             {high, {1, 0, 0}}, {high, {0, 1, 0}}, {high, {0, 0, 1}}};
 }
 
-/// Voxels of the line through `at` along u (unit) that lie in the ball and are kept.
+/// Length in voxels of the line through `at` along u (unit) that lies in the ball and is kept.
 double kept_chord(const Clip& clip, const glm::dvec3& at, const glm::dvec3& u) {
     const glm::dvec3 p = at - glm::dot(at - kMiddle, u) * u;  // nearest to the middle
     const double half2 = kBall * kBall - glm::dot(p - kMiddle, p - kMiddle);
@@ -44,7 +44,7 @@ double kept_chord(const Clip& clip, const glm::dvec3& at, const glm::dvec3& u) {
     return sum;
 }
 
-/// Ray of a pixel, world = index.
+/// The ray of a pixel; world = index.
 glm::dvec3 ray_of(const Shot& shot, double x, double y) {
     const CameraFrame f = camera_frame(shot.camera);
     const double sx = (2 * (x + 0.5) / shot.width - 1) * f.tan_half_y * shot.width / shot.height;
@@ -52,7 +52,7 @@ glm::dvec3 ray_of(const Shot& shot, double x, double y) {
     return glm::normalize(f.forward + sx * f.right + sy * f.up);
 }
 
-/// x where a row falls through `level` for the last time, pixels; linear between pixels.
+/// The last x, in pixels, where a row falls below `level`; linear between pixels.
 double last_crossing(const std::vector<double>& row, double level) {
     for (std::size_t x = row.size() - 1; x-- > 0;)
         if (row[x] >= level && row[x + 1] < level)
@@ -60,8 +60,8 @@ double last_crossing(const std::vector<double>& row, double level) {
     return NAN;
 }
 
-/// The ball cut by a plane of normal n through its middle + shift n, seen at `degrees` to the plane from the side that
-/// is cut away; screen +x points across the rim that lies furthest.
+/// The ball cut by a plane of normal n through its middle + shift n, seen at `degrees` to the plane from the removed
+/// side. Screen +x points across the furthest rim.
 Shot cut_ball(const glm::dvec3& n, const glm::dvec3& along, double shift, double degrees, double pixels_per_voxel) {
     Shot shot;
     shot.volume = ball();
@@ -76,9 +76,9 @@ Shot cut_ball(const glm::dvec3& n, const glm::dvec3& along, double shift, double
     return shot;
 }
 
-// Half of the light is gone where the ray passes ln 2 / sigma of matter: both sides of the comparison.
-TEST(Clip, TheCutLiesWhereThePlaneDoesAtEveryAngle) {
-    constexpr double kScale = 8;  // pixels a voxel
+// Both sides of the comparison use half opacity: the ray has passed ln 2 / sigma of matter.
+TEST(Clip, CutsAtThePlaneAtEveryAngle) {
+    constexpr double kScale = 8;  // pixels per voxel
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         for (const double degrees : {0.0, 10.0, 45.0, 80.0}) {
             std::vector<double> errors;
@@ -138,7 +138,7 @@ TEST(Clip, HalfABallAbsorbsByItsChord) {
     }
 }
 
-/// A uniform block, 24 voxels wide; its tau per voxel of chord.
+/// A uniform block, 24 voxels wide, to measure tau per voxel of chord.
 Shot block(double extinction = 0.05) {
     static const VolumePointer volume = sampled(glm::ivec3(24), [](const glm::dvec3&) { return 1.0; });
     Shot shot;
@@ -149,7 +149,7 @@ Shot block(double extinction = 0.05) {
     return shot;
 }
 
-// Only sums of kernels between planes: the kernel's own ripple is what is left.
+// Only sums of kernels between planes: the remaining error is the kernel's own ripple.
 TEST(Clip, SlabsBetweenPlanesHaveTheirThickness) {
     double worst = 0;
     int rays = 0;
@@ -186,7 +186,7 @@ TEST(Clip, SlabsBetweenPlanesHaveTheirThickness) {
     EXPECT_GT(rays, 200);
 }
 
-TEST(Clip, WhatCutsNothingChangesNothing) {
+TEST(Clip, PlanesOutsideTheVolumeChangeNothing) {
     Shot shot = torus_shot();
     shot.width = shot.height = 48;
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
@@ -204,14 +204,14 @@ TEST(Clip, WhatCutsNothingChangesNothing) {
     }
 }
 
-TEST(Clip, WhereEverythingIsCutThereIsBackground) {
+TEST(Clip, ShowsTheBackgroundIfEverythingIsCut) {
     Shot shot = torus_shot();
     shot.width = shot.height = 32;
     shot.scene.background = {0.25, 0.5, 0.75};
     std::vector<Clip> clips(4);
     clips[0].keep = {beyond({0, 0, -20}, {0, 0, 1})};
     clips[1].remove = box(glm::dvec3(-9), glm::dvec3(50));
-    clips[2].keep = {beyond({0, 0, 8}, {0, 0, 1}), beyond({0, 0, 9}, {0, 0, -1})};  // nothing is on both near sides
+    clips[2].keep = {beyond({0, 0, 8}, {0, 0, 1}), beyond({0, 0, 9}, {0, 0, -1})};  // no point is on both near sides
     clips[3].remove = {beyond({0, 0, 90}, {0, 0, 1})};
     for (const Clip& clip : clips) {
         shot.scene.effects.clip = clip;
@@ -232,7 +232,7 @@ TEST(Clip, MirroredScenesGiveMirroredPictures) {
     shot.scene.lights = {Light{}};
     shot.camera = look(*shot.volume, {11.5, -60, 11.5}, glm::dvec3(11.5), 30, {0, 0, 1});
     shot.width = shot.height = 64;
-    // Between voxels, and through them.
+    // Between voxels, and through voxels.
     for (const double at : {11.5, 12.0, 15.0}) {
         shot.scene.effects.clip.keep = {beyond({at, 11.5, 11.5}, {1, 0.4, 0})};
         const Image right = render(shot).color;
@@ -270,7 +270,7 @@ TEST(Clip, TheCutIsLitByItsOwnNormal) {
     }
 }
 
-TEST(Clip, AwkwardPlacesGiveNumbers) {
+TEST(Clip, GivesFiniteNumbersForExtremePlanesAndEyes) {
     struct Place {
         const char* name;
         glm::dvec3 eye, towards;
@@ -281,8 +281,8 @@ TEST(Clip, AwkwardPlacesGiveNumbers) {
         {"eye on the plane, looking along it", m, {1, 0, 0}, {m, {0, 0, 1}}},
         {"eye on the plane, looking at it", m, {0, 0, 1}, {m, {0, 0, 1}}},
         {"eye on the plane, looking away", m, {0, 0, -1}, {m, {0, 0, 1}}},
-        {"eye in what is cut away", m + glm::dvec3(0, 0, 3), {0.1, 0, -1}, {m, {0, 0, 1}}},
-        {"eye in what is kept", m - glm::dvec3(0, 0, 3), {0.1, 0, 1}, {m, {0, 0, 1}}},
+        {"eye in the removed region", m + glm::dvec3(0, 0, 3), {0.1, 0, -1}, {m, {0, 0, 1}}},
+        {"eye in the kept region", m - glm::dvec3(0, 0, 3), {0.1, 0, 1}, {m, {0, 0, 1}}},
         {"plane across the view", m + glm::dvec3(0, 0, 40), {0, 0, -1}, {m, {0, 0, 1}}},
         {"plane along the view", m + glm::dvec3(0, 0, 40), {0, 0, -1}, {m, {1, 0, 0}}},
         {"normal very long", m + glm::dvec3(0, 0, 40), {0, 0, -1}, {m, {1e100, 1e100, 0}}},
@@ -316,8 +316,8 @@ TEST(Clip, AwkwardPlacesGiveNumbers) {
     }
 }
 
-// From the plane itself the ray's matter begins at the eye.
-TEST(Clip, AnEyeOnThePlaneSeesTheWholeRestOfTheRay) {
+// From the plane itself, the ray's matter begins at the eye.
+TEST(Clip, ShowsTheRestOfTheRayFromAnEyeOnThePlane) {
     Shot shot = block();
     const glm::dvec3 eye(11.5, 11.2, 9.3);
     shot.scene.effects.clip.keep = {beyond(eye, {0, 0, 1})};
@@ -330,8 +330,8 @@ TEST(Clip, AnEyeOnThePlaneSeesTheWholeRestOfTheRay) {
             EXPECT_NEAR(static_cast<double>(tau.at(x, y, 0)) * std::abs(ray_of(shot, x, y).z), 0.05 * 9.8, 5e-4);
 }
 
-// Anisotropic, oblique, left-handed: planes are given in the world.
-TEST(Clip, PlanesLieInTheWorldWhateverTheGrid) {
+// Anisotropic, oblique, left-handed grid: planes are given in world space.
+TEST(Clip, PlanesAreInWorldSpaceForEveryGrid) {
     const glm::dmat3 oblique(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 2.7));
     Shot shot = block();
     shot.volume = placed(shot.volume, oblique, {-40, 12, 7});
@@ -350,7 +350,7 @@ TEST(Clip, PlanesLieInTheWorldWhateverTheGrid) {
     }
 }
 
-TEST(Clip, PlanesMoveWithoutANewCollectionWhereNothingIsBuried) {
+TEST(Clip, PlanesMoveWithoutRecollectionIfNothingIsBuried) {
     Shot shot;
     shot.volume = ball();
     shot.scene = two_tone(0, 0.1);
@@ -359,7 +359,7 @@ TEST(Clip, PlanesMoveWithoutANewCollectionWhereNothingIsBuried) {
     const auto first = render(shot).stats;
     shot.scene.effects.clip.keep[0].point.z += 1;
     EXPECT_EQ(render(shot).stats.setup_milliseconds, 0);
-    // In opaque matter the cut lays bare what was buried.
+    // In opaque matter the cut exposes buried voxels.
     shot.scene.materials[1].extinction = 3;
     render(shot);
     shot.scene.effects.clip.keep[0].point.z -= 2;

@@ -1,4 +1,4 @@
-// Sliced sheets go to the model itself: to its direct evaluation, picture by picture and frame by frame.
+// Sliced sheets converge to the model: to its direct evaluation, picture by picture and frame by frame.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ void orbit(Shot& shot, double degrees) {
     shot.camera = look(*shot.volume, middle + far * glm::dvec3(std::cos(angle), std::sin(angle), 0.45), middle, 38);
 }
 
-/// The model, good to 2e-5 of full scale: a fiftieth of the smallest limit below.
+/// The model with an error of 2e-5 of full scale: a fiftieth of the smallest limit below.
 Image model(const reference::PreparedVolume& prepared, const Shot& shot) {
     reference::DirectOptions options;
     options.tolerance = 2e-5;
@@ -61,9 +61,8 @@ TEST(Convergence, HalvingTheSheetsQuartersTheError) {
             shot.settings.sheet_spacing = spacing;
             const double rms = image_error(render(shot).color, expected).rms;
             line += fmt::format(" {}: {:.4f} %", spacing, 100 * rms);
-            // Within a sheet only the order of what is in it is lost, and its light: the mean of both errs in the
-            // second order. Thick sheets are not yet there, the thinnest come down to what the reference is good
-            // to.
+            // A sheet only loses the order and the light of its content, by using means: the error is of second order.
+            // Thick sheets have not converged yet; the thinnest reach the reference's own error.
             if (before > 4e-4) {
                 EXPECT_GE(before / rms, spacing == 0.5 ? 2.6 : 3.2) << name << " at " << spacing;
             }
@@ -74,7 +73,7 @@ TEST(Convergence, HalvingTheSheetsQuartersTheError) {
     }
 }
 
-TEST(Convergence, ThinSheetsAreTheModelToATenthOfAPercent) {
+TEST(Convergence, ThinSheetsMatchTheModelToATenthOfAPercent) {
     for (const auto& [name, extinction] :
          {std::pair{"cube-hole", 2.0}, std::pair{"torus", 1.0}, std::pair{"shell", 1.5}, std::pair{"orbital", 0.6}}) {
         Shot shot = builtin(name, glm::ivec3(20), extinction, 32);
@@ -84,22 +83,22 @@ TEST(Convergence, ThinSheetsAreTheModelToATenthOfAPercent) {
         const Image expected = model(prepared, shot), got = render(shot).color;
         const double rms = image_error(got, expected).rms;
         std::printf("%s: %.4f %% rms\n", name, 100 * rms);
-        EXPECT_LE(rms, 2e-4) << name;  // measured 4e-5 to 1.4e-4; a tenth of a percent is what is asked of them
+        EXPECT_LE(rms, 2e-4) << name;  // measured 4e-5 to 1.4e-4; the requirement is a tenth of a percent
         EXPECT_GT(evenness(got).variation, 0.1) << name << ": an empty picture shows nothing";
     }
 }
 
-TEST(Convergence, TheEyeInsideTheVolume) {
+TEST(Convergence, HoldsWithTheEyeInsideTheVolume) {
     Shot shot = builtin("sphere", glm::ivec3(16), 0.3, 24);
     shot.settings.sheet_spacing = 0.125;
     const reference::PreparedVolume prepared(*shot.volume, shot.scene, shot.settings, true);
     shot.camera = look(*shot.volume, {6.3, 7.2, 8.1}, {12, 9, 7}, 80);
     const double rms = image_error(render(shot).color, model(prepared, shot)).rms;
     std::printf("inside: %.4f %% rms\n", 100 * rms);
-    EXPECT_LE(rms, 8e-4);  // near by a sheet of 1/8 voxel is many pixels deep
+    EXPECT_LE(rms, 8e-4);  // nearby, a sheet of 1/8 voxel is many pixels deep
 }
 
-/// RMS of (method's change - model's change) from frame to frame.
+/// RMS of (change of the method - change of the model) from frame to frame.
 TEST(Popping, SlicedSheetsDoNotPop) {
     constexpr int kFrames = 3;
     for (const auto& [name, dims, extinction] :
@@ -122,7 +121,7 @@ TEST(Popping, SlicedSheetsDoNotPop) {
         RecordProperty(std::string(name) + "_whole_percent", std::to_string(100 * of_whole.max_difference));
         std::printf("%s: popping, sheets of .125: sliced %.4f %%, whole %.4f %%\n", name,
                     100 * of_sliced.max_difference, 100 * of_whole.max_difference);
-        // A tenth of a percent is what is asked; whole kernels in as thin sheets come to that on the sphere, too.
+        // The requirement is a tenth of a percent; on the sphere, whole kernels in equally thin sheets reach it, too.
         EXPECT_LE(of_sliced.max_difference, 2.5e-4) << name;
         EXPECT_LT(of_sliced.max_difference, of_whole.max_difference / 10) << name;
     }

@@ -1,4 +1,4 @@
-// Volumes and cameras at the end of what is allowed: every pixel is a number, and alpha an opacity.
+// Volumes and cameras at the limits: every pixel is finite, and alpha is within [0, 1].
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,12 +14,13 @@ namespace {
 constexpr float kHuge = 1e9F;
 constexpr AovRequest kAll{true, true, true, true};
 
-/// Renders with all outputs; finite, colours and alpha within [0, 1].
+/// Renders with all outputs; expects finite values, colours and alpha within [0, 1].
 RenderResult expect_sound(const Shot& shot, const std::string& what) {
     RenderResult result = render(shot, kAll);
     EXPECT_TRUE(within(result.color, 0, 1.0001F)) << what;
     EXPECT_TRUE(within(*result.tau, 0, kHuge)) << what << ": tau";
-    // z of a voxel whose kernel reaches in front of the eye: at worst R = 1.6 voxels behind it (2 mm at 1 mm a voxel).
+    // z of a voxel behind the eye: at most R = 1.6 voxels behind it (2 mm at 1 mm per voxel), since its kernel reaches
+    // in front of it.
     EXPECT_TRUE(within(*result.depth, -2, kHuge)) << what << ": depth";
     EXPECT_TRUE(within(*result.normal, -1.0001F, 1.0001F)) << what << ": normal";
     EXPECT_TRUE(within(*result.distance, -4, 4)) << what << ": distance";
@@ -33,7 +34,7 @@ double mean_alpha(const Image& color) {
     return sum * 4 / static_cast<double>(color.pixels.size());
 }
 
-TEST(Degenerate, SamplesThatAreNoNumbers) {
+TEST(Degenerate, NonFiniteSamples) {
     Shot shot = torus_shot();
     const auto volume = std::make_shared<Volume>(*shot.volume);
     for (std::size_t i = 0; i < volume->values.size(); i += 37)
@@ -50,7 +51,7 @@ TEST(Degenerate, SamplesThatAreNoNumbers) {
     EXPECT_EQ(mean_alpha(expect_sound(shot, "nothing but NaN").color), 0);
 }
 
-TEST(Degenerate, EyesInAwkwardPlaces) {
+TEST(Degenerate, ExtremeEyePositions) {
     const glm::dvec3 ring = glm::dvec3(14.3, 13.6, 9.4) + glm::dvec3(0, -8.2, 0);  // the tube's middle
     struct Place {
         const char* name;
@@ -76,7 +77,7 @@ TEST(Degenerate, EyesInAwkwardPlaces) {
     }
 }
 
-TEST(Degenerate, FromFarAwayThroughATinyAngle) {
+TEST(Degenerate, DistantEyesWithATinyAngle) {
     Shot shot = torus_shot();
     shot.width = shot.height = 64;
     const glm::dvec3 target(14.3, 13.6, 9.4), way = glm::normalize(glm::dvec3(0.2, 1, -0.8));
@@ -87,7 +88,7 @@ TEST(Degenerate, FromFarAwayThroughATinyAngle) {
     const Image near = seen_from(1e4);
     const Image far = seen_from(1e5);
     EXPECT_GT(mean_alpha(near), 0.1);
-    EXPECT_GE(compare_images(near, far).psnr, 40) << "both are parallel projections, nearly";
+    EXPECT_GE(compare_images(near, far).psnr, 40) << "both are nearly parallel projections";
 }
 
 TEST(Degenerate, SmallestVolumes) {
@@ -109,7 +110,7 @@ TEST(Degenerate, SmallestVolumes) {
     }
 }
 
-TEST(Degenerate, NothingToSee) {
+TEST(Degenerate, EmptyPictures) {
     Shot shot = torus_shot();
     shot.scene.background = {0.25, 0.5, 0.75};
     shot.camera.direction = -shot.camera.direction;

@@ -1,4 +1,4 @@
-// Renderer::count_fragments: what is counted adds up, and counting changes nothing else.
+// Renderer::count_fragments: the counts are consistent, and counting changes nothing else.
 #include <gtest/gtest.h>
 
 #include "engine/scene/views.h"
@@ -17,7 +17,7 @@ test::Shot sphere() {
     return shot;
 }
 
-TEST(DrawCounts, AreThereOnlyWhenAskedForAndChangeNoPixel) {
+TEST(DrawCounts, ExistOnRequestAndChangeNoPixel) {
     const test::Shot shot = sphere();
     const RenderResult plain = test::render(shot);
     EXPECT_FALSE(plain.stats.draw_counts);
@@ -37,7 +37,7 @@ TEST(DrawCounts, AreThereOnlyWhenAskedForAndChangeNoPixel) {
     EXPECT_EQ(test::test_renderer().validation_messages(), 0U);
 }
 
-TEST(DrawCounts, PixelsThatAreClosedAreNotShaded) {
+TEST(DrawCounts, ExcludeSaturatedPixels) {
     test::Shot shot = sphere();
     const auto shaded = [&] {
         test::test_renderer().count_fragments(true);
@@ -52,7 +52,7 @@ TEST(DrawCounts, PixelsThatAreClosedAreNotShaded) {
     EXPECT_LT(closing->shaded, open->shaded);
 }
 
-TEST(DrawCounts, PipelinesAreMadeOnce) {
+TEST(DrawCounts, PipelinesAreCreatedOnce) {
     const test::Shot shot = sphere();
     (void)test::render(shot);
     const RenderResult again = test::render(shot);

@@ -1,5 +1,5 @@
-// Pictures for a window: the last one is the renderer's own, those before it are in time, and nothing is held that is
-// not shown.
+// Pictures for a window: the last one equals the renderer's own, earlier ones are in time, and no unused renderer is
+// kept.
 #include "engine/viewer/drawer.h"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ double psnr(const Image& a, const Image& b) {
     return compare_images(a, b).psnr;
 }
 
-/// Of the red channel.
-double mean(const Image& image) {
+/// Mean of the red channel.
+double mean_red(const Image& image) {
     double sum = 0;
     for (int y = 0; y < image.height; ++y)
         for (int x = 0; x < image.width; ++x)
@@ -68,7 +68,7 @@ std::vector<DrawnPicture> all(Drawer& drawer) {
     return pictures;
 }
 
-/// Of the renderer's own picture.
+/// The renderer's own picture.
 Image expected(const DrawRequest& request, const Settings& settings) {
     return render({request.volume, request.scene, request.camera, settings, request.size.x, request.size.y}).color;
 }
@@ -95,7 +95,7 @@ TEST(Drawer, EndsWithTheRenderersOwnPicture) {
     }
 }
 
-TEST(Drawer, PlainAndBestAreMadeOnlyWhereTheyAreAskedFor) {
+TEST(Drawer, DrawsPlainAndBestOnlyOnRequest) {
     Drawer drawer(options(Rays::Always));
     DrawRequest request = ball_request();
     drawer.ask(request);
@@ -126,18 +126,18 @@ TEST(Drawer, PlainAndBestAreMadeOnlyWhereTheyAreAskedFor) {
     EXPECT_EQ(drawer.validation_messages(), 0U);
 }
 
-TEST(Drawer, AFinishedPictureIsFollowedByFinishedOnesOfTheSameView) {
+TEST(Drawer, ShowsOnlyFinishedPicturesAfterAFinishedOneOfTheSameView) {
     for (const Rays rays : {Rays::Never, Rays::Always}) {
         Drawer drawer(options(rays));
         DrawRequest request = ball_request();
-        // Sheets cut from a quarter of a voxel on take long enough for a coarse picture to come first.
+        // Sliced sheets of a quarter voxel take long enough for a coarse picture to come first.
         request.settings = preset_named("accurate").settings;
         request.size = {1000, 900};
         drawer.ask(request);
         all(drawer);
         request.camera.fov_y *= 1.01;
         drawer.ask(request);
-        if (all(drawer).size() == 1) GTEST_SKIP() << "whole pictures are there at once";
+        if (all(drawer).size() == 1) GTEST_SKIP() << "this device draws whole pictures at once";
         const auto only_finished = [&] {
             for (const DrawnPicture& picture : all(drawer))
                 if (!(picture.rung == Rung{})) return false;
@@ -152,7 +152,7 @@ TEST(Drawer, AFinishedPictureIsFollowedByFinishedOnesOfTheSameView) {
         drawer.ask(request);
         EXPECT_TRUE(only_finished());
         request.settings = preset_named("accurate").settings;
-        // One that was not finished keeps nothing.
+        // An unfinished picture is not kept.
         request.same_view = false;
         request.camera.fov_y *= 1.01;
         drawer.ask(request);
@@ -167,7 +167,7 @@ TEST(Drawer, AFinishedPictureIsFollowedByFinishedOnesOfTheSameView) {
     }
 }
 
-TEST(Drawer, APictureInMotionIsOneAndHasTheNewIsoValue) {
+TEST(Drawer, DrawsOnePictureWithTheNewIsoValueInMotion) {
     for (const Rays rays : {Rays::Never, Rays::Always}) {
         Drawer drawer(options(rays));
         drawer.ask(ball_request(0.5));
@@ -177,16 +177,16 @@ TEST(Drawer, APictureInMotionIsOneAndHasTheNewIsoValue) {
         drawer.ask(request);
         const auto pictures = all(drawer);
         ASSERT_EQ(pictures.size(), 1U);
-        // A lower iso-value is a larger ball, which sends more light.
-        const double now = mean(expected(request, request.settings));
-        const double before = mean(expected(ball_request(0.5), request.settings));
+        // A lower iso-value gives a larger ball, which is brighter in total.
+        const double now = mean_red(expected(request, request.settings));
+        const double before = mean_red(expected(ball_request(0.5), request.settings));
         EXPECT_GT(now, 1.1 * before);
-        EXPECT_LT(std::abs(mean(pictures.front().color) - now), 0.3 * (now - before));
+        EXPECT_LT(std::abs(mean_red(pictures.front().color) - now), 0.3 * (now - before));
         EXPECT_EQ(drawer.validation_messages(), 0U);
     }
 }
 
-TEST(Drawer, RaysAreNotCastWhereTheyCannotShowTheScene) {
+TEST(Drawer, CastsNoRaysIfTheyCannotShowTheScene) {
     Drawer drawer(options(Rays::Always));
     DrawRequest request = ball_request();
     request.moving = true;
@@ -199,7 +199,7 @@ TEST(Drawer, RaysAreNotCastWhereTheyCannotShowTheScene) {
     EXPECT_EQ(drawer.take_error(), "");
 }
 
-TEST(Drawer, TheNewestRequestWins) {
+TEST(Drawer, DrawsTheNewestRequest) {
     Drawer drawer(options(Rays::Never, true));
     DrawRequest large = ball_request();
     large.size = {900, 900};
@@ -221,7 +221,7 @@ TEST(Drawer, TheNewestRequestWins) {
     EXPECT_EQ(drawer.validation_messages(), 0U);
 }
 
-TEST(Drawer, WhatCannotBeDrawnIsSaidAndTheNextPictureComes) {
+TEST(Drawer, ReportsAnErrorAndDrawsTheNextPicture) {
     Drawer drawer(options(Rays::Never));
     DrawRequest request = ball_request();
     request.scene.materials.pop_back();
@@ -233,7 +233,7 @@ TEST(Drawer, WhatCannotBeDrawnIsSaidAndTheNextPictureComes) {
     EXPECT_TRUE(all(drawer).back().finished);
 }
 
-TEST(Drawer, LevelsAreCoarseEnoughToBeEstimatedWithEveryPicture) {
+TEST(Drawer, ChoosesLevelsCoarseEnoughToEstimateInEveryPicture) {
     Volume volume;
     volume.geometry.dims = {192, 192, 192};
     volume.values = {0};
@@ -244,9 +244,9 @@ TEST(Drawer, LevelsAreCoarseEnoughToBeEstimatedWithEveryPicture) {
     EXPECT_EQ(Drawer::coarsest_level(volume, true), 0);
 }
 
-TEST(Interruption, IsHeededAndLeavesTheRendererWhole) {
+TEST(Interruption, StopsThePictureAndKeepsTheRendererUsable) {
     DrawRequest request = ball_request();
-    request.scene.effects.samples = 2;  // it is asked between them, too
+    request.scene.effects.samples = 2;  // the interruption is polled between samples, too
     const Image whole = expected(request, request.settings);
     int asked = 0;
     test_renderer().set_interruption([&] { return ++asked >= 2; });

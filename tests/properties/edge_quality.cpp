@@ -13,7 +13,7 @@ namespace edgesplat::test {
 namespace {
 
 constexpr int kOrientations = 24;
-/// Steps of opacity are placed to half a pixel.
+/// Pixels per voxel for steps of opacity: their position is accurate to half a pixel.
 constexpr double kFine = 160;
 constexpr int kFineWidth = 641;
 
@@ -29,8 +29,8 @@ VolumePointer plane_volume(int size, const Pose& pose, const glm::dvec3& center)
     return sampled(glm::ivec3(size), [&](const glm::dvec3& x) { return blurred_step(glm::dot(pose.n, x - center)); });
 }
 
-/// Pictures of a uniform block from every pose's camera: what a pose's picture is divided by. Where kernels are cut at
-/// faces the grid's border is one.
+/// Pictures of a uniform block from every pose's camera, to divide the poses' pictures by. If faces cut kernels, the
+/// grid's border is a face, too.
 struct Strip {
     int size, width, height;  ///< voxels, pixels
     std::vector<Pose> list = poses(kOrientations);
@@ -43,7 +43,7 @@ struct Strip {
         return (draws_faces(settings) ? cut : soft)[i];
     }
 
-    /// Across the plane's normal, which is screen +x.
+    /// Cameras across the plane's normal, which is screen +x.
     void place() {
         for (const Pose& pose : list)
             cameras.push_back(camera_at(center(pose), pose.across, pose.n, height));
@@ -79,7 +79,7 @@ double closest(const AnalyticScene& solid, const Camera& camera, int x, int y, i
     return at((low + high) / 2);
 }
 
-/// Where the row of that picture leaves the solid, in pixels.
+/// Where the row leaves the solid, in pixels.
 double true_silhouette(const AnalyticScene& solid, const Camera& camera, int y, int width, int height) {
     int low = 0, high = width - 1;  // inside, outside
     while (high - low > 1)
@@ -89,7 +89,8 @@ double true_silhouette(const AnalyticScene& solid, const Camera& camera, int y, 
     return low + a / (a - b);
 }
 
-/// Adds the silhouette at `target`, seen along `direction`; `out` points out of the solid there, across `direction`.
+/// Adds the silhouette at `target`, seen along `direction`; `out` points out of the solid there, perpendicular to
+/// `direction`.
 void add_silhouette(const AnalyticScene& solid, const VolumePointer& volume, const glm::dvec3& target,
                     const glm::dvec3& direction, const glm::dvec3& out, const Settings& settings,
                     EdgeProfiles& profiles) {
@@ -105,8 +106,8 @@ double uniform(std::mt19937& random) {
     return random() / 4294967296.0;
 }
 
-/// Sums the weights of all voxels at x; `inside` of what they have of the upper material. `add_of(v, add)` calls
-/// add(edge, inside) for both materials of voxel v.
+/// Sums the weights of all voxels at x; `inside`: of the upper material only. `add_of(v, add)` calls add(edge, inside)
+/// for both materials of voxel v.
 struct Weights {
     double all = 0, inside = 0;
 };
@@ -130,7 +131,7 @@ Weights weights_at(const reference::Footprints& footprints, const glm::dvec3& x,
     return sum;
 }
 
-/// What a voxel found of its own material, and what it carries of the other one.
+/// Adds a voxel's estimate for its own material and the edges that it carries of the other.
 template <typename Add>
 void add_estimated(const reference::PreparedVolume& prepared, const glm::ivec3& v, const Add& add) {
     const reference::Field field = prepared.field();
@@ -140,7 +141,7 @@ void add_estimated(const reference::PreparedVolume& prepared, const glm::ivec3& 
         add(carried.edge, carried.material == 1);
 }
 
-/// Collects deviations from 1, one list an orientation.
+/// Collects deviations from 1, one list per orientation.
 struct UnityCollector {
     double squares = 0, count = 0;
     std::vector<double> worst;
@@ -166,7 +167,7 @@ std::vector<Method> compared_methods() {
             {"taylor", with(E::Taylor, F::Procedural)},
             {"march", with(E::March, F::Procedural)},
             {"paper's curve", with(E::March, F::Procedural, WarpFamily::Paper)},
-            {"paper's own (taylor, warp2d)", papers_own()}};
+            {"paper's own (taylor, warp2d)", paper_settings()}};
 }
 
 EdgeProfiles plane_edges(const Settings& settings, double cut_away) {
@@ -207,7 +208,7 @@ EdgeProfiles torus_silhouettes(const Settings& settings) {
     const AnalyticScene solid = torus_scene({55, 55, 24}, center, kMajor, kMinor);
     const auto volume = std::make_shared<const Volume>(sample(solid));
     EdgeProfiles profiles;
-    // The torus is its circle swept by a ball: the outermost point in direction n is the circle's plus a radius.
+    // The torus is a circle swept by a ball: its outermost point in direction n is the circle's plus a radius.
     for (const Pose& pose : poses(16)) {
         const glm::dvec3 ring = kMajor * glm::normalize(glm::dvec3(pose.n.x, pose.n.y, 0));
         add_silhouette(solid, volume, center + ring + kMinor * pose.n, pose.across, pose.n, settings, profiles);
@@ -239,7 +240,7 @@ Unity plane_unity(const Settings& settings, bool estimated) {
             reference::VoxelEdge other = edge;
             other.D = -edge.D;
             other.n = -edge.n;
-            // The paper's kernels are those of their own side alone.
+            // The paper's kernels belong to their own side only.
             if (draws_faces(settings) || edge.D >= 0) add(edge, true);
             if (draws_faces(settings) || edge.D < 0) add(other, false);
         };
@@ -258,7 +259,7 @@ Unity plane_unity(const Settings& settings, bool estimated) {
 }
 
 Unity picture_unity(const Settings& settings) {
-    // A large grid minus a small one inside it: warped kernels at the grid's border, which nothing completes, cancel.
+    // A large grid minus a small one inside it: the incomplete warped kernels at the grid's border cancel.
     static const Strip small = [] {
         Strip s{.size = 18, .width = 121, .height = 5};
         s.place();
@@ -296,7 +297,7 @@ SphereUnity sphere_unity(const Settings& settings, double radius) {
     std::mt19937 random(11);
     double raw = 0, normalised = 0;
     for (const Pose& pose : poses(kOrientations)) {
-        // A point of the surface is in the middle of the grid, the centre of a large sphere at its side.
+        // A point of the surface is in the middle of the grid; the centre of a large sphere is near its side.
         const glm::dvec3 middle = glm::dvec3((kSize - 1) / 2.0) + pose.shift, center = middle - radius * pose.n;
         const auto volume = sampled(
             glm::ivec3(kSize), [&](const glm::dvec3& x) { return blurred_step(glm::length(x - center) - radius); });
@@ -361,7 +362,7 @@ Wall wall(const Settings& settings, double thickness) {
 
 double ball_matter(const Settings& settings, double radius) {
     constexpr int kSize = 20, kPixels = 80;
-    const double scale = kPixels / (2.4 * radius);  // pixels a voxel
+    const double scale = kPixels / (2.4 * radius);  // pixels per voxel
     double sum = 0;
     const std::vector<Pose> list = poses(8);
     for (const Pose& pose : list) {

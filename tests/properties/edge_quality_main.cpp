@@ -1,4 +1,4 @@
-// Prints the tables of docs/accuracy.md. Judges nothing; the tests do, with the same measuring code.
+// Prints the tables of docs/accuracy.md. The tests check the figures with the same measuring code.
 //   edge_quality [planes] [silhouettes] [unity] [walls]
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-// The figures the method stands for, from pictures of the device: sharp and well placed edges, no seams, closed walls.
+// The promised figures, from pictures of the device: sharp and well placed edges, no seams, closed walls.
 #include "tests/properties/edge_quality.h"
 
 #include <gtest/gtest.h>
@@ -14,36 +14,36 @@ Settings plain() {
     return settings;
 }
 
-TEST(Planes, SharpAndInPlaceAtEveryOrientation) {
+TEST(Planes, AreSharpAndInPlaceAtEveryOrientation) {
     const EdgeProfiles p = plane_edges({}, 1);
     EXPECT_EQ(p.missed, 0);
     EXPECT_LE(mean(p.rise), 0.05);
     EXPECT_LE(mean_magnitude(p.location), 0.01);
     const EdgeProfiles off = plane_edges(plain(), 1);
-    EXPECT_GE(mean(off.rise), 4 * mean(p.rise)) << "plain splatting is the soft one";
+    EXPECT_GE(mean(off.rise), 4 * mean(p.rise)) << "plain splatting is softer";
 }
 
-// A ray in the plane passes the voxel beside the border twice, and a twentieth of its length is half of opacity.
-TEST(Planes, WhereTheyMeetTheBorderTheyAreNearlyThere) {
+// A ray in the plane passes the voxel beside the border twice; a twentieth of its length is half of the opacity.
+TEST(Planes, AreNearlyInPlaceAtTheBorder) {
     const EdgeProfiles p = plane_edges({}, 0);
     EXPECT_EQ(p.missed, 0);
     EXPECT_LE(mean(p.rise), 0.10);
     EXPECT_LE(mean_magnitude(p.location), 0.035);
 }
 
-TEST(Silhouettes, SphereIsWhereItsProjectionIs) {
+TEST(Silhouettes, MatchTheProjectionOfASphere) {
     const EdgeProfiles p = sphere_silhouettes({});
     EXPECT_EQ(p.missed, 0);
     EXPECT_LE(mean_magnitude(p.location), 0.01);
 }
 
-TEST(Silhouettes, TorusIsWhereItsProjectionIs) {
+TEST(Silhouettes, MatchTheProjectionOfATorus) {
     const EdgeProfiles p = torus_silhouettes({});
     EXPECT_EQ(p.missed, 0);
     EXPECT_LE(mean_magnitude(p.location), 0.01);
 }
 
-TEST(PartitionOfUnity, ExactAtKnownPlanes) {
+TEST(PartitionOfUnity, IsExactAtKnownPlanes) {
     EXPECT_LE(plane_unity({}, false).max, 0.01);
 }
 
@@ -53,23 +53,25 @@ TEST(PartitionOfUnity, HoldsAtEstimatedPlanes) {
     EXPECT_LE(unity.rms, 0.01) << "largest " << unity.max;
 }
 
-// The goal is 1 % everywhere, and away from the grid's border it is met (the planes above). Where the plane meets that,
-// a kernel knows one of the two: what is held here is the rms over the strip, so that it does not get worse unseen.
-TEST(PartitionOfUnity, PicturesOfUniformExtinctionAreNearlyFlat) {
+// The goal of 1 % everywhere is met away from the grid's border (the planes above). Where the plane meets the border, a
+// kernel has only one of the two faces. This test bounds the rms over the strip, so that it does not become worse
+// unnoticed.
+TEST(PartitionOfUnity, IsNearlyExactInPicturesOfUniformExtinction) {
     const Unity unity = picture_unity({});
     std::printf("pictures of uniform extinction: rms %.4f, largest %.4f\n", unity.rms, unity.max);
     EXPECT_LE(unity.rms, 0.03) << "largest " << unity.max;
 }
 
-TEST(Walls, OneAndAHalfVoxelsAreClosedAndSharp) {
+TEST(Walls, OfOneAndAHalfVoxelsAreClosedAndSharp) {
     const Wall w = wall({}, 1.5);
-    EXPECT_GE(w.low, 0.7) << "of the mean: a hole, or a deep dent";
-    EXPECT_GE(w.low, wall(plain(), 1.5).low) << "plain splatting is no better closed";
+    EXPECT_GE(w.low, 0.7) << "of the mean: the wall has a hole or a deep dent";
+    EXPECT_GE(w.low, wall(plain(), 1.5).low) << "plain splatting leaves a smaller hole";
     EXPECT_EQ(w.missed, 0);
     EXPECT_LE(w.rise, 0.55);
 }
 
-// What is thinner than kernels are wide has fewer voxels than they need, and is divided by what is left of them.
+// Structures thinner than kernels have fewer voxels than a kernel's sum needs; the remaining kernels' sum normalizes
+// them.
 TEST(Walls, AreAsDenseAsThickMatter) {
     for (const double thickness : {1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0}) {
         const Wall w = wall({}, thickness);

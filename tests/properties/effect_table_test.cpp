@@ -1,4 +1,4 @@
-// Every row of the table of effects says when it is called for, and only then.
+// Every row of the table of effects is active exactly when its switch is set.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ FrameRequest torus_request() {
     return {shot.volume, shot.scene, shot.camera, shot.settings, {48, 48}, {}};
 }
 
-TEST(EffectTable, APlainRequestCallsForNothing) {
+TEST(EffectTable, HasNoActiveEffectForAPlainRequest) {
     const FrameRequest plain = plain_request(torus_request());
     validate(plain.scene);
     validate(plain.settings);
@@ -24,7 +24,7 @@ TEST(EffectTable, APlainRequestCallsForNothing) {
         EXPECT_EQ(effect.reason(plain), "") << effect.name;
 }
 
-TEST(EffectTable, EachIsCalledForByItsOwnSwitchAlone) {
+TEST(EffectTable, EachSwitchActivatesOnlyItsOwnEffect) {
     std::set<std::string_view> names;
     for (const Effect& effect : effect_table()) {
         EXPECT_TRUE(names.insert(effect.name).second) << effect.name;
@@ -33,19 +33,19 @@ TEST(EffectTable, EachIsCalledForByItsOwnSwitchAlone) {
         FrameRequest request = plain_request(torus_request());
         if (effect.base != nullptr) effect.base(request);
         EXPECT_EQ(effect.reason(request), "") << effect.name;
-        const auto called_for = [&] {
+        const auto active_effects = [&] {
             std::set<std::string_view> on;
             for (const Effect& other : effect_table())
                 if (!other.reason(request).empty()) on.insert(other.name);
             return on;
         };
-        auto expected = called_for();
+        auto expected = active_effects();
         expected.insert(effect.name);
         effect.turn_on(request);
         validate(request.scene);
         validate(request.settings);
         EXPECT_NE(effect.reason(request), "") << effect.name;
-        EXPECT_EQ(called_for(), expected) << effect.name;
+        EXPECT_EQ(active_effects(), expected) << effect.name;
     }
     EXPECT_THROW(effect_named("bloom"), Error);
     EXPECT_EQ(&effect_named("light"), &*std::ranges::find(effect_table(), "light", &Effect::name));

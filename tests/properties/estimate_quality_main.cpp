@@ -1,5 +1,5 @@
-// How far estimated edges are from the true ones: a table of docs/accuracy.md. Double-precision reference only, so
-// these are the estimators' own errors. A program, not a test: it judges nothing.
+// Prints the errors of estimated edges: a table of docs/accuracy.md. Uses only the double-precision reference, so these
+// are the estimators' own errors. A program without pass or fail.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kOrientations = 24;
 
-/// Errors of D and n against the truth, voxels with an edge and |D| < R, away from the border.
+/// Errors of D and n, for voxels with an edge and |D| < R, away from the border.
 void estimates(double sd) {
     constexpr int kSize = 22;
     fmt::print(

@@ -1,4 +1,4 @@
-// Builtin scenes beside their exact pictures.
+// Builtin scenes with their exact pictures.
 #pragma once
 
 #include <cmath>
@@ -10,13 +10,13 @@
 
 namespace edgesplat::test {
 
-/// A picture that is to be drawn, and what is right.
+/// A picture to draw, and its exact version.
 struct Exact {
     Shot shot;
     Image truth;
 };
 
-/// What `shot` shows of a scene, beside its truth.
+/// A shot of a scene with its exact picture.
 inline Exact exact_shot(const AnalyticScene& scene, const Shot& shot) {
     reference::DirectOptions options;
     options.tolerance = 1e-3;
@@ -25,7 +25,7 @@ inline Exact exact_shot(const AnalyticScene& scene, const Shot& shot) {
                 .image};
 }
 
-/// A scene, opaque, whole in a picture of 120 x 120 pixels; where it has two iso-values `layer` lies between them.
+/// An opaque scene, completely visible in 120 x 120 pixels. With two iso-values, `layer` is the material between them.
 inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8, const Material& layer = {}) {
     Shot shot;
     shot.volume = std::make_shared<const Volume>(sample(scene));
@@ -40,12 +40,12 @@ inline Exact exact_scene(const AnalyticScene& scene, double extinction = 8, cons
     return exact_shot(scene, shot);
 }
 
-/// A builtin one.
+/// A builtin scene by name.
 inline Exact exact_scene(const std::string& name, double extinction = 8) {
     return exact_scene(builtin_scene("builtin:" + name), extinction);
 }
 
-/// How near a picture is to the truth, PSNR of RGBA.
+/// PSNR of RGBA against the truth.
 inline double decibels(const Image& image, const Image& truth) {
     return -20 * std::log10(accuracy::image_error(image, truth).rms);
 }

@@ -1,4 +1,4 @@
-// Kernels that are cut at faces, against exact pictures, beside the ray caster.
+// Kernels cut at faces, compared with exact pictures and with the ray caster.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -13,15 +13,15 @@
 namespace edgesplat::test {
 namespace {
 
-/// With noise of 5 % of the step faces are no gain yet: exact normals follow the noise, where the ray caster's
-/// differences over two voxels even it out. The bound keeps that from getting worse.
+/// Minimum gain. With noise of 5 % of the step, faces are not better yet: exact normals follow the noise, but the ray
+/// caster's differences over two voxels smooth it. The bound prevents a further loss.
 struct Gain {
     const char* scene;
-    double over_rays;       ///< dB at least, over the trilinear ray caster
-    double extinction = 8;  ///< per voxel; of .1 light in its depth counts, not only what is in front
+    double over_rays;       ///< dB, minimum, over the trilinear ray caster
+    double extinction = 8;  ///< per voxel; at .1 light is also evaluated in the depth of the matter
 };
 
-/// How near the ray caster's picture is to the truth.
+/// PSNR of the ray caster's picture against the truth.
 double by_rays(const Exact& scene, RaycastFilter filter) {
     const Shot& shot = scene.shot;
     return decibels(test_renderer()
@@ -30,7 +30,7 @@ double by_rays(const Exact& scene, RaycastFilter filter) {
                     scene.truth);
 }
 
-/// How near the pictures by faces and by rays are to the truth, dB; printed.
+/// PSNR of the pictures by faces and by rays against the truth, dB; also printed.
 struct Nearness {
     double faces, trilinear, cubic;
 };
@@ -42,7 +42,7 @@ Nearness nearness(const Exact& scene) {
     return n;
 }
 
-/// A builtin scene, opaque, in a picture of 64 pixels that looks from one place (index space) at another, degrees wide.
+/// An opaque builtin scene in 64 pixels, from one point (index space) towards another; field of view in degrees.
 Exact seen_from(const char* name, const glm::dvec3& eye, const glm::dvec3& target, double fov) {
     const AnalyticScene scene = builtin_scene(name);
     Shot shot;
@@ -56,7 +56,7 @@ Exact seen_from(const char* name, const glm::dvec3& eye, const glm::dvec3& targe
 
 class NearerToTheTruth : public testing::TestWithParam<Gain> {};
 
-TEST_P(NearerToTheTruth, ThanRays) {
+TEST_P(NearerToTheTruth, ThanTheRayCaster) {
     const Exact scene = exact_scene(GetParam().scene, GetParam().extinction);
     const double faces = decibels(render(scene.shot).color, scene.truth);
     const double rays = by_rays(scene, RaycastFilter::Trilinear);
@@ -73,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NearerToTheTruth,
                                          Gain{"specks", 5, 0.1}, Gain{"plates", 2, 0.1}),
                          [](const auto& test) {
                              std::string name = test.param.scene;
-                             if (test.param.extinction < 1) name += "_seen_through";
+                             if (test.param.extinction < 1) name += "_translucent";
                              std::replace_if(
                                  name.begin(), name.end(),
                                  [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, NearerToTheTruth,
                          });
 
 /// Most of a layer thinner than a voxel lies between samples: voxels beside it carry it.
-TEST(Faces, AThinLayerOnAnOpaqueCoreIsNearerToTheTruthThanRays) {
+TEST(Faces, ShowAThinLayerOnACoreBetterThanRays) {
     AnalyticScene scene = builtin_scene("builtin:ellipsoid:32");
     scene.iso_values = {0.25, 0.6};
     const Exact exact = exact_scene(scene, 8, {{0.2, 0.5, 0.9}, 0.1});
@@ -90,7 +90,7 @@ TEST(Faces, AThinLayerOnAnOpaqueCoreIsNearerToTheTruthThanRays) {
     EXPECT_GE(faces - cubic, 1);
 }
 
-/// As skin over bone: a layer of two voxels in which the field rises to where it is flat, and then to what is opaque.
+/// Like skin over bone: a layer of two voxels in which the field rises to a plateau, and then to the opaque core.
 AnalyticScene ball_in_a_skin() {
     AnalyticScene scene = sphere_scene(glm::ivec3(32), {15.6, 15.3, 15.8}, 11.3);
     const auto skin = [](const glm::dvec3& x) {
@@ -104,15 +104,15 @@ AnalyticScene ball_in_a_skin() {
     return scene;
 }
 
-/// What a voxel of the core carries of the layer is not hidden by what it carries of the core.
-TEST(Faces, ACoreDoesNotHideTheLayerBeforeIt) {
+/// A voxel of the core carries matter of the layer; its matter of the core must not occlude it.
+TEST(Faces, OfACoreDoNotOccludeTheLayerInFront) {
     const Exact exact = exact_scene(ball_in_a_skin(), 8, {{0.2, 0.5, 0.9}, 0.3});
     const auto [faces, trilinear, cubic] = nearness(exact);
     EXPECT_GE(faces - std::max(trilinear, cubic), 2);
 }
 
-/// Between two iso-values the field goes one way, and so does the light, from close by, too.
-TEST(Faces, ALayerBetweenTwoValuesIsLitOneWay) {
+/// Between two iso-values the field is monotonic, and so is the light, also from nearby.
+TEST(Faces, OfALayerBetweenTwoValuesAreLitMonotonically) {
     const AnalyticScene scene = builtin_scene("builtin:phantom:noise=0");
     Shot shot;
     shot.volume = std::make_shared<const Volume>(sample(scene));
@@ -124,34 +124,34 @@ TEST(Faces, ALayerBetweenTwoValuesIsLitOneWay) {
     EXPECT_GE(faces - cubic, -3);
 }
 
-/// Beyond its outermost samples a volume goes on for half a voxel, and a surface with it, as it came.
-TEST(Faces, ABallThatTheBorderCutsHasNoFlange) {
+/// A volume, and a surface in it, continues straight for half a voxel beyond its outermost samples.
+TEST(Faces, OfABallCutByTheBorderHaveNoFlange) {
     const glm::ivec3 dims(24, 22, 20);
     const Exact scene = exact_scene(sphere_scene(dims, glm::dvec3(dims - 1) / 2.0, 11.8));
     const auto [faces, trilinear, cubic] = nearness(scene);
     EXPECT_GE(faces - std::max(trilinear, cubic), 3);
 }
 
-/// A thin wall's cut at the border: rays enter the volume within it, and leave it through its side.
-TEST(Faces, AWallThatTheBorderCutsHasNoComb) {
+/// The cut of a thin wall at the border: rays enter the volume in the wall, and leave the wall through its side.
+TEST(Faces, OfAWallCutByTheBorderHaveNoComb) {
     const auto [faces, trilinear, cubic] =
         nearness(seen_from("builtin:plates", {46.07, -4.6, 26.96}, {46.07, 10, 26.96}, 35));
     EXPECT_GE(faces - std::max(trilinear, cubic), 2);
 }
 
-TEST(Faces, ABinaryCubeHasSharpEdgesAndCorners) {
+TEST(Faces, OfABinaryCubeHaveSharpEdgesAndCorners) {
     // The corner in the middle of the picture, and three edges: the spline rounds them by a voxel.
     const auto [faces, trilinear, cubic] = nearness(seen_from("builtin:cube-hole", {-9, -6, -12}, {4, 4, 4}, 14));
     EXPECT_GE(faces, 34);
     EXPECT_GE(faces - std::max(trilinear, cubic), 10);
 }
 
-TEST(Faces, DepthAndNormalAreThoseOfTheSurface) {
+TEST(Faces, GiveDepthAndNormalOfTheSurface) {
     const Exact scene = exact_scene("small-ball");
     Shot shot = scene.shot;
     const RenderResult result = render(shot, {.depth = true, .normal = true});
     ASSERT_TRUE(result.depth && result.normal);
-    // The ball's middle is the grid's, but for what the scene says: found as the mean of where its normals lead.
+    // The ball's centre is not exactly the grid's: it is computed as the mean of the points that the normals lead to.
     const CameraFrame frame = camera_frame(shot.camera);
     int seen = 0;
     double worst = 0;
@@ -179,8 +179,8 @@ TEST(Faces, DepthAndNormalAreThoseOfTheSurface) {
     EXPECT_LE(worst, 0.25) << "voxels";
 }
 
-TEST(Faces, NothingIsLostOverDegenerateData) {
-    // Thin dims, one value, a single voxel, values that are all noise: finite, and within 0 and 1.
+TEST(Faces, GiveFiniteNumbersForDegenerateData) {
+    // Thin grids, constant values, a single voxel, pure noise: the picture is finite and within 0 and 1.
     for (const glm::ivec3 dims :
          {glm::ivec3(1, 9, 9), glm::ivec3(9, 2, 9), glm::ivec3(3, 3, 3), glm::ivec3(12, 12, 12)}) {
         for (int kind = 0; kind < 4; ++kind) {

@@ -1,5 +1,4 @@
-// Footprints from the table: the same picture by quads in layers of sheets and by tiles, and how near it is to
-// integrals.
+// Footprints from the table: quads in layers of sheets and tiles give the same picture, close to that of integrals.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -24,11 +23,11 @@ Shot builtin(const char* name, const char* view) {
     return shot;
 }
 
-double psnr(const Image& a, const Image& b) {
+double picture_psnr(const Image& a, const Image& b) {
     return compare_images(a, b).psnr;
 }
 
-/// With sheets in layers.
+/// The shot with sheets in layers.
 Shot layered(Shot shot) {
     shot.settings.sheet_format = SheetFormat::Layers;
     return shot;
@@ -41,18 +40,18 @@ Shot integrated(Shot shot) {
 
 class TableOfBuiltins : public testing::TestWithParam<const char*> {};
 
-TEST_P(TableOfBuiltins, QuadsInLayersAndTilesAreOnePicture) {
+TEST_P(TableOfBuiltins, GivesTheSamePictureInLayersAndTiles) {
     for (const char* view : {"oblique", "close"}) {
         Shot shot = builtin(GetParam(), view);
-        shot.settings.pixels = PixelChoice::Every;  // as layers have it
+        shot.settings.pixels = PixelChoice::Every;  // as in layers
         const Image tiles = render(shot).color, layers = render(layered(shot)).color;
-        const double same = psnr(tiles, layers);
+        const double same = picture_psnr(tiles, layers);
         std::printf("%-10s %-8s layers against tiles %.1f dB\n", GetParam(), view, same);
         EXPECT_GE(same, 60);
         EXPECT_GT(evenness(tiles).mean * evenness(tiles).variation, 0.01) << "an empty picture shows nothing";
-        // Walls and faces that bend much are not in the table: the boxes have others, torus and vessels do not.
+        // The table does not contain walls and strongly bent faces: the boxes have others, torus and vessels do not.
         const std::string_view name = GetParam();
-        const double as_integrated = psnr(tiles, render(integrated(shot)).color);
+        const double as_integrated = picture_psnr(tiles, render(integrated(shot)).color);
         if (name == "box" || name == "cube-hole") {
             EXPECT_LT(as_integrated, 90);
         } else if (name == "tilted-torus" || name == "vessels") {
@@ -70,19 +69,19 @@ INSTANTIATE_TEST_SUITE_P(Six, TableOfBuiltins,
                              return name;
                          });
 
-TEST(FootprintTable, IsNearToIntegralsWhereFacesArePlane) {
-    // From near by the directions within a footprint differ, which the table does not know of.
+TEST(FootprintTable, ApproximatesIntegralsForPlaneFaces) {
+    // Nearby, the directions within a footprint differ, which the table ignores.
     for (const auto& [view, least] : {std::pair{"oblique", 40}, {"close", 30}}) {
         for (const char* name : {"plane", "plates", "box", "cube-hole"}) {
             const Shot shot = builtin(name, view);
-            const double near = psnr(render(shot).color, render(integrated(shot)).color);
+            const double near = picture_psnr(render(shot).color, render(integrated(shot)).color);
             std::printf("%-10s %-8s table against integrals %.1f dB\n", name, view, near);
             EXPECT_GE(near, least) << name << " " << view;
         }
     }
 }
 
-TEST(FootprintTable, SlicedKernelsAreIntegrated) {
+TEST(FootprintTable, IntegratesSlicedKernels) {
     Shot shot = builtin("box", "oblique");
     shot.settings.sheets = SheetCut::Sliced;
     shot.settings.sheet_spacing = 1;

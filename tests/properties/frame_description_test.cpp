@@ -1,4 +1,4 @@
-// The description of a frame says what the device really runs and holds; what does not fit is refused beforehand.
+// The description of a frame equals what the device runs and holds; a frame that does not fit is refused in advance.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-FrameRequest torus_request() {
+FrameRequest described_request() {
     const Shot shot = torus_shot();
     return {shot.volume, shot.scene, shot.camera, shot.settings, {48, 40}, {}};
 }
@@ -24,7 +24,7 @@ RenderStats draw(const FrameRequest& r) {
     return test_renderer().render(r.scene, r.camera, r.settings, r.size.x, r.size.y, r.outputs).stats;
 }
 
-/// Draws the request in a renderer that holds nothing of others, and compares.
+/// Draws the request in a renderer without data of other pictures, and compares.
 void expect_described(const FrameRequest& request, const std::string& what) {
     SCOPED_TRACE(what);
     Renderer& renderer = test_renderer();
@@ -68,18 +68,18 @@ void expect_described(const FrameRequest& request, const std::string& what) {
         }
 }
 
-TEST(FrameDescription, IsWhatTheDeviceRunsAndHoldsForEveryEffect) {
-    expect_described(plain_request(torus_request()), "plain");
+TEST(FrameDescription, MatchesTheDeviceForEveryEffect) {
+    expect_described(plain_request(described_request()), "plain");
     for (const Effect& effect : effect_table()) {
-        FrameRequest request = plain_request(torus_request());
+        FrameRequest request = plain_request(described_request());
         if (effect.base != nullptr) effect.base(request);
         effect.turn_on(request);
         expect_described(request, std::string(effect.name));
     }
 }
 
-TEST(FrameDescription, IsRightForUsualPicturesToo) {
-    FrameRequest request = torus_request();
+TEST(FrameDescription, MatchesTheDeviceForUsualPictures) {
+    FrameRequest request = described_request();
     expect_described(request, "default");
     request.settings = preset_named("accurate").settings;
     expect_described(request, "accurate");
@@ -88,9 +88,9 @@ TEST(FrameDescription, IsRightForUsualPicturesToo) {
     expect_described(request, "draft with every output");
 }
 
-TEST(FrameDescription, NoVolumeHasMoreSplatsThanTheBound) {
-    // Where values jump a voxel has what hides, and carries what lies between its samples.
-    FrameRequest r = torus_request();
+TEST(FrameDescription, BoundsTheNumberOfSplats) {
+    // At a jump of values a voxel has opaque matter of its own, and carries the matter between its samples.
+    FrameRequest r = described_request();
     r.volume = sampled(glm::ivec3(12), [](const glm::dvec3& x) {
         const int i = static_cast<int>(x.x + 3 * x.y + 7 * x.z);
         return i % 5 < 3 ? 1.0 : i % 5 == 3 ? 0.5 : 0.0;
@@ -105,17 +105,17 @@ TEST(FrameDescription, NoVolumeHasMoreSplatsThanTheBound) {
     expect_described(r, "jumps");
 }
 
-TEST(FrameDescription, EveryLineHasItsReasonAndWhatIsOffItsPrice) {
-    FrameRequest request = plain_request(torus_request());
+TEST(FrameDescription, StatesReasonsAndTheCostOfInactiveEffects) {
+    FrameRequest request = plain_request(described_request());
     const FrameDescription plain = describe_frame(request);
-    EXPECT_TRUE(plain.called_for.empty());
+    EXPECT_TRUE(plain.active_effects.empty());
     EXPECT_EQ(plain.left_out.size(), effect_table().size());
     for (const ResourceDescription& resource : plain.resources)
         EXPECT_EQ(resource.reason, "every picture") << resource.name;
 
     request.scene.lights = {Light{}};
     const FrameDescription lit = describe_frame(request);
-    EXPECT_EQ(lit.left_out.size() + lit.called_for.size(), effect_table().size());
+    EXPECT_EQ(lit.left_out.size() + lit.active_effects.size(), effect_table().size());
     const auto edges = std::ranges::find(lit.resources, "edge field", &ResourceDescription::name);
     ASSERT_NE(edges, lit.resources.end());
     EXPECT_EQ(edges->reason, "light: lights[0] is a headlight");
@@ -148,8 +148,8 @@ class MemoryBudget : public testing::Test {
     }
 };
 
-TEST_F(MemoryBudget, WhatDoesNotFitIsRefusedBeforeAnythingIsAllocated) {
-    FrameRequest request = torus_request();
+TEST_F(MemoryBudget, RefusesAPictureBeforeAllocation) {
+    FrameRequest request = described_request();
     request.size = {160, 120};
     Renderer& renderer = test_renderer();
     renderer.set_volume(nullptr);
@@ -163,7 +163,7 @@ TEST_F(MemoryBudget, WhatDoesNotFitIsRefusedBeforeAnythingIsAllocated) {
     EXPECT_THAT(message, HasSubstr("tile entries"));
     EXPECT_THAT(message, HasSubstr("--size"));
 
-    // With what it says it needs, it does fit; with a byte less it does not.
+    // The stated amount is enough; one byte less is not.
     const std::uint64_t needed = describe_frame(request, renderer).total_bytes();
     renderer.set_memory_budget(needed - 1);
     EXPECT_NE(refusal(request), "");
@@ -172,8 +172,8 @@ TEST_F(MemoryBudget, WhatDoesNotFitIsRefusedBeforeAnythingIsAllocated) {
     EXPECT_LE(draw(request).device_bytes, needed);
 }
 
-TEST_F(MemoryBudget, EveryOfferFits) {
-    FrameRequest request = torus_request();
+TEST_F(MemoryBudget, OffersOnlyChangesThatFit) {
+    FrameRequest request = described_request();
     request.size = {160, 120};
     request.settings.sheets = SheetCut::Sliced;
     request.outputs.tau = true;
@@ -184,7 +184,7 @@ TEST_F(MemoryBudget, EveryOfferFits) {
     for (const double share : {0.9, 0.6, 0.35}) {
         const auto budget = static_cast<std::uint64_t>(share * static_cast<double>(needed));
         renderer.set_memory_budget(budget);
-        const auto offers = renderer.what_fits(request);
+        const auto offers = renderer.fitting_changes(request);
         EXPECT_FALSE(offers.empty()) << share;
         for (const auto& [text, changed] : offers) {
             SCOPED_TRACE(text);
@@ -197,14 +197,14 @@ TEST_F(MemoryBudget, EveryOfferFits) {
     }
 }
 
-TEST_F(MemoryBudget, TheLargestPictureIsTheLargest) {
-    FrameRequest request = torus_request();
+TEST_F(MemoryBudget, OffersTheLargestPictureThatFits) {
+    FrameRequest request = described_request();
     request.size = {400, 300};
     Renderer& renderer = test_renderer();
     renderer.set_volume(nullptr);
     renderer.set_volume(request.volume);
     renderer.set_memory_budget(describe_frame(request, renderer).total_bytes() / 2);
-    FrameRequest fitting = renderer.what_fits(request).front().request;
+    FrameRequest fitting = renderer.fitting_changes(request).front().request;
     EXPECT_LT(fitting.size.x, request.size.x);
     EXPECT_NEAR(fitting.size.x * 3.0, fitting.size.y * 4.0, 8);
     EXPECT_EQ(refusal(fitting), "");

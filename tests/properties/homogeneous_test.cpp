@@ -1,4 +1,4 @@
-// A homogeneous slab is as opaque as its thickness says, whatever the sheets: alpha = 1 - exp(-sigma L).
+// The opacity of a homogeneous slab follows its thickness, independent of the sheets: alpha = 1 - exp(-sigma L).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,12 +17,12 @@ struct Slab {
     glm::dvec3 normal{0, 0, 1};  ///< index space, unit
     double thickness = 10;       ///< voxels along the normal
     bool transfer = false;       ///< extinction by a transfer function
-    double tolerance = 1.2e-3;   ///< kernels of one side waver with the lattice
+    double tolerance = 1.2e-3;   ///< sums of one side's kernels vary with the lattice
 };
 
 struct Errors {
-    double worst = 0, apart = 0;  ///< from what the thickness says, and between sheets
-    double least = 1, most = 0;   ///< opacity expected
+    double worst = 0, apart = 0;  ///< difference to the closed form, and between sheets
+    double least = 1, most = 0;   ///< range of the expected opacity
 };
 
 void PrintTo(const Slab& slab, std::ostream* out) {
@@ -48,7 +48,7 @@ Errors errors_of(const Slab& slab, const Settings& settings) {
     shot.settings = settings;
     shot.settings.saturation = 1;
     shot.width = shot.height = 8;
-    // The slab's faces in world space: n_w . (x - c_w) = +- thickness / 2 |n_w|-wise.
+    // The slab's faces in world space.
     const glm::dvec3 n_world = glm::transpose(glm::inverse(slab.axes)) * slab.normal;
     Errors errors;
     for (const glm::dvec3& direction : {glm::dvec3(0), glm::dvec3(0.45, 0.1, 0), glm::dvec3(-0.3, 0.35, 0.2)}) {
@@ -84,7 +84,7 @@ Errors errors_of(const Slab& slab, const Settings& settings) {
     return errors;
 }
 
-TEST_P(HomogeneousSlab, IsAsOpaqueAsItIsThickForAnySheets) {
+TEST_P(HomogeneousSlab, HasTheOpacityOfItsThicknessForAnySheets) {
     const Slab& slab = GetParam();
     const Errors e = errors_of(slab, {});
     std::printf("%-30s alpha %.3f to %.3f, worst %.1e, between sheets %.1e\n", slab.name, e.least, e.most, e.worst,
@@ -105,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(
              .tolerance = 3.5e-3},
         Slab{.name = "material_diagonal", .normal = glm::normalize(glm::dvec3(1, 1, 0)), .tolerance = 1.5e-3},
         Slab{.name = "material_space_diagonal", .normal = glm::normalize(glm::dvec3(1, 1, 1)), .tolerance = 2.8e-3},
-        // Next to the grid's own planes all voxels of a face err alike, and smoothing helps little.
+        // Near the grid's own planes all voxels of a face have similar errors, and smoothing helps little.
         Slab{.name = "material_tilted", .normal = glm::normalize(glm::dvec3(0.06, 0.04, 1)), .tolerance = 3e-3},
         Slab{.name = "material_between_samples", .thickness = 10.37, .tolerance = 3.2e-3},
         Slab{.name = "material_anisotropic",
@@ -114,7 +114,7 @@ INSTANTIATE_TEST_SUITE_P(
         Slab{.name = "material_anisotropic_across",
              .axes = glm::dmat3(glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 2.5)),
              .normal = glm::dvec3(1, 0, 0)},
-        // Up to 62 degrees across the face in index space: twice the way per voxel.
+        // Up to 62 degrees across the face in index space: twice the length per voxel.
         Slab{.name = "material_anisotropic_oblique",
              .axes = glm::dmat3(glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 2.5)),
              .normal = glm::normalize(glm::dvec3(0.5, 0.3, 1)),
@@ -131,8 +131,8 @@ INSTANTIATE_TEST_SUITE_P(
              .transfer = true}),
     [](const auto& test) { return std::string(test.param.name); });
 
-TEST(HomogeneousBox, OfATransferFunctionWithoutIsoValuesIsAsOpaqueAsItIsThick) {
-    // Every voxel is the same: the kernels' sum is one inside, and along an axis their integral is the box's length.
+TEST(HomogeneousBox, HasTheOpacityOfItsThicknessWithoutIsoValues) {
+    // All voxels are equal: the sum of kernels is one inside, and its integral along an axis is the length of the box.
     Shot shot;
     shot.volume = sampled(
         {32, 32, 12}, [](const glm::dvec3&) { return 7.0; },

@@ -1,4 +1,4 @@
-// What must not change the picture, and what must change it in a known way.
+// Changes that must not affect the picture, and changes with a known effect.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,15 +11,15 @@
 namespace edgesplat::test {
 namespace {
 
-// --- A uniform slab absorbs as the closed form says -------------------------------------------------------------
+// --- A uniform slab absorbs according to the closed form --------------------------------------------------------
 
-/// Alpha in the middle of a uniform box seen along `direction` (index space) from far away, minus the closed form.
+/// Alpha in the middle of a uniform box, seen along `direction` (index space) from far away, minus the closed form.
 double slab_error(const glm::dmat3& axes, double sheet_spacing, const glm::dvec3& direction, EdgeEstimator edges) {
     constexpr int kSize = 16;
     Shot shot;
     shot.volume = sampled(
         glm::ivec3(kSize), [](const glm::dvec3&) { return 1.0; }, axes);
-    const glm::dvec3 way = axes * direction;  // one voxel-sized step of the ray, in world
+    const glm::dvec3 way = axes * direction;  // one voxel-sized step of the ray, in world space
     const double length =
         glm::length(way) / std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)}) * kSize;
     const double extinction = 1 / length;
@@ -59,7 +59,7 @@ TEST(Slab, AbsorbsByTheClosedFormOnAnisotropicAndObliqueGrids) {
     }
 }
 
-// --- Settings that must not matter, or only so much -------------------------------------------------------------
+// --- Settings without effect, or with a bounded one -------------------------------------------------------------
 
 TEST(Settings, EdgesOffIsIsotropicBitForBit) {
     Shot shot = torus_shot();
@@ -89,7 +89,7 @@ TEST(Settings, CullingBuriedVoxelsChangesLittle) {
     EXPECT_LE(compare_images(culled, render(shot).color).max, 1.0 / 256);
 }
 
-// --- Where the volume lies --------------------------------------------------------------------------------------
+// --- Position of the volume -------------------------------------------------------------------------------------
 
 void expect_alike(const Image& a, const Image& b, const char* what) {
     const ImageDifference difference = compare_images(a, b, 2e-3);
@@ -97,7 +97,7 @@ void expect_alike(const Image& a, const Image& b, const char* what) {
     EXPECT_GE(difference.psnr, 55) << what;
 }
 
-TEST(Place, RotatedAndShiftedTogetherLooksTheSame) {
+TEST(Place, DoesNotMatterIfRotatedAndShiftedTogether) {
     Shot shot = torus_shot();
     shot.scene.lights = {directional_light({0.4, -1, 0.6})};
     const glm::dmat3 rotation(glm::rotate(glm::dmat4(1), 1.1, glm::normalize(glm::dvec3(1, -2, 0.7))));
@@ -112,13 +112,13 @@ TEST(Place, RotatedAndShiftedTogetherLooksTheSame) {
     }
 }
 
-TEST(Place, MirroredTogetherGivesTheMirroredPicture) {
+TEST(Place, MirroredTogetherMirrorsThePicture) {
     Shot shot = torus_shot();
     shot.scene.lights = {directional_light({0.4, -1, 0.6})};
     const Image still = render(shot).color;
     const Image mirrored = render(moved(shot, glm::dmat3(-1, 0, 0, 0, 1, 0, 0, 0, 1), {7, 0, 0})).color;
     expect_alike(still, flipped(mirrored), "mirrored in x");
-    // Reversed axis of the grid and of the samples: the same object.
+    // The grid's axis and the samples reversed: the same object.
     const auto& v = *shot.volume;
     const auto reversed = sampled(v.geometry.dims, [&](const glm::dvec3& x) {
         return static_cast<double>(
@@ -128,7 +128,7 @@ TEST(Place, MirroredTogetherGivesTheMirroredPicture) {
     expect_alike(still, render(shot).color, "axis y and samples reversed");
 }
 
-TEST(Place, ScaledTogetherLooksTheSame) {
+TEST(Place, DoesNotMatterIfScaledTogether) {
     Shot shot = torus_shot();
     const Image still = render(shot).color;
     for (const double scale : {1e-3, 1e3}) {

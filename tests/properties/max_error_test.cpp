@@ -1,4 +1,4 @@
-// --max-error keeps its word on volumes that it was not made with: the large picture against its own reference.
+// --max-error keeps its bound on volumes it was not tuned with: the large picture against its own reference.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -22,7 +22,7 @@ struct Case {
     double iso;
     const char* view;
     double limit;
-    int factor;  ///< taken down by, to keep the test short
+    int factor;  ///< downsampling factor, which keeps the test short
 };
 
 class MaxError : public testing::TestWithParam<Case> {};
@@ -49,7 +49,7 @@ TEST_P(MaxError, HoldsForTheLargePicture) {
     const reference::PreparedVolume model(*volume, scene, accuracy::model_of({}));
     const auto expected =
         reference::direct_evaluation(model, camera, kSize, kSize, reference::Output::Color, {5e-4, {}});
-    // Whichever of them was the fastest today.
+    // All configurations that could have been chosen, whichever was the fastest.
     std::size_t allowed = 0;
     for (const accuracy::TriedSettings& tried : choice.tried) {
         const double bound = accuracy::kErrorMargin * tried.error;

@@ -11,7 +11,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// Where a profile that starts high first falls below `level`, in samples.
+/// The first point where a profile falls below `level`, in samples.
 std::optional<double> first_below(std::span<const double> profile, double level) {
     for (std::size_t i = 1; i < profile.size(); ++i) {
         if (profile[i] < level && profile[i - 1] >= level)
@@ -20,7 +20,7 @@ std::optional<double> first_below(std::span<const double> profile, double level)
     return {};
 }
 
-/// The last time it does so before sample `end`: ripple of the inside is not the edge.
+/// The last such point before sample `end`: ripple inside the object is not the edge.
 std::optional<double> last_below(std::span<const double> profile, double level, double end) {
     for (std::size_t i = std::min(profile.size(), static_cast<std::size_t>(std::ceil(end)) + 1); i-- > 1;) {
         if (profile[i] < level && profile[i - 1] >= level)
@@ -31,7 +31,7 @@ std::optional<double> last_below(std::span<const double> profile, double level, 
 
 }  // namespace
 
-// Here, and not in the header, which brings Vulkan's headers to every test that way.
+// Defined here, since the header would include Vulkan's headers in every test.
 bool refines_pixels() {
     return gpu::profile_named(test_renderer().device().profile).refines;
 }

@@ -1,4 +1,4 @@
-// Smooth outlines: one ray a pixel, beside the exact picture of 6 x 6 rays a pixel.
+// Smooth outlines with one ray per pixel, compared with the exact picture of 6 x 6 rays per pixel.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// A scene of exact_scene(), its truth that of whole pixels.
+/// A scene of exact_scene() whose truth is averaged over whole pixels.
 Exact whole_pixels(const std::string& name) {
     Exact scene = exact_scene(name);
     scene.shot.width = scene.shot.height = 80;
@@ -34,12 +34,12 @@ Shot smooth(Shot shot) {
     return shot;
 }
 
-/// Of colour and opacity.
+/// RMS error of colour and opacity.
 double rms(const Image& image, const Image& truth) {
     return compare_images(image, truth).rmse;
 }
 
-TEST(Outlines, AreNearerToWholePixelsThanAnyRayIs) {
+TEST(Outlines, ApproximateWholePixelsBetterThanSingleRays) {
     double sum = 0;
     const std::array scenes{"ellipsoid", "tilted-torus", "shell", "vessels"};
     for (const char* name : scenes) {
@@ -50,15 +50,15 @@ TEST(Outlines, AreNearerToWholePixelsThanAnyRayIs) {
         const double rays =
             rms(test_renderer().raycast(shot.scene, shot.camera, shot.settings, {}, shot.width, shot.height).color,
                 scene.truth);
-        std::printf("%-14s rays %.4f, faces %.4f, with smooth outlines %.4f: %.2f of the rays'\n", name, rays, stepped,
-                    ramp, ramp / rays);
+        std::printf("%-14s rays %.4f, faces %.4f, with smooth outlines %.4f: %.2f of the rays' error\n", name, rays,
+                    stepped, ramp, ramp / rays);
         EXPECT_LT(ramp, 0.7 * stepped) << name;
         sum += ramp / rays;
     }
     EXPECT_LT(sum / scenes.size(), 0.6);
 }
 
-TEST(Outlines, ShowTheShareOfThePixelThatIsCovered) {
+TEST(Outlines, ShowTheCoveredShareOfThePixel) {
     const Exact scene = whole_pixels("small-ball");
     const Image image = render(smooth(scene.shot)).color;
     double worst = 0, sum = 0;
@@ -74,33 +74,33 @@ TEST(Outlines, ShowTheShareOfThePixelThatIsCovered) {
         }
     }
     ASSERT_GT(passed, 30);
-    std::printf("%d pixels: %.4f in the mean, %.3f at most\n", passed, sum / passed, worst);
+    std::printf("%d pixels: mean %.4f, maximum %.3f\n", passed, sum / passed, worst);
     EXPECT_LT(sum / passed, 0.03);
     EXPECT_LT(worst, 0.15);
 }
 
-TEST(Outlines, LeaveThePictureAloneWhereNonePasses) {
+TEST(Outlines, ChangeNothingWithoutAnOutline) {
     Exact scene = exact_scene("ellipsoid");
-    // Nothing but the middle of the solid.
+    // Only the middle of the solid is visible.
     scene.shot.camera.fov_y = 4;
-    // Two shaders, which a compiler may round in different ways.
+    // Two different shaders, which a compiler may round differently.
     EXPECT_LE(compare_images(render(scene.shot).color, render(smooth(scene.shot)).color).max, 1e-6);
 }
 
-TEST(Outlines, OfSeveralSamplesAreTheSamples) {
+TEST(Outlines, ChangeNothingWithSeveralSamples) {
     Exact scene = exact_scene("small-ball");
     scene.shot.width = scene.shot.height = 48;
     scene.shot.scene.effects.samples = 2;
     EXPECT_EQ(render(scene.shot).color.pixels, render(smooth(scene.shot)).color.pixels);
 }
 
-TEST(Outlines, PlainKernelsHaveNone) {
+TEST(Outlines, ChangeNothingWithPlainKernels) {
     Exact scene = exact_scene("small-ball");
     scene.shot.settings.edges = EdgeEstimator::Off;
     EXPECT_EQ(render(scene.shot).color.pixels, render(smooth(scene.shot)).color.pixels);
 }
 
-TEST(Outlines, AreTheSameByWhicheverOrderPixelsAreDrawnIn) {
+TEST(Outlines, AreTheSameWithRefinedPixels) {
     Exact scene = exact_scene("tilted-torus");
     Shot every = smooth(scene.shot);
     every.settings.pixels = PixelChoice::Every;
@@ -108,7 +108,7 @@ TEST(Outlines, AreTheSameByWhicheverOrderPixelsAreDrawnIn) {
     EXPECT_LT(accuracy::image_error(refined, all).max, 0.02);
 }
 
-TEST(Outlines, OfLayersAreRefused) {
+TEST(Outlines, AreRefusedInLayers) {
     Exact scene = exact_scene("small-ball");
     scene.shot.settings.sheet_format = SheetFormat::Layers;
     try {

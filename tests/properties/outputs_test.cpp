@@ -1,4 +1,4 @@
-// Depth, normal and edge distance against a plane whose place is known.
+// Depth, normal and edge distance of a plane at a known position.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// An opaque half space seen face-on from `distance` voxels before its surface; also on an anisotropic grid.
+/// An opaque half space seen face-on from `distance` voxels in front of its surface; also on an anisotropic grid.
 struct FaceOn {
     Shot shot;
     glm::dvec3 normal_world;
@@ -34,7 +34,7 @@ FaceOn face_on(const Pose& pose, const glm::dvec3& spacing) {
     return f;
 }
 
-TEST(Outputs, OfAPlaneThatFacesTheCamera) {
+TEST(Outputs, AreRightForAPlaneThatFacesTheCamera) {
     for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(0.6, 1.0, 1.4)}) {
         for (const Pose& pose : poses(8)) {
             const FaceOn f = face_on(pose, spacing);
@@ -50,7 +50,7 @@ TEST(Outputs, OfAPlaneThatFacesTheCamera) {
                         widest, glm::degrees(std::acos(std::min(glm::dot(glm::normalize(n), f.normal_world), 1.0))));
                     const float d = r.distance->at(x, y, 0);
                     EXPECT_TRUE(std::isfinite(d));
-                    EXPECT_LT(d, 0.1F) << "the seen voxels are inside";
+                    EXPECT_LT(d, 0.1F) << "the visible voxels are inside";
                     EXPECT_GT(d, -2.0F) << "and next to the edge";
                 }
             }
@@ -69,11 +69,11 @@ TEST(Outputs, AreZeroWhereNothingIsHit) {
         EXPECT_TRUE(within(*image, 0, 0));
 }
 
-TEST(Outputs, AskingForThemDoesNotChangeThePicture) {
+TEST(Outputs, DoNotChangeThePicture) {
     const Shot shot = torus_shot();
     const Image alone = render(shot).color;
     EXPECT_EQ(alone.pixels, render(shot, {.tau = true, .depth = true, .normal = true, .distance = true}).color.pixels);
-    EXPECT_EQ(alone.pixels, render(shot).color.pixels) << "and a frame is the same again";
+    EXPECT_EQ(alone.pixels, render(shot).color.pixels) << "the next frame is the same again";
 }
 
 }  // namespace

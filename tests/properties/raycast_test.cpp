@@ -1,4 +1,4 @@
-// The ray caster against closed forms, against itself without its short cuts, and against splatting.
+// The ray caster against closed forms, against itself without its optimizations, and against splatting.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -16,9 +16,9 @@ namespace {
 constexpr RaycastFilter kCubic = RaycastFilter::Cubic;
 constexpr std::array kFilters{RaycastFilter::Trilinear, kCubic};
 
-/// A picture by rays of what `render` would show by splats.
+/// The ray-cast version of a shot.
 RenderResult cast(const Shot& shot, const RaycastSettings& how = {}) {
-    Shot least = shot;  // so that render() knows which volume the renderer has
+    Shot least = shot;  // makes render() set this volume in the renderer
     least.width = least.height = 1;
     render(least);
     return test_renderer().raycast(shot.scene, shot.camera, shot.settings, how, shot.width, shot.height);
@@ -39,7 +39,7 @@ PixelRay ray_of(const Shot& shot, int x, int y) {
     return {geometry.to_index(frame.eye), u, glm::length(geometry.index_to_world_axes * u)};
 }
 
-/// Values that fall linearly on both sides of the plane z = 10.3, and reach 0.5 at 5.2 voxels from it.
+/// Values that fall linearly on both sides of the plane z = 10.3, and reach 0.5 at a distance of 5.2 voxels.
 Shot wedge_shot(double extinction, const glm::dmat3& axes = glm::dmat3(1)) {
     Shot shot;
     shot.volume = sampled(
@@ -49,7 +49,7 @@ Shot wedge_shot(double extinction, const glm::dmat3& axes = glm::dmat3(1)) {
     return shot;
 }
 
-TEST(Raycast, OpacityOfASlabIsExactAtEveryStep) {
+TEST(Raycast, GivesTheExactOpacityOfASlabAtEveryStep) {
     const glm::dmat3 oblique(glm::dvec3(0.9, 0.2, 0.1), glm::dvec3(0.2, -1.1, 0.15), glm::dvec3(0.1, 0.3, 1.7));
     for (const glm::dmat3& axes : {glm::dmat3(1), oblique}) {
         for (const double step : {0.1, 0.5, 1.3}) {
@@ -64,7 +64,7 @@ TEST(Raycast, OpacityOfASlabIsExactAtEveryStep) {
     }
 }
 
-TEST(Raycast, OnlyWhatIsInFrontOfTheEyeCounts) {
+TEST(Raycast, IgnoresMatterBehindTheEye) {
     Shot shot = wedge_shot(0.2);
     shot.camera.eye = shot.volume->geometry.to_world({11.2, 10.1, 9.4});
     const Image color = cast(shot).color;
@@ -73,7 +73,7 @@ TEST(Raycast, OnlyWhatIsInFrontOfTheEyeCounts) {
     EXPECT_NEAR(static_cast<double>(color.at(30, 31, 3)), expected, 2e-4);
 }
 
-TEST(Raycast, SphereIsWhereItIsAndLitAsItShouldBe) {
+TEST(Raycast, PlacesAndLightsASphereCorrectly) {
     const glm::dvec3 center(15.7, 15.2, 14.9);
     constexpr double kRadius = 9;
     Shot shot;
@@ -105,10 +105,10 @@ TEST(Raycast, SphereIsWhereItIsAndLitAsItShouldBe) {
         }
     }
     EXPECT_GT(hits, 1500);
-    EXPECT_LT(std::sqrt(squares / hits), 0.03) << "central differences are off by 2.7 degrees rms";
+    EXPECT_LT(std::sqrt(squares / hits), 0.03) << "central differences have an error of 2.7 degrees rms";
 }
 
-TEST(Raycast, LeapsOverEmptySpaceDoNotShow) {
+TEST(Raycast, SkipsEmptySpaceWithoutAChange) {
     Shot shot = torus_shot();
     shot.width = 90;
     const Camera inside = look(*shot.volume, {14.2, 13.5, 9.5}, {4, 13, 9}, 100);
@@ -120,14 +120,14 @@ TEST(Raycast, LeapsOverEmptySpaceDoNotShow) {
     }
 }
 
-TEST(Raycast, LeapsHeedThatTheSplineLeavesTheRangeOfItsSamples) {
+TEST(Raycast, SkipsNoBrickInWhichTheSplineExceedsItsSamples) {
     Shot shot;
     unsigned state = 7;
     shot.volume = sampled({33, 30, 29}, [&](const glm::dvec3&) {
         state = state * 1664525U + 1013904223U;
         return (state >> 8U) / 16777216.0;
     });
-    // One sample of a hundred lies above, so that many bricks have none.
+    // One sample in a hundred lies above the iso-value, so that many bricks contain none.
     shot.scene = two_tone(0, 0.5);
     shot.scene.iso_values = {0.99};
     shot.camera = look(*shot.volume, {15, -60, 40}, {16, 15, 14}, 30);
@@ -136,10 +136,10 @@ TEST(Raycast, LeapsHeedThatTheSplineLeavesTheRangeOfItsSamples) {
     EXPECT_NE(leapt.pixels, cast(shot).color.pixels);
 }
 
-/// A picture, beside what rays through the same field show in double precision and without steps.
+/// Compares a picture with rays through the same field in double precision and without steps.
 class RaycastInDouble : public testing::TestWithParam<RaycastFilter> {
   protected:
-    /// But for one pixel in a hundred, whose rays graze the surface: matter of less than a step may be missed.
+    /// One pixel in a hundred is ignored: its ray grazes the surface, and matter shorter than a step may be missed.
     static void expect_near(const Shot& shot, double largest, double step = 0.5) {
         const RaycastSettings how{.step = step, .filter = GetParam()};
         reference::DirectOptions options;
@@ -161,40 +161,40 @@ class RaycastInDouble : public testing::TestWithParam<RaycastFilter> {
     }
 };
 
-TEST_P(RaycastInDouble, LengthsOfWaysThroughMatter) {
+TEST_P(RaycastInDouble, MatchesLengthsThroughMatter) {
     Shot shot = torus_shot();
     shot.scene.lights.clear();
     shot.scene.materials[2].extinction = 0.08;
-    // Two crossings to 1e-4 voxel; trilinear interpolation has kinks, and half as many steps.
+    // Two crossings with an error of 1e-4 voxel; trilinear interpolation has kinks, and half as many steps.
     expect_near(shot, GetParam() == kCubic ? 2 * 1e-4 * 0.08 : 3e-3);
 }
 
-TEST_P(RaycastInDouble, SurfacesAndTheirLight) {
+TEST_P(RaycastInDouble, MatchesSurfacesAndTheirLight) {
     Shot shot = torus_shot();
     shot.scene.iso_values = {0.5};
     shot.scene.materials = {{}, {{1, 0.85, 0.7}, 500}};
     expect_near(shot, 1e-3);
 }
 
-/// Veils of two colours around a torus, and what is solid in its middle.
+/// Translucent layers of two colours around a torus, with a solid core.
 std::vector<TransferPoint> veils() {
     return {{0.1, {0.2, 0.5, 1}, 0},     {0.2, {0.2, 0.5, 1}, 0.25}, {0.3, {0.9, 0.4, 0.1}, 0.05},
             {0.6, {0.9, 0.4, 0.1}, 0.1}, {0.75, {1, 0.9, 0.8}, 0.3}, {0.9, {1, 0.9, 0.8}, 4}};
 }
 
-TEST_P(RaycastInDouble, TransferFunctions) {
+TEST_P(RaycastInDouble, MatchesTransferFunctions) {
     Shot shot = torus_shot();
     shot.scene.iso_values.clear();
     shot.scene.materials = {{}};
     shot.scene.transfer = veils();
-    // Between its samples a ray takes values for linear, and light for constant; shorter steps show that no more is
-    // wrong.
+    // Between its samples, a ray assumes linear values and constant light; shorter steps show that this is the only
+    // error.
     expect_near(shot, 0.02);
     expect_near(shot, 0.01, 0.1);
     shot.scene.lights.clear();
     expect_near(shot, 0.02);
     expect_near(shot, 2e-3, 0.1);
-    // A step that no sample shows: within a thousandth of the range from nothing to solid.
+    // A step between two samples: within a thousandth of the range from transparent to solid.
     shot.scene.transfer = {{0.4999, {1, 0.5, 0.25}, 0}, {0.5001, {1, 0.5, 0.25}, 20}};
     expect_near(shot, 5e-3, 0.05);
 }
@@ -202,11 +202,11 @@ TEST_P(RaycastInDouble, TransferFunctions) {
 INSTANTIATE_TEST_SUITE_P(Filters, RaycastInDouble, testing::ValuesIn(kFilters),
                          [](const auto& test) { return test.param == kCubic ? "cubic" : "trilinear"; });
 
-/// Scenes that the grid holds only just: where rays through the spline are to be nearer to the truth.
-TEST(Raycast, TheSplineIsNearerToTheTruth) {
+/// Scenes that the grid barely resolves, where rays through the spline must be closer to the truth.
+TEST(Raycast, IsCloserToTheTruthWithTheSpline) {
     struct Gain {
         const char* scene;
-        double decibels;  ///< at least, over trilinear interpolation
+        double decibels;  ///< minimum, over trilinear interpolation
     };
     for (const auto& [name, least] :
          {Gain{"sphere", 6}, Gain{"torus", 3}, Gain{"tilted-torus", 3}, Gain{"ellipsoid", 4}, Gain{"small-ball", 4},
@@ -220,7 +220,7 @@ TEST(Raycast, TheSplineIsNearerToTheTruth) {
     }
 }
 
-TEST(Raycast, MaterialsMayChangeBetweenPictures) {
+TEST(Raycast, AppliesChangedMaterials) {
     Shot shot = torus_shot();
     const Image before = cast(shot).color;
     std::swap(shot.scene.materials[0], shot.scene.materials[1]);
@@ -230,7 +230,7 @@ TEST(Raycast, MaterialsMayChangeBetweenPictures) {
     EXPECT_EQ(cast(shot).color.pixels, before.pixels);
 }
 
-TEST(Raycast, TransferFunctionsMayChangeBetweenPictures) {
+TEST(Raycast, AppliesChangedTransferFunctions) {
     Shot shot = torus_shot();
     const Image materials = cast(shot).color;
     shot.scene.transfer = veils();
@@ -247,10 +247,10 @@ TEST(Raycast, TransferFunctionsMayChangeBetweenPictures) {
     EXPECT_EQ(cast(shot).color.pixels, materials.pixels);
 }
 
-TEST(Raycast, ValuesBeyondATransferFunctionHaveWhatItsEndsHave) {
+TEST(Raycast, ExtendsATransferFunctionByItsEnds) {
     Shot shot = wedge_shot(0);
     const PixelRay ray = ray_of(shot, 32, 32);
-    // All of the volume, from border to border.
+    // The whole volume, from border to border.
     const double way = 21 / std::abs(ray.u.z) * ray.mm;
     for (const double value : {-100.0, 0.0, 2.0, 100.0}) {
         shot.scene.iso_values.clear();
@@ -258,13 +258,13 @@ TEST(Raycast, ValuesBeyondATransferFunctionHaveWhatItsEndsHave) {
         shot.scene.transfer = {{value, {1, 1, 1}, 0.02}};
         EXPECT_NEAR(static_cast<double>(cast(shot).color.at(32, 32, 3)), -std::expm1(-0.02 * way), 2e-4) << value;
     }
-    // Extinction is linear in values that rise to 5.7 and fall again; the samples beside the top are 5.4 and 5.
+    // Extinction is linear in values that rise to 5.7 and fall again; the samples beside the maximum are 5.4 and 5.
     shot.scene.transfer = {{0, {1, 1, 1}, 0}, {5.7, {1, 1, 1}, 0.1}};
     const double tau = 0.1 / 5.7 * (5.7 * 5.7 - (0.3 * 5.55 + 0.7 * 5.35 - 5.2)) / std::abs(ray.u.z) * ray.mm;
     EXPECT_NEAR(static_cast<double>(cast(shot, {.step = 0.1}).color.at(32, 32, 3)), -std::expm1(-tau), 1e-3);
 }
 
-TEST(Raycast, FiltersMayChangeBetweenPictures) {
+TEST(Raycast, AppliesAChangedFilter) {
     const Shot shot = torus_shot();
     const Image trilinear = cast(shot).color, cubic = cast(shot, {.filter = kCubic}).color;
     EXPECT_NE(cubic.pixels, trilinear.pixels);
@@ -278,7 +278,7 @@ TEST(Raycast, LooksLikeSplatting) {
     EXPECT_GT(compare_images(cast(shot).color, splatted).psnr, 24);
 }
 
-TEST(Raycast, SmallAndFlatVolumes) {
+TEST(Raycast, DrawsSmallAndFlatVolumes) {
     for (const glm::ivec3& dims : {glm::ivec3(1), glm::ivec3(2), glm::ivec3(1, 9, 7), glm::ivec3(9, 1, 7),
                                    glm::ivec3(9, 7, 1), glm::ivec3(1, 1, 9)}) {
         for (const bool constant : {false, true}) {
@@ -299,7 +299,7 @@ TEST(Raycast, SmallAndFlatVolumes) {
     }
 }
 
-TEST(Raycast, FarEyesAndWideAngles) {
+TEST(Raycast, DrawsFromFarEyesAndAtWideAngles) {
     Shot shot = torus_shot();
     const glm::dvec3 target(14.3, 13.6, 9.4), way = glm::normalize(glm::dvec3(0.2, 1, -0.8));
     const auto seen_from = [&](double distance) {
@@ -308,7 +308,7 @@ TEST(Raycast, FarEyesAndWideAngles) {
     };
     const Image far = seen_from(1e5);
     EXPECT_TRUE(within(far, 0, 1.0001F));
-    EXPECT_GE(compare_images(seen_from(1e4), far).psnr, 35) << "both are parallel projections, nearly";
+    EXPECT_GE(compare_images(seen_from(1e4), far).psnr, 35) << "both are nearly parallel projections";
     for (const RaycastFilter filter : kFilters) {
         shot.camera = look(*shot.volume, {14, 5.5, 9}, target, 170);
         EXPECT_TRUE(within(cast(shot, {.filter = filter}).color, 0, 1.0001F));
@@ -317,7 +317,7 @@ TEST(Raycast, FarEyesAndWideAngles) {
     }
 }
 
-TEST(Raycast, SaysWhatItDidAndRefusesWhatItCannot) {
+TEST(Raycast, ReportsItsPassAndRefusesInvalidSteps) {
     Shot shot = torus_shot();
     shot.scene.background = {0.25, 0.5, 0.75};
     shot.camera.direction = -shot.camera.direction;

@@ -1,4 +1,4 @@
-// Real volumes in the folder EDGESPLAT_DATA names; skipped without it.
+// Real volumes from the folder that EDGESPLAT_DATA names; skipped without it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// Mean squared difference of neighbouring pixels' luminance: what blur takes away.
+/// Mean squared difference of neighbouring pixels' luminance; blur reduces it.
 double sharpness(const Image& image) {
     const auto luminance = [&](int x, int y) {
         return static_cast<double>(image.at(x, y, 0) + image.at(x, y, 1) + image.at(x, y, 2)) / 3;
@@ -42,7 +42,7 @@ class RealVolumes : public testing::Test {
         return shot;
     }
 
-    /// Looks along a direction of the world from a voxel.
+    /// Looks from a voxel along a direction in index space.
     static void stand(Shot& shot, const glm::dvec3& voxel, const glm::dvec3& direction, const glm::dvec3& up) {
         shot.camera.eye = shot.volume->geometry.to_world(voxel);
         shot.camera.direction = shot.volume->geometry.index_to_world_axes * direction;
@@ -50,7 +50,7 @@ class RealVolumes : public testing::Test {
         shot.camera.fov_y = 90;
     }
 
-    /// Edge-preserved against plain; both finite.
+    /// Sharpness with edges relative to plain splatting; checks that both are finite.
     static double gain_in_sharpness(Shot shot) {
         const Image edges = render(shot).color;
         EXPECT_TRUE(within(edges, 0, 1.0001F));
@@ -84,7 +84,7 @@ TEST_F(RealVolumes, AirwayIsSharperThanPlain) {
     EXPECT_GE(gain_in_sharpness(shot), 1.1);
 }
 
-TEST_F(RealVolumes, BothSurfacesOfTheIronProteinAreSeen) {
+TEST_F(RealVolumes, BothSurfacesOfTheIronProteinAreVisible) {
     Shot shot = shot_of("hipip/hipip.nhdr");
     shot.scene.iso_values = {20, 128};
     shot.scene.materials = {{}, {{0, 0, 1}, 0.08}, {{1, 0, 0}, 3}};
@@ -100,7 +100,7 @@ TEST_F(RealVolumes, BothSurfacesOfTheIronProteinAreSeen) {
         }
     }
     EXPECT_GT(blue, 1000) << "pixels of the outer shell";
-    EXPECT_GT(red, 100) << "pixels of the inner parts, through it";
+    EXPECT_GT(red, 100) << "pixels of the inner parts, through the shell";
 }
 
 }  // namespace

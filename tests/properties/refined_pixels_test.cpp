@@ -1,4 +1,4 @@
-// Settings::pixels: pictures of which some pixels are drawn and the others follow.
+// Settings::pixels: pictures in which some pixels are drawn and the others are interpolated.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// As in 8 bits of sRGB.
+/// The displayed value, in 8-bit steps of sRGB.
 double shown(float linear) {
     const double c = std::clamp(static_cast<double>(linear), 0.0, 1.0);
     return 255 * (c < 0.0031308 ? 12.92 * c : 1.055 * std::pow(c, 1 / 2.4) - 0.055);
@@ -38,12 +38,12 @@ Difference shown_difference(const Image& a, const Image& b) {
     return out;
 }
 
-/// Pictures with splats many pixels wide: from near by, from within, opaque, translucent, of a wall, cut.
+/// Pictures with splats many pixels wide: from nearby, from inside, opaque, translucent, of a wall, cut.
 std::vector<std::pair<std::string, Shot>> near_shots() {
     std::vector<std::pair<std::string, Shot>> shots;
     Shot torus = torus_shot();
     torus.camera = look(*torus.volume, {15, -2, 20}, {14, 9, 9}, 45);
-    torus.width = 203;  // no multiples of a tile, nor of a step
+    torus.width = 203;  // neither a multiple of a tile nor of a step
     torus.height = 158;
     shots.emplace_back("torus", torus);
     Shot inside = torus;
@@ -74,14 +74,14 @@ Shot with(Shot shot, PixelChoice pixels) {
     return shot;
 }
 
-TEST(RefinedPixels, FollowAsTheReferenceSays) {
-    if (!refines_pixels()) GTEST_SKIP() << "every pixel is drawn on such a device";
+TEST(RefinedPixels, MatchTheReference) {
+    if (!refines_pixels()) GTEST_SKIP() << "this device draws every pixel";
     for (const auto& [name, shot] : near_shots()) {
         SCOPED_TRACE(name);
         const Image every = render(with(shot, PixelChoice::Every)).color;
         const Image refined = render(with(shot, PixelChoice::Refined)).color;
         const reference::RefinedPicture want = reference::refine_pixels(every);
-        // Some follow indeed, and some had to be drawn.
+        // Some pixels are interpolated, and some had to be drawn.
         const double all = static_cast<double>(every.width) * every.height;
         EXPECT_LT(static_cast<double>(want.drawn), 0.75 * all);
         EXPECT_GT(static_cast<double>(want.drawn), 0.08 * all);
@@ -94,7 +94,7 @@ TEST(RefinedPixels, FollowAsTheReferenceSays) {
 }
 
 TEST(RefinedPixels, DifferByLessThanAStepOfEightBits) {
-    if (!refines_pixels()) GTEST_SKIP() << "every pixel is drawn on such a device";
+    if (!refines_pixels()) GTEST_SKIP() << "this device draws every pixel";
     for (const auto& [name, shot] : near_shots()) {
         SCOPED_TRACE(name);
         const Image every = render(with(shot, PixelChoice::Every)).color;
@@ -107,7 +107,7 @@ TEST(RefinedPixels, DifferByLessThanAStepOfEightBits) {
     }
 }
 
-TEST(RefinedPixels, ThoseThatAreDrawnAreTheSame) {
+TEST(RefinedPixels, LeaveTheDrawnPixelsUnchanged) {
     for (const auto& [name, shot] : near_shots()) {
         SCOPED_TRACE(name);
         const Image every = render(with(shot, PixelChoice::Every)).color;
@@ -120,8 +120,8 @@ TEST(RefinedPixels, ThoseThatAreDrawnAreTheSame) {
     }
 }
 
-TEST(RefinedPixels, TakeFewerFootprints) {
-    if (!refines_pixels()) GTEST_SKIP() << "every pixel is drawn on such a device";
+TEST(RefinedPixels, EvaluateFewerFootprints) {
+    if (!refines_pixels()) GTEST_SKIP() << "this device draws every pixel";
     const Shot shot = near_shots().front().second;
     const auto evaluated = [&](PixelChoice pixels) {
         test_renderer().count_fragments(true);
@@ -134,14 +134,14 @@ TEST(RefinedPixels, TakeFewerFootprints) {
     EXPECT_LT(evaluated(PixelChoice::Refined), 0.75 * every);
 }
 
-TEST(RefinedPixels, AreAllOfThemWhereSplatsAreSmall) {
+TEST(RefinedPixels, AreAllDrawnIfSplatsAreSmall) {
     Shot shot = torus_shot();
     shot.camera = look(*shot.volume, {15, -124, 26}, {14, 13, 9}, 40);
     EXPECT_EQ(render(with(shot, PixelChoice::Refined)).color.pixels,
               render(with(shot, PixelChoice::Every)).color.pixels);
 }
 
-TEST(RefinedPixels, LeaveOtherOutputsAlone) {
+TEST(RefinedPixels, DoNotChangeOtherOutputs) {
     const Shot shot = near_shots().front().second;
     const AovRequest all{.tau = true, .depth = true, .normal = true, .distance = true};
     const RenderResult refined = render(with(shot, PixelChoice::Refined), all);
@@ -153,8 +153,8 @@ TEST(RefinedPixels, LeaveOtherOutputsAlone) {
     EXPECT_EQ(test_renderer().validation_messages(), 0U);
 }
 
-/// The smallest pictures have no cell that is whole.
-TEST(RefinedPixels, AreAllOfThemInAPictureOfAFewPixels) {
+/// The smallest pictures have no complete cell.
+TEST(RefinedPixels, AreAllDrawnInAPictureOfAFewPixels) {
     for (const glm::ivec2& size : {glm::ivec2(1, 1), glm::ivec2(3, 2), glm::ivec2(4, 5), glm::ivec2(1, 40)}) {
         Shot shot = near_shots().front().second;
         shot.width = size.x;
@@ -169,10 +169,11 @@ TEST(RefinedPixels, AreAllOfThemInAPictureOfAFewPixels) {
     }
 }
 
-/// A large picture without faces that rays find leaves more room for lists than it has for what is noted of such faces.
-TEST(RefinedPixels, KeepTheirListsWhereAllOfThemHaveRoom) {
+/// In a large picture without traced faces, the lists have more room than the record of traced entries, which was
+/// allocated before.
+TEST(RefinedPixels, KeepTheirListsOnlyIfAllRecordsFit) {
     Renderer renderer({.device = test_renderer().device().name, .validation = true});
-    if (!renderer.device().is_processor) GTEST_SKIP() << "what is written behind buffers is not seen there";
+    if (!renderer.device().is_processor) GTEST_SKIP() << "this device does not detect writes beyond buffers";
     const AnalyticScene waves = analytic_scene("gyroid");
     const auto volume = std::make_shared<const Volume>(sample(waves));
     renderer.set_volume(volume);
@@ -182,7 +183,7 @@ TEST(RefinedPixels, KeepTheirListsWhereAllOfThemHaveRoom) {
     const Camera camera = look(*volume, {21, 3, 19}, {20, 20, 20}, 70);
     Settings plain, faces;
     plain.edges = EdgeEstimator::Off;
-    faces.sheets = SheetCut::Sliced;  // so that its lists are many
+    faces.sheets = SheetCut::Sliced;  // gives many lists
     faces.sheet_spacing = 0.5;
     for (const auto& [settings, pixels] : {std::pair(plain, 256), std::pair(faces, 128), std::pair(plain, 128)})
         EXPECT_EQ(renderer.render(scene, camera, settings, pixels, pixels).stats.validation_messages, 0U);

@@ -1,4 +1,4 @@
-// A picture that is made again is the same, whatever was drawn, made and freed in between.
+// A repeated picture is the same, whatever was drawn, created and freed in between.
 #include <gtest/gtest.h>
 
 #include "tests/properties/scenes.h"
@@ -6,7 +6,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// Every way to draw: each has other passes.
+/// The ways to draw: each runs other passes.
 struct Way {
     const char* name;
     void (*set)(Shot&);
@@ -43,7 +43,7 @@ class Repeat : public testing::TestWithParam<Way> {
     Shot shot_ = torus_shot();
 };
 
-TEST_P(Repeat, AfterAFlightPicturesAreThoseOfAFreshRenderer) {
+TEST_P(Repeat, MatchesAFreshRendererAfterAFlight) {
     Renderer renderer = renderer_of(shot_);
     for (int i = 0; i < 4; ++i) {
         shot_.camera.eye += glm::dvec3(0.2, 0.3, -0.1);
@@ -53,13 +53,13 @@ TEST_P(Repeat, AfterAFlightPicturesAreThoseOfAFreshRenderer) {
     EXPECT_TRUE(picture(renderer, shot_).color.pixels == picture(fresh, shot_).color.pixels);
 }
 
-TEST_P(Repeat, AfterOthersOfOtherSizesItIsTheSame) {
+TEST_P(Repeat, GivesTheSamePictureAfterOtherSizes) {
     Renderer fresh = renderer_of(shot_);
     const RenderResult expected = picture(fresh, shot_);
     Renderer renderer = renderer_of(shot_);
     for (int i = 0; i < 3; ++i) {
         EXPECT_TRUE(picture(renderer, shot_).color.pixels == expected.color.pixels);
-        // Buffers and images come and go, perhaps with the handles of others.
+        // Buffers and images are freed and created, possibly with the same handles.
         Shot other = shot_;
         other.width = 40 + 30 * i;
         other.scene.iso_values = {0.4};
@@ -76,8 +76,8 @@ TEST_P(Repeat, AfterOthersOfOtherSizesItIsTheSame) {
 INSTANTIATE_TEST_SUITE_P(Ways, Repeat, testing::ValuesIn(kWays),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
-    // Small chunks, so that there are some.
+TEST(RepeatOnAGpu, WaitsOnceForTheDeviceIfChunksArePredicted) {
+    // Small chunks, so that there are several.
     const auto opened = [](const Shot& shot) {
         Renderer renderer({.device = test_renderer().device().name, .validation = true, .profile = "generic"});
         renderer.set_volume(shot.volume);
@@ -89,7 +89,7 @@ TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
     const RenderResult first = picture(renderer, shot), again = picture(renderer, shot);
     EXPECT_TRUE(again.color.pixels == first.color.pixels);
     EXPECT_EQ(again.stats.submissions, 1U);
-    // Many chunks, after a picture that had none.
+    // Many chunks after a picture without any.
     Shot away = shot, many = shot;
     away.camera.direction = -away.camera.direction;
     many.width = many.height = 24;
@@ -102,7 +102,7 @@ TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
     const RenderResult foreseen = picture(renderer, many);
     EXPECT_TRUE(foreseen.color.pixels == expected.color.pixels);
     EXPECT_EQ(foreseen.stats.submissions, 1U);
-    // A sheet that is more than a chunk may be: nothing is tried in vain.
+    // A sheet larger than a chunk may be: the renderer does not retry in vain.
     Shot thick = many;
     thick.settings.sheet_spacing = 16;
     picture(renderer, thick);
@@ -111,7 +111,7 @@ TEST(RepeatOnAGpu, TheDeviceIsWaitedForOnceWhereChunksAreForeseen) {
     EXPECT_EQ(later.stats.submissions, 2U);
 }
 
-TEST(RepeatOfRays, IsTheSame) {
+TEST(RepeatOfRays, GivesTheSamePicture) {
     const Shot shot = torus_shot();
     Renderer renderer = renderer_of(shot);
     const auto cast = [&](const Camera& camera) {
@@ -126,7 +126,7 @@ TEST(RepeatOfRays, IsTheSame) {
     EXPECT_TRUE(again.color.pixels == first.color.pixels);
 }
 
-TEST(RepeatOfCounts, AreThoseOfTheFirstTime) {
+TEST(RepeatOfCounts, GivesTheSameCounts) {
     Shot shot = torus_shot();
     shot.settings.sheet_format = SheetFormat::Layers;
     Renderer renderer = renderer_of(shot);

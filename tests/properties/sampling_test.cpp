@@ -1,4 +1,4 @@
-// Antialiased footprints and several samples a pixel, against sums that are known and pictures that are larger.
+// Antialiased footprints and several samples per pixel, against known sums and larger pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace {
 
 const glm::dvec3 kCentre(13.6, 14.2, 13.9);
 constexpr double kRadius = 9.3;
-constexpr double kSigma = 1e-3;  // so thin that nothing hides anything
+constexpr double kSigma = 1e-3;  // so thin that nothing is occluded
 
-/// A ball of next to no extinction, `distance` mm away.
+/// A nearly transparent ball, `distance` mm away.
 Shot thin_ball(double distance, const glm::dmat3& axes = glm::dmat3(1)) {
     Shot shot;
     shot.volume = placed(std::make_shared<const Volume>(sample(sphere_scene({28, 28, 28}, kCentre, kRadius))), axes);
@@ -31,7 +31,7 @@ Shot thin_ball(double distance, const glm::dmat3& axes = glm::dmat3(1)) {
     return shot;
 }
 
-/// Optical depths times the area of a pixel at the ball, mm^2, summed over the picture.
+/// Optical depth times the area of a pixel at the ball, mm^2, summed over the picture.
 double matter_seen(const Shot& shot, double distance) {
     const double side = 2 * distance * std::tan(shot.camera.fov_y * std::numbers::pi / 360) / shot.height;
     double sum = 0;
@@ -40,7 +40,7 @@ double matter_seen(const Shot& shot, double distance) {
     return sum;
 }
 
-/// The same of a true ball: extinction times volume, each part of it as large as it looks from its distance.
+/// The same for the exact ball: extinction times volume, each part scaled by its apparent size.
 double matter_there(const Shot& shot, double distance) {
     const VolumeGeometry& geometry = shot.volume->geometry;
     const glm::dvec3 forward = glm::normalize(shot.camera.direction);
@@ -58,11 +58,11 @@ double matter_there(const Shot& shot, double distance) {
     return kSigma * cell * std::abs(glm::determinant(geometry.index_to_world_axes)) * sum;
 }
 
-TEST(Antialias, KeepsWhatAThingHoldsAtAnyDistance) {
+TEST(Antialias, KeepsTheAmountOfMatterAtAnyDistance) {
     for (const glm::dmat3& axes :
          {glm::dmat3(1), glm::dmat3(glm::dvec3(1, 0, 0), glm::dvec3(0, 0.6, 0), glm::dvec3(0.2, 0, 2.5))}) {
         double worst = 0, worst_without = 0;
-        // Pixels of 1.8 to 60 voxels: still nearer the picture does not hold the ball.
+        // Pixels of 1.8 to 60 voxels; from nearer, the ball does not fit into the picture.
         for (double distance = 160; distance < 6000; distance *= 1.31) {
             Shot shot = thin_ball(distance, axes);
             const double ball = matter_there(shot, distance);
@@ -70,13 +70,14 @@ TEST(Antialias, KeepsWhatAThingHoldsAtAnyDistance) {
             shot.scene.effects.antialias = true;
             worst = std::max(worst, std::abs(matter_seen(shot, distance) / ball - 1));
         }
-        std::printf("matter of a ball at any distance: off by %.4f at most, %.2f without\n", worst, worst_without);
+        std::printf("matter of a ball at any distance: error %.4f at most, %.2f without filter\n", worst,
+                    worst_without);
         EXPECT_LE(worst, 0.01);
-        EXPECT_GT(worst_without, 0.3) << "the test sees nothing";
+        EXPECT_GT(worst_without, 0.3) << "the filter has no effect in this test";
     }
 }
 
-TEST(Antialias, ChangesNoBitWherePixelsAreFinerThanHalfAVoxel) {
+TEST(Antialias, ChangesNoBitForPixelsFinerThanHalfAVoxel) {
     Shot shot = torus_shot();
     shot.width = shot.height = 160;
     const Image without = render(shot).color;
@@ -84,7 +85,7 @@ TEST(Antialias, ChangesNoBitWherePixelsAreFinerThanHalfAVoxel) {
     EXPECT_EQ(render(shot).color.pixels, without.pixels);
 }
 
-/// Layers of three voxels, matter and nothing by turns, which a grid of pixels of some voxels shows as broad bands.
+/// Layers of three voxels, alternately matter and empty. Pixels of several voxels show them as aliased bands.
 Shot striped() {
     Shot shot;
     shot.volume = sampled({96, 24, 40}, [](const glm::dvec3& x) {
@@ -98,12 +99,12 @@ Shot striped() {
     return shot;
 }
 
-TEST(Antialias, DetailsFinerThanAPixelBecomeTheirMean) {
+TEST(Antialias, AveragesDetailsFinerThanAPixel) {
     Shot shot = striped();
     const Image without = render(shot).color;
     shot.scene.effects.antialias = true;
     const Image filtered = render(shot).color;
-    // Half of the way through 24 voxels is matter.
+    // Half of the 24 voxels on the ray is matter.
     const double expected = -std::expm1(-0.02 * 12);
     const auto worst = [&](const Image& picture) {
         double off = 0;
@@ -112,12 +113,12 @@ TEST(Antialias, DetailsFinerThanAPixelBecomeTheirMean) {
                 off = std::max(off, std::abs(static_cast<double>(picture.at(x, y, 3)) / expected - 1));
         return off;
     };
-    std::printf("stripes finer than a pixel: off by %.4f, %.3f without\n", worst(filtered), worst(without));
+    std::printf("stripes finer than a pixel: error %.4f, %.3f without filter\n", worst(filtered), worst(without));
     EXPECT_LE(worst(filtered), 0.02);
-    EXPECT_GT(worst(without), 0.3) << "the test sees nothing";
+    EXPECT_GT(worst(without), 0.3) << "the filter has no effect in this test";
 }
 
-TEST(Antialias, IsFiniteHoweverLargeAPixelIs) {
+TEST(Antialias, IsFiniteForPixelsOfAnySize) {
     for (const double distance : {3e3, 1e6, 1e9, 2e10}) {
         for (const int side : {1, 2, 5}) {
             for (const double fov : {1.0, 90.0, 170.0}) {
@@ -134,7 +135,7 @@ TEST(Antialias, IsFiniteHoweverLargeAPixelIs) {
     }
 }
 
-TEST(Samples, AreTheMeanOfALargerPicture) {
+TEST(Samples, GiveTheMeanOfALargerPicture) {
     Shot shot = torus_shot();
     shot.settings.saturation = 1;
     shot.scene.effects.clip.keep = {{shot.volume->geometry.to_world({14, 13, 9}), {0.3, 0.1, 1}}};
@@ -159,12 +160,12 @@ TEST(Samples, AreTheMeanOfALargerPicture) {
                 }
             }
         }
-        std::printf("%d x %d samples against a picture as much larger: worst %.1e\n", n, n, worst);
+        std::printf("%d x %d samples against a picture larger by the same factor: worst %.1e\n", n, n, worst);
         EXPECT_LE(worst, 2e-5);
     }
 }
 
-TEST(Samples, NarrowThePixelThatFootprintsAreWidenedTo) {
+TEST(Samples, NarrowThePixelFilter) {
     // With n x n samples and the filter, the picture is the mean of a filtered picture n times larger.
     Shot shot = striped();
     shot.settings.saturation = 1;
@@ -183,7 +184,7 @@ TEST(Samples, NarrowThePixelThatFootprintsAreWidenedTo) {
                         2e-5F);
 }
 
-TEST(Samples, LeaveTheExtraOutputsAtThePixelsCentres) {
+TEST(Samples, KeepTheExtraOutputsAtPixelCentres) {
     Shot shot = torus_shot();
     const RenderResult one = render(shot, {.tau = true, .depth = true, .normal = true});
     shot.scene.effects.samples = 3;

@@ -1,4 +1,4 @@
-// Small scenes that the property and image tests look at.
+// Small scenes for the property and image tests.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace edgesplat::test {
 
-/// Looks from `eye` at `target`, both in index space, `up` in world.
+/// Looks from `eye` at `target`, both in index space; `up` in world space.
 inline Camera look(const Volume& volume, const glm::dvec3& eye, const glm::dvec3& target, double fov,
                    const glm::dvec3& up = {0.1, 0.05, 1}) {
     Camera camera;
@@ -20,7 +20,7 @@ inline Camera look(const Volume& volume, const glm::dvec3& eye, const glm::dvec3
     return camera;
 }
 
-/// The volume on another grid.
+/// The volume with other axes and origin.
 inline VolumePointer placed(const VolumePointer& volume, const glm::dmat3& axes, const glm::dvec3& origin = {}) {
     const auto copy = std::make_shared<Volume>(*volume);
     copy->geometry.index_to_world_axes = axes;
@@ -29,7 +29,7 @@ inline VolumePointer placed(const VolumePointer& volume, const glm::dmat3& axes,
     return copy;
 }
 
-/// Volume, camera and light moved alike by a linear map (columns: images of the world axes) and a shift.
+/// Volume, camera and light transformed together by a linear map (columns: images of the world axes) and a shift.
 inline Shot moved(Shot shot, const glm::dmat3& map, const glm::dvec3& shift = {}) {
     const auto& g = shot.volume->geometry;
     shot.volume = placed(shot.volume, map * g.index_to_world_axes, map * g.origin + shift);
@@ -41,7 +41,7 @@ inline Shot moved(Shot shot, const glm::dmat3& map, const glm::dvec3& shift = {}
     return shot;
 }
 
-/// An opaque torus and a translucent second material, lit by a headlight, whole in the picture.
+/// An opaque torus and a translucent second material, lit by a headlight, completely visible.
 inline Shot torus_shot() {
     Shot shot;
     shot.volume = std::make_shared<const Volume>(sample(torus_scene({30, 28, 20}, {14.3, 13.6, 9.4}, 8.2, 4.1)));
@@ -52,8 +52,8 @@ inline Shot torus_shot() {
     return shot;
 }
 
-/// An opaque ball, radius 8 around (22, 24, 18), over a plate z < 5.4; voxels of 1 mm. Light from one side that casts
-/// shadows, and nothing else.
+/// An opaque ball, radius 8 around (22, 24, 18), over a plate z < 5.4; voxels of 1 mm. One directional light with
+/// shadows, and no other light.
 inline Shot ball_over_plate_shot() {
     Volume volume;
     volume.geometry.dims = {48, 48, 32};

@@ -12,22 +12,22 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr double kRadius = 13;
-const glm::dvec3 kCentre(19.6, 19.3, 19.4);
+constexpr double kBallRadius = 13;
+const glm::dvec3 kBallCentre(19.6, 19.3, 19.4);
 
-/// An opaque white ball from afar.
-Shot ball() {
+/// An opaque white ball_shot, seen from far away.
+Shot ball_shot() {
     Shot shot;
-    shot.volume = std::make_shared<const Volume>(sample(sphere_scene({40, 40, 40}, kCentre, kRadius)));
+    shot.volume = std::make_shared<const Volume>(sample(sphere_scene({40, 40, 40}, kBallCentre, kBallRadius)));
     shot.scene.iso_values = {0.5};
     shot.scene.materials = {{}, {{1, 1, 1}, 6}};
-    shot.camera = look(*shot.volume, {60, -180, 90}, kCentre, 8);
+    shot.camera = look(*shot.volume, {60, -180, 90}, kBallCentre, 8);
     shot.width = shot.height = 80;
     return shot;
 }
 
-/// Largest difference of channel `c` from what `expected` says of normal and direction to the eye, over the pixels that
-/// see the ball within `rim` of its radius.
+/// Largest difference of channel `c` to `expected` (a function of normal and direction to the eye), over the pixels
+/// that see the ball_shot within `rim` of its radius.
 double worst_on_ball(const Shot& shot, const Image& picture, double rim,
                      const std::function<double(const glm::dvec3& n, const glm::dvec3& v)>& expected, int c = 0) {
     const reference::View view(shot.camera, shot.volume->geometry, shot.width, shot.height);
@@ -35,10 +35,10 @@ double worst_on_ball(const Shot& shot, const Image& picture, double rim,
     int seen = 0;
     for (int y = 0; y < shot.height; ++y) {
         for (int x = 0; x < shot.width; ++x) {
-            const glm::dvec3 u = view.ray(x, y), o = view.eye_index - kCentre;
+            const glm::dvec3 u = view.ray(x, y), o = view.eye_index - kBallCentre;
             const double b = glm::dot(o, u), miss2 = glm::dot(o, o) - b * b;
-            if (!(miss2 < rim * rim * kRadius * kRadius)) continue;
-            const glm::dvec3 n = (o + (-b - std::sqrt(kRadius * kRadius - miss2)) * u) / kRadius;
+            if (!(miss2 < rim * rim * kBallRadius * kBallRadius)) continue;
+            const glm::dvec3 n = (o + (-b - std::sqrt(kBallRadius * kBallRadius - miss2)) * u) / kBallRadius;
             worst = std::max(worst, std::abs(static_cast<double>(picture.at(x, y, c)) - expected(n, -u)));
             ++seen;
         }
@@ -47,8 +47,8 @@ double worst_on_ball(const Shot& shot, const Image& picture, double rim,
     return worst;
 }
 
-TEST(Lambert, OnABallUnderADirectionalLight) {
-    Shot shot = ball();
+TEST(Lambert, MatchesABallUnderADirectionalLight) {
+    Shot shot = ball_shot();
     shot.scene.ambient = 0.1;
     shot.scene.lights = {directional_light({0.5, -1, 0.8})};
     shot.scene.lights[0].intensity = 0.9;
@@ -59,24 +59,24 @@ TEST(Lambert, OnABallUnderADirectionalLight) {
     const double worst = worst_on_ball(shot, render(shot).color, 0.85, lambert);
     std::printf("Lambert: worst %.4f\n", worst);
     EXPECT_LE(worst, 0.03);
-    // A point light far away is the same light.
+    // A distant point light is the same light.
     shot.scene.lights[0].kind = Light::Kind::Point;
-    shot.scene.lights[0].position = kCentre + 1e7 * l;
+    shot.scene.lights[0].position = kBallCentre + 1e7 * l;
     EXPECT_LE(worst_on_ball(shot, render(shot).color, 0.85, lambert), 0.03);
 }
 
-TEST(Lambert, APointLightNearby) {
-    Shot shot = ball();
+TEST(Lambert, MatchesABallUnderANearPointLight) {
+    Shot shot = ball_shot();
     shot.scene.ambient = 0;
     Light light;
     light.kind = Light::Kind::Point;
-    light.position = kCentre + glm::dvec3(10, -25, 12);
+    light.position = kBallCentre + glm::dvec3(10, -25, 12);
     light.color = {0.5, 1, 0.25};
     light.intensity = 1;
     shot.scene.lights = {light};
     const Image picture = render(shot).color;
     const auto facing = [&](const glm::dvec3& n, const glm::dvec3&) {
-        return std::max(glm::dot(n, glm::normalize(light.position - kCentre - kRadius * n)), 0.0);
+        return std::max(glm::dot(n, glm::normalize(light.position - kBallCentre - kBallRadius * n)), 0.0);
     };
     const double worst = worst_on_ball(shot, picture, 0.85, facing, 1);
     std::printf("point light: worst %.4f\n", worst);
@@ -87,8 +87,8 @@ TEST(Lambert, APointLightNearby) {
     }
 }
 
-TEST(BlinnPhong, TheHighlightIsWhereAndAsHighAsItShouldBe) {
-    Shot shot = ball();
+TEST(BlinnPhong, PlacesAndScalesTheHighlightCorrectly) {
+    Shot shot = ball_shot();
     shot.scene.ambient = 0;
     shot.scene.lights = {directional_light({0.9, -1, 0.6})};
     shot.scene.lights[0].intensity = 1;
@@ -106,7 +106,7 @@ TEST(BlinnPhong, TheHighlightIsWhereAndAsHighAsItShouldBe) {
     std::printf("highlight: worst %.4f, height %.4f of 0.8\n", worst, static_cast<double>(highest));
     EXPECT_LE(worst, 0.08);
     EXPECT_NEAR(highest, 0.8F, 0.02F);
-    // Twice as bright a light, a highlight twice as high; none from behind.
+    // A light of twice the intensity doubles the highlight.
     shot.scene.lights[0].intensity = 2;
     const Image twice = render(shot).color;
     for (std::size_t i = 0; i < picture.pixels.size(); i += 4)
@@ -114,7 +114,7 @@ TEST(BlinnPhong, TheHighlightIsWhereAndAsHighAsItShouldBe) {
 }
 
 TEST(Silhouette, DarkensABallTowardsItsRim) {
-    Shot shot = ball();
+    Shot shot = ball_shot();
     shot.scene.lights.clear();
     shot.scene.effects.silhouette = Silhouette{{0, 0, 0}, 0.9, 2};
     const auto rim = [](const glm::dvec3& n, const glm::dvec3& v) {
@@ -125,8 +125,8 @@ TEST(Silhouette, DarkensABallTowardsItsRim) {
     EXPECT_LE(worst, 0.04);
 }
 
-TEST(Fog, LeavesTheShareThatDepthSays) {
-    // A wall across the view, 30 mm away: whatever it looks like without fog, the ratio is of depth alone.
+TEST(Fog, DependsOnDepthByTheClosedForm) {
+    // A wall perpendicular to the view, 30 mm away: the ratio of pictures with and without fog only depends on depth.
     Shot shot;
     shot.volume = std::make_shared<const Volume>(sample(plane_scene({32, 32, 24}, {0, 0, -1}, {0, 0, 10})));
     shot.scene.iso_values = {0.5};
@@ -159,9 +159,9 @@ TEST(Fog, LeavesTheShareThatDepthSays) {
     }
 }
 
-TEST(Fog, LeavesTheBackgroundAndOpacityAsTheyAre) {
+TEST(Fog, ChangesNeitherBackgroundNorOpacity) {
     Shot shot = torus_shot();
-    shot.settings.pixels = PixelChoice::Every;  // colours say which pixels are drawn
+    shot.settings.pixels = PixelChoice::Every;  // colours decide which pixels are drawn
     shot.scene.background = {0.2, 0.5, 0.9};
     const Image clear = render(shot).color;
     shot.scene.effects.fog = Fog{{1, 1, 1}, 0.1, 5};
@@ -177,8 +177,8 @@ TEST(Fog, LeavesTheBackgroundAndOpacityAsTheyAre) {
     EXPECT_GT(outside, 500);
 }
 
-TEST(TransferFunction, ARampInALinearFieldIsExact) {
-    // Values rise by 1 a voxel along z; seen along y, every row has one value.
+TEST(TransferFunction, IsExactForARampInALinearField) {
+    // Values rise by 1 per voxel along z; seen along y, every row has one value.
     Shot shot;
     shot.volume = sampled({24, 24, 32}, [](const glm::dvec3& x) { return 100 + x.z; });
     shot.scene.transfer = {
@@ -194,7 +194,7 @@ TEST(TransferFunction, ARampInALinearFieldIsExact) {
     double worst = 0;
     const auto& points = shot.scene.transfer;
     for (int y = 8; y < 120; ++y) {
-        // Screen rows go down, z up; the camera's perspective bends by 0.4 voxel at most over the depth of the volume.
+        // Screen rows go down, z goes up; perspective shifts by at most 0.4 voxel over the depth of the volume.
         const double z = 15.5 - (y + 0.5 - 64) / 4 * (kEyeDistance - 11.5) / kEyeDistance;
         const double value = 100 + z;
         std::size_t i = 0;
@@ -212,8 +212,8 @@ TEST(TransferFunction, ARampInALinearFieldIsExact) {
     EXPECT_LE(worst, 4e-3);
 }
 
-TEST(TransferFunction, MaterialsSaidTwoWaysAreTheSamePicture) {
-    // Steps of a transfer function between iso-values, far from any sample's classification, are materials.
+TEST(TransferFunction, GivesTheSamePictureAsEquivalentMaterials) {
+    // Steps of a transfer function between iso-values, far from any classified value, are equivalent to materials.
     Shot shot = torus_shot();
     const Image materials = render(shot).color;
     const auto& m = shot.scene.materials;
@@ -229,9 +229,9 @@ TEST(TransferFunction, MaterialsSaidTwoWaysAreTheSamePicture) {
     EXPECT_LE(difference.share, 0.002);
 }
 
-TEST(TransferFunction, PartialVolumeIsClassifiedFromFurtherOn) {
-    // A bright body in air; between them lies a band of values that a plain look-up would paint red.
-    Shot shot = ball();
+TEST(TransferFunction, ClassifiesPartialVolumesByAPointFurtherInside) {
+    // A bright body in air; between them is a band of values that a plain look-up would show in red.
+    Shot shot = ball_shot();
     shot.scene.lights.clear();
     shot.scene.transfer = {{0.35, {1, 0, 0}, 0}, {0.5, {1, 0, 0}, 6}, {0.85, {1, 0, 0}, 6}, {0.9, {1, 1, 1}, 6}};
     shot.scene.materials = {{}, {}};
@@ -241,10 +241,10 @@ TEST(TransferFunction, PartialVolumeIsClassifiedFromFurtherOn) {
     };
     EXPECT_GT(green(render(shot).color), 0.7);
     shot.settings.edges = EdgeEstimator::Off;
-    EXPECT_LT(green(render(shot).color), 0.5) << "the data do not need it";
+    EXPECT_LT(green(render(shot).color), 0.5) << "the test data do not need two-sided classification";
 }
 
-TEST(Transparency, AShellInFrontOfAnOpaqueCore) {
+TEST(Transparency, MatchesAShellInFrontOfAnOpaqueCore) {
     Shot shot;
     const glm::dvec3 centre(19.5);
     shot.volume = sampled({40, 40, 40}, [&](const glm::dvec3& x) {
@@ -273,9 +273,9 @@ TEST(Transparency, AShellInFrontOfAnOpaqueCore) {
     }
 }
 
-TEST(Shading, StaysFiniteWhereDirectionsVanish) {
+TEST(Shading, StaysFiniteForVanishingDirections) {
     Shot shot;
-    // Flat but for one voxel: most gradients are 0.
+    // Uniform except for one voxel: most gradients are 0.
     shot.volume = sampled({16, 16, 16}, [](const glm::dvec3& x) { return x == glm::dvec3(8) ? 1.0 : 0.6; });
     shot.scene.iso_values = {0.5};
     shot.scene.materials = {{}, {{1, 1, 1}, 0.2, {.specular = 1, .shininess = 1000}}};
@@ -301,10 +301,10 @@ TEST(Shading, StaysFiniteWhereDirectionsVanish) {
     shot.camera = look(*shot.volume, {3, -20, 3}, {3, 3, 3}, 30);
     const Image constant = render(shot).color;
     EXPECT_TRUE(within(constant, 0, 4));
-    EXPECT_GT(constant.at(16, 16, 3), 0.9F) << "a constant volume is classified, too";
+    EXPECT_GT(constant.at(16, 16, 3), 0.9F) << "a constant volume must be classified, too";
 }
 
-TEST(Lights, WithoutThemOrWithOneTheRayCastersShowTheSameAndRefuseTheRest) {
+TEST(Lights, RayCastersRefuseMoreThanOneLightAndOtherEffects) {
     Shot shot = torus_shot();
     shot.scene.lights.resize(2);
     render(shot);

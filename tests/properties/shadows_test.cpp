@@ -1,4 +1,4 @@
-// Shadows and ambient occlusion as pictures show them.
+// Shadows and ambient occlusion in pictures.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,10 +10,10 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr double kTop = 5.4, kRadius = 8;
-const glm::dvec3 kBall(22, 24, 18);
+constexpr double kTop = 5.4, kShadowRadius = 8;
+const glm::dvec3 kShadowBall(22, 24, 18);
 
-/// What a pixel's ray meets first in ball_over_plate_shot().
+/// The first hit of a pixel's ray in ball_over_plate_shot().
 struct Hit {
     bool ball = false, plate = false;
     glm::dvec3 place{0}, normal{0};
@@ -25,14 +25,14 @@ Hit first_hit(const Shot& shot, int x, int y) {
     const double side = 2 * frame.tan_half_y / shot.height;
     const glm::dvec3 u = glm::normalize(frame.forward + (x + 0.5 - 0.5 * shot.width) * side * frame.right -
                                         (y + 0.5 - 0.5 * shot.height) * side * frame.up);
-    const glm::dvec3 v = kBall - frame.eye;
+    const glm::dvec3 v = kShadowBall - frame.eye;
     const double along = glm::dot(v, u), off = glm::length(v - along * u);
     Hit hit;
-    hit.to_silhouette = off - kRadius;
-    if (off < kRadius) {
+    hit.to_silhouette = off - kShadowRadius;
+    if (off < kShadowRadius) {
         hit.ball = true;
-        hit.place = frame.eye + (along - std::sqrt(kRadius * kRadius - off * off)) * u;
-        hit.normal = (hit.place - kBall) / kRadius;
+        hit.place = frame.eye + (along - std::sqrt(kShadowRadius * kShadowRadius - off * off)) * u;
+        hit.normal = (hit.place - kShadowBall) / kShadowRadius;
         return hit;
     }
     hit.place = frame.eye + (kTop - frame.eye.z) / u.z * u;
@@ -41,13 +41,13 @@ Hit first_hit(const Shot& shot, int x, int y) {
     return hit;
 }
 
-TEST(Shadows, FallWhereTheyShouldAndDarkenNothingElse) {
+TEST(Shadows, FallInTheRightPlaceAndDarkenNothingElse) {
     for (const bool point : {false, true}) {
         Shot shot = ball_over_plate_shot();
         Light& light = shot.scene.lights[0];
         if (point) {
             light.kind = Light::Kind::Point;
-            light.position = kBall - glm::dvec3(30, 9, -36);
+            light.position = kShadowBall - glm::dvec3(30, 9, -36);
         }
         const Image with = render(shot).color;
         light.shadows = false;
@@ -68,9 +68,9 @@ TEST(Shadows, FallWhereTheyShouldAndDarkenNothingElse) {
                     EXPECT_NEAR(static_cast<double>(with.at(x, y, 0)), light.intensity * cosine, 0.08);
                     continue;
                 }
-                const glm::dvec3 v = kBall - hit.place;
-                const double from_border = glm::length(v - glm::dot(v, l) * l) - kRadius;
-                // Light arrives 1.5 voxels over the plate, and kernels reach as far again.
+                const glm::dvec3 v = kShadowBall - hit.place;
+                const double from_border = glm::length(v - glm::dot(v, l) * l) - kShadowRadius;
+                // Light is evaluated 1.5 voxels above the plate, and kernels reach as far again.
                 if (from_border > 3.2) {
                     ++lit;
                     EXPECT_GT(share, 0.98) << x << ' ' << y;
@@ -85,7 +85,7 @@ TEST(Shadows, FallWhereTheyShouldAndDarkenNothingElse) {
     }
 }
 
-TEST(Shadows, AreFoundOnceForEveryEye) {
+TEST(Shadows, AreSweptOnceForAllEyes) {
     Shot shot = ball_over_plate_shot();
     const auto swept = [](const RenderResult& r) {
         return std::ranges::any_of(r.stats.passes, [](const PassTime& p) { return p.name == "2c_sweep_light"; });
@@ -121,7 +121,7 @@ TEST(Shadows, OfTwoColouredLightsAddUp) {
     EXPECT_LE(largest, 1e-5F);
 }
 
-TEST(Occlusion, ShowsAsMuchAsItsStrength) {
+TEST(Occlusion, ScalesWithItsStrength) {
     Shot shot = ball_over_plate_shot();
     shot.scene.ambient = 1;
     shot.scene.lights = {Light{}};
@@ -140,10 +140,10 @@ TEST(Occlusion, ShowsAsMuchAsItsStrength) {
         if (open.pixels[i] > 0.5F) darkest = std::min(darkest, full.pixels[i] / open.pixels[i]);
     }
     EXPECT_LE(off, 1e-4F);
-    EXPECT_LT(darkest, 0.6F) << "under the ball";
+    EXPECT_LT(darkest, 0.6F) << "under the ball it must be dark";
 }
 
-/// Matter in which no voxel is like its neighbours, cut by two planes or with a corner cut out of it.
+/// Matter with random samples, cut by a plane or with a part removed.
 Shot cut_block(bool hole) {
     Shot shot;
     std::uint32_t state = 1;
@@ -163,8 +163,8 @@ Shot cut_block(bool hole) {
     return shot;
 }
 
-TEST(Shadows, OfMatterThatIsCutLieOnTheCut) {
-    // Light that nothing is in the way of arrives at a cut whole, whatever the matter's own slopes.
+TEST(Shadows, StartAtTheCutOfClippedMatter) {
+    // Unoccluded light reaches a cut fully, independent of the matter's own gradients.
     for (const bool hole : {false, true}) {
         Shot shot = cut_block(hole);
         const Image open = render(shot).color;
@@ -180,7 +180,7 @@ TEST(Shadows, OfMatterThatIsCutLieOnTheCut) {
                 worst_shadow = std::max(worst_shadow, std::abs(shadowed.at(x, y, 0) - open.at(x, y, 0)));
                 worst_occlusion = std::max(worst_occlusion, std::abs(occluded.at(x, y, 0) - open.at(x, y, 0)));
             }
-        std::printf("cut in the light: shadows off by %s, occlusion by %s\n", std::to_string(worst_shadow).c_str(),
+        std::printf("cut in the light: error of shadows %s, of occlusion %s\n", std::to_string(worst_shadow).c_str(),
                     std::to_string(worst_occlusion).c_str());
         EXPECT_GT(least, 0.5F);
         EXPECT_LE(worst_shadow, 0.01F);

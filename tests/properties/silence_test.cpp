@@ -1,5 +1,4 @@
-// Registers the listener that fails any test of this program during which validation spoke, and what closes the
-// renderer.
+// Registers the listener that fails every test of this program with a validation message; closes the renderer.
 #include <gtest/gtest.h>
 
 #include "tests/properties/test_renderer.h"

@@ -1,4 +1,4 @@
-// Sliced sheets: closed forms, repeatability, saturation, and volumes at the end of what is allowed.
+// Sliced sheets: closed forms, repeatability, saturation, and volumes at the limits.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// Alpha in the middle of a uniform box seen along `direction` (index space) from far away, minus the closed form.
+/// Alpha in the middle of a uniform box, seen along `direction` (index space) from far away, minus the closed form.
 double slab_error(const glm::dmat3& axes, double sheet_spacing, const glm::dvec3& direction, Settings settings) {
     constexpr int kSize = 16;
     Shot shot;
@@ -52,8 +52,8 @@ TEST(SlicedSlab, AbsorbsByTheClosedFormAtEverySheetSpacing) {
             worst = std::max(worst, slab_error(oblique, spacing, direction, faces));
         }
     }
-    std::printf("slab, sliced: alpha off by up to %.1e\n", worst);
-    // The kernel's own ripple (7e-5 in 3-D) and single precision over up to some hundred sheets.
+    std::printf("slab, sliced: error of alpha up to %.1e\n", worst);
+    // The kernel's own ripple (7e-5 in 3-D), and single precision over up to some hundred sheets.
     EXPECT_LE(worst, 8e-4);
 }
 
@@ -103,8 +103,8 @@ TEST(Sliced, TauDoesNotDependOnSheets) {
     EXPECT_LE(compare_images(sliced, whole).max, 1e-5 * peak);
 }
 
-/// Every output is a number; colours and alpha within [0, 1].
-void expect_sound(const Shot& shot, const std::string& what) {
+/// Expects finite outputs, and colours and alpha within [0, 1].
+void expect_sound_slices(const Shot& shot, const std::string& what) {
     const RenderResult result = render(shot, {true, true, true, true});
     EXPECT_TRUE(within(result.color, 0, 1.0001F)) << what;
     EXPECT_TRUE(within(*result.tau, 0, 1e9F)) << what << ": tau";
@@ -114,7 +114,7 @@ void expect_sound(const Shot& shot, const std::string& what) {
     EXPECT_TRUE(within(*result.distance, -4, 4)) << what << ": distance";
 }
 
-TEST(Sliced, DegenerateVolumesGiveNumbers) {
+TEST(Sliced, GivesFiniteNumbersForDegenerateVolumes) {
     struct Grid {
         glm::ivec3 dims;
         bool constant;
@@ -133,14 +133,14 @@ TEST(Sliced, DegenerateVolumesGiveNumbers) {
             const glm::dvec3 middle = glm::dvec3(dims - 1) / 2.0;
             const std::string what = fmt::format("{} x {} x {}, {}", dims.x, dims.y, dims.z, name_of(warp));
             shot.camera = look(*shot.volume, middle - glm::dvec3(9, 21, -13), middle, 30);
-            expect_sound(shot, what);
+            expect_sound_slices(shot, what);
             shot.camera = look(*shot.volume, glm::dvec3(0), glm::dvec3(1, 2, 0.5), 90);
-            expect_sound(shot, what + ", from a voxel");
+            expect_sound_slices(shot, what + ", from a voxel");
         }
     }
 }
 
-TEST(Sliced, EyesInAwkwardPlacesGiveNumbers) {
+TEST(Sliced, GivesFiniteNumbersForExtremeEyePositions) {
     const glm::dvec3 ring = glm::dvec3(14.3, 13.6, 9.4) + glm::dvec3(0, -8.2, 0);  // the tube's middle
     const std::pair<const char*, glm::dvec3> places[] = {
         {"inside an opaque voxel", ring + glm::dvec3(0.31, 0.2, -0.13)},
@@ -157,7 +157,7 @@ TEST(Sliced, EyesInAwkwardPlacesGiveNumbers) {
                 shot.scene.materials[2].extinction = 20;
                 shot.camera = look(*shot.volume, eye, {14, 20, 9}, fov);
                 shot.width = shot.height = 12;
-                expect_sound(shot, fmt::format("{}, {}, fov {}", name, name_of(warp), fov));
+                expect_sound_slices(shot, fmt::format("{}, {}, fov {}", name, name_of(warp), fov));
             }
         }
     }

@@ -1,4 +1,4 @@
-// The one Renderer of a program, with validation and synchronization validation on, and pictures of it in one call.
+// The single Renderer of a program, with validation and synchronization validation, and one-call rendering.
 #pragma once
 
 #include <cstdlib>
@@ -14,13 +14,13 @@ inline std::unique_ptr<Renderer>& held_renderer() {
     return renderer;
 }
 
-/// To be called before main ends: the validation layer's own statics are gone when ours would be destroyed.
+/// Call before main ends: later, the validation layer's static data is already destroyed.
 inline void close_test_renderer() {
     held_renderer().reset();
 }
 
-/// EDGESPLAT_TEST_DEVICE chooses another device than the first usable one; "gpu" is the first usable one, too (`./dev
-/// test` then leaves the choice of the driver to the machine). Opened when first asked for.
+/// The renderer, opened at the first call. EDGESPLAT_TEST_DEVICE selects the device; "gpu" or unset: the first usable
+/// one (with "gpu", `./dev test` leaves the choice of the driver to the machine).
 inline Renderer& test_renderer() {
     auto& renderer = held_renderer();
     if (renderer == nullptr) {
@@ -32,12 +32,12 @@ inline Renderer& test_renderer() {
     return *renderer;
 }
 
-/// Whether pixels may follow from those around them (PixelChoice::Refined).
+/// Whether the device interpolates pixels (PixelChoice::Refined).
 bool refines_pixels();
 
 using VolumePointer = std::shared_ptr<const Volume>;
 
-/// What is in the picture and how it is made; the renderer keeps the volume between shots of the same one.
+/// Scene, camera and settings of a picture. The renderer keeps the volume between shots of the same one.
 struct Shot {
     VolumePointer volume;
     Scene scene;

@@ -1,4 +1,4 @@
-"""What the tests share: one renderer, since opening a device takes a while, and small volumes."""
+"""Fixtures shared by the tests: one renderer, because opening a device is slow, and small volumes."""
 
 import os
 import subprocess
@@ -20,7 +20,7 @@ def renderer():
 
 @pytest.fixture(scope="session")
 def ball():
-    """A ball of radius 8 in 24 x 22 x 20 voxels, [z, y, x]: its value falls by 10 a voxel, 100 at the surface."""
+    """A ball of radius 8 in 24 x 22 x 20 voxels, [z, y, x]: 100 at the surface, falling by 10 per voxel outward."""
     z, y, x = np.mgrid[0:20, 0:22, 0:24]
     radius = np.sqrt((x - 11.5) ** 2 + (y - 10.5) ** 2 + (z - 9.5) ** 2)
     return np.rint(180 - 10 * radius).clip(0).astype(np.int16)
@@ -28,7 +28,7 @@ def ball():
 
 @pytest.fixture(scope="session")
 def program():
-    """Runs the program as python3 -m edgesplat."""
+    """A function that runs the program as python3 -m edgesplat."""
 
     def run(*arguments, check=True):
         return subprocess.run(
@@ -43,7 +43,7 @@ def program():
 
 
 def write_nrrd(path, array, spacing=(1.0, 1.0, 1.0)):
-    """The array as a file that the program reads."""
+    """Writes the array to a NRRD file and returns its path."""
     names = {"int16": "int16", "uint8": "uint8", "float32": "float", "float64": "double"}
     sizes = " ".join(str(n) for n in array.shape[::-1])
     directions = " ".join(

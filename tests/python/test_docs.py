@@ -1,4 +1,4 @@
-"""What docs/python.md shows runs, from top to bottom."""
+"""Runs the code of docs/python.md from top to bottom."""
 
 import pathlib
 import re

@@ -1,5 +1,5 @@
-"""Images of other libraries, told by what they can do; stand-ins take their place, and where a library is installed it
-is tried as well."""
+"""Images of other libraries, recognised by their attributes. Stand-ins replace the libraries; installed libraries are
+tested, too."""
 
 import sys
 import types
@@ -14,7 +14,7 @@ TURNED = np.array([[0, -1, 0], [1, 0, 0], [0, 0, 1.0]])
 
 
 class SimpleITKImage:
-    """What is asked of SimpleITK.Image."""
+    """Stand-in with the used interface of SimpleITK.Image."""
 
     __module__ = "stand_in_itk.image"
     components, dimension = 1, 3
@@ -59,7 +59,7 @@ def test_simple_itk(itk_library):
 def test_simple_itk_with_colours(itk_library):
     image = SimpleITKImage()
     image.components = 3
-    with pytest.raises(Error, match="3 components a voxel: expected 1"):
+    with pytest.raises(Error, match="3 components per voxel: expected 1"):
         Volume(image)
     image.components, image.dimension = 1, 2
     with pytest.raises(Error, match="2 dimensions: expected 3"):
@@ -71,7 +71,7 @@ def nibabel_image(array, affine):
 
 
 def test_nibabel():
-    # i, j, k run to the right, to the front and up; in the patient's axes the first two run against x and y.
+    # i, j, k point right, forward and up; patient axes x and y point left and backward, against i and j.
     volume = Volume(nibabel_image(ARRAY.T, np.array([[2, 0, 0, 5], [0, 3, 0, 7], [0, 0, 4, 9], [0, 0, 0, 1.0]])))
     assert np.array_equal(volume.array, ARRAY)
     assert volume.spacing == (2, 3, 4)
@@ -85,7 +85,7 @@ def test_nibabel_in_time():
     with pytest.raises(Error, match=r"4-D data with 2 frames; choose one with frame=0..1"):
         Volume(nibabel_image(many, np.eye(4)))
     assert Volume(nibabel_image(many, np.eye(4)), frame=1).min == 100
-    with pytest.raises(Error, match="frame 2: there are 2"):
+    with pytest.raises(Error, match="frame 2: expected 0 to 1"):
         Volume(nibabel_image(many, np.eye(4)), frame=2)
 
 
@@ -110,7 +110,7 @@ def test_xarray_without_coordinates():
     assert volume.spacing == (1, 1, 1) and np.array_equal(volume.array, ARRAY)
 
 
-def test_xarray_that_is_uneven():
+def test_uneven_xarray():
     with pytest.raises(Error, match="coordinate x: expected even steps"):
         Volume(xarray_data(ARRAY, ("z", "y", "x"), x=[0, 1, 2, 4]))
     with pytest.raises(Error, match="expected three"):

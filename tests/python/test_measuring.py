@@ -1,4 +1,4 @@
-"""Volumes, surfaces and reports."""
+"""Measured volumes and surfaces, and accuracy reports."""
 
 import json
 import math
@@ -24,7 +24,7 @@ def test_a_ball(ball):
     assert "±" in str(inside)
 
 
-def test_several_surfaces_are_the_program_s(ball, program, tmp_path):
+def test_several_surfaces_agree_with_the_program(ball, program, tmp_path):
     path = write_nrrd(tmp_path / "ball.nrrd", ball)
     extents = Volume(path).measure([60, 100])
     assert len(extents.volumes) == 3 and len(extents.surfaces) == 2
@@ -34,7 +34,7 @@ def test_several_surfaces_are_the_program_s(ball, program, tmp_path):
 
 
 @pytest.mark.parametrize("values", [[], [2, 1], [1, 1], [math.nan], [[1, 2]]])
-def test_values_that_are_none(ball, values):
+def test_invalid_iso_values(ball, values):
     with pytest.raises(Error, match="iso_values"):
         Volume(ball).measure(values)
 
@@ -58,7 +58,7 @@ def test_a_report(renderer, ball, tmp_path):
 @pytest.mark.parametrize(
     "wrong", [{"size": (0, 4)}, {"repeats": 0}, {"orbit": -1}, {"tolerance": 1}, {"knobs": ["none"]}, {"cameras": ["none"]}]
 )
-def test_a_report_that_cannot_be(renderer, ball, tmp_path, wrong):
+def test_an_invalid_report_request(renderer, ball, tmp_path, wrong):
     with pytest.raises(Error):
         renderer.accuracy(Volume(ball), iso_values=[100], report=tmp_path / "report", **wrong)
 

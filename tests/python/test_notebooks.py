@@ -1,4 +1,4 @@
-"""The notebooks in examples/ run from top to bottom, and show pictures and controls."""
+"""Runs the notebooks in examples/ from top to bottom; they show pictures and controls."""
 
 import os
 import pathlib
@@ -23,9 +23,9 @@ def test_every_notebook_is_known():
 def test_it_runs(name, tmp_path, monkeypatch):
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
     book = nbformat.read(FOLDER / f"{name}.ipynb", as_version=4)
-    assert all(not cell.get("outputs") for cell in book.cells), "is kept without outputs"
+    assert all(not cell.get("outputs") for cell in book.cells), "must be stored without outputs"
     client = nbclient.NotebookClient(book, timeout=300, resources={"metadata": {"path": str(tmp_path)}})
-    # What widgets say to a front end is theirs: ipywidgets 6 and nbclient, both Debian 12's, differ there.
+    # Ignore messages of widgets to a front end: ipywidgets 6 and nbclient of Debian 12 do not agree on them.
     client.comm_open_handlers = {"jupyter.widget": lambda message: None}
     client.execute()
     outputs = [output for cell in book.cells for output in cell.get("outputs", [])]

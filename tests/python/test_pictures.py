@@ -1,4 +1,4 @@
-"""Pictures as arrays, and the same bit for bit as those of the program."""
+"""Pictures as arrays; they equal the program's pictures bit for bit."""
 
 import json
 
@@ -11,7 +11,7 @@ from edgesplat import Camera, Error, Scene, Volume
 
 
 def same(program, one, other):
-    """Whether two picture files are the same in every bit."""
+    """Whether two picture files are equal bit for bit."""
     return program("compare", one, other, "--max-diff", "0", check=False)
 
 
@@ -30,7 +30,7 @@ def test_shapes_and_types(renderer, ball):
     assert picture.time == 0
 
 
-def test_only_what_was_asked_for(renderer, ball):
+def test_only_requested_outputs(renderer, ball):
     picture = renderer.render(ball, size=SIZE, aovs="tau")
     assert picture.tau is not None and picture.depth is None and picture.normal is None and picture.distance is None
 
@@ -51,7 +51,7 @@ def test_statistics(renderer, ball):
     assert json.dumps(statistics.everything)
 
 
-def test_where_it_was_seen_from(renderer, ball):
+def test_camera(renderer, ball):
     picture = renderer.render(ball, size=SIZE, camera=Camera(view="front"))
     assert picture.camera.fov == 45 and picture.camera.direction == pytest.approx((0, 1, 0))
     again = renderer.render(ball, size=SIZE, camera=picture.camera)
@@ -60,7 +60,7 @@ def test_where_it_was_seen_from(renderer, ball):
     assert voxel.camera.eye == (11.5, -40, 9.5)
 
 
-def test_its_scene_makes_it_again(renderer, ball):
+def test_scene_reproduces_the_picture(renderer, ball):
     volume = Volume(ball)
     picture = renderer.render(volume, size=SIZE, effects={"fog": {"density": 0.01}}, camera={"view": "oblique"})
     scene = picture.scene
@@ -133,7 +133,7 @@ def test_saved_files(renderer, program, tmp_path, ball):
         picture.save(tmp_path / "nowhere" / "ours.png")
 
 
-def test_beside_plain_splatting(renderer, program, tmp_path, ball):
+def test_comparison_with_plain_splatting(renderer, program, tmp_path, ball):
     file = write_nrrd(tmp_path / "ball.nrrd", ball)
     program("render", file, "-o", tmp_path / "theirs.png", "--size", "64x48", "--compare", "plain")
     picture = renderer.render(file, size=SIZE, output={"compare_plain": True})
@@ -150,7 +150,7 @@ def test_the_exact_scene(renderer):
         renderer.render(np.ones((3, 3, 3)), output={"renderer": "truth"})
 
 
-def test_a_bound_on_the_error(renderer, ball):
+def test_max_error(renderer, ball):
     picture = renderer.render(ball, size=SIZE, max_error=0.05)
     assert picture.statistics.everything["error"]["expected_rms"] <= 0.05
     with pytest.raises(Error, match="quality.max_error"):
@@ -198,7 +198,7 @@ def test_errors_are_those_of_the_program(renderer, program, tmp_path, ball):
         assert str(raised.value).split(": ", 1)[1] in said.stderr
 
 
-def test_what_is_missing(renderer):
+def test_missing_arguments(renderer):
     with pytest.raises(Error, match="volume.path: is missing"):
         renderer.render(Scene())
     with pytest.raises(Error, match="scene: is given twice"):

@@ -1,4 +1,4 @@
-"""Devices, threads, interruption, movies, and the program."""
+"""Devices, threads, interruption, movies and the program."""
 
 import gc
 import os
@@ -16,7 +16,7 @@ from conftest import SIZE
 import edgesplat
 from edgesplat import Error, Interrupted, Renderer, Scene, Volume
 
-# A picture of seconds, for tests that stop it.
+# A picture that takes seconds, for tests that interrupt it.
 LONG = {"size": (512, 512), "effects": {"samples": 8}}
 
 
@@ -85,8 +85,8 @@ def test_threads_with_their_own_renderers(ball):
     assert np.array_equal(*pictures)
 
 
-def test_other_threads_go_on(renderer, ball):
-    """Counts while a picture is drawn: with the interpreter's lock held, nothing would be counted."""
+def test_other_threads_continue(renderer, ball):
+    """A thread counts while a picture is drawn; it could not count if the interpreter's lock were held."""
     counted, done = [0], threading.Event()
 
     def count():
@@ -107,7 +107,7 @@ def test_other_threads_go_on(renderer, ball):
 def test_interrupted_from_another_thread(renderer, ball):
     volume = Volume(ball)
     expected = renderer.render(volume, size=SIZE).color
-    renderer.interrupt()  # nothing is drawn: nothing happens
+    renderer.interrupt()  # no effect while nothing is drawn
     again = threading.Event()
 
     def stop():
@@ -128,7 +128,7 @@ def test_interrupted_from_another_thread(renderer, ball):
 
 @pytest.mark.parametrize("kind", ["splat", "reference"])
 def test_interrupted_by_signal(renderer, ball, kind):
-    # Started in the background by a shell, a process ignores what Ctrl-C sends.
+    # A process that a shell started in the background ignores SIGINT.
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
 
     def press():
@@ -152,8 +152,8 @@ def test_interrupted_by_signal(renderer, ball, kind):
     assert renderer.render(ball, size=SIZE).color.shape == (48, 64, 4)
 
 
-def test_a_handler_of_ones_own(renderer, ball):
-    """A signal whose handler raises nothing stops nothing."""
+def test_own_signal_handler(renderer, ball):
+    """A signal whose handler raises no exception does not stop the picture."""
     seen = []
     before = signal.signal(signal.SIGUSR1, lambda *_: seen.append(1))
     timer = threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGUSR1))
@@ -179,7 +179,7 @@ def test_no_memory_is_lost(renderer, ball):
         renderer.render(volume, size=(256, 256))
     before = resident()
     for _ in range(40):
-        renderer.render(volume, size=(256, 256))  # 1 MiB each, were it kept
+        renderer.render(volume, size=(256, 256))  # a leak would be 1 MiB each
     assert resident() - before < 20 << 20
 
 
@@ -215,11 +215,11 @@ def test_movie_of_an_array(renderer, ball):
     assert other.color.shape == first.shape
 
 
-def test_movies_that_cannot_be_made(renderer, ball):
-    with pytest.raises(Error, match="nothing says how long the movie is"):
+def test_invalid_movies(renderer, ball):
+    with pytest.raises(Error, match="the movie has no duration"):
         renderer.movie(ball)
     assert len(renderer.movie(ball, seconds=2)) == 50
-    with pytest.raises(Error, match="a movie has neither extra outputs nor comparisons"):
+    with pytest.raises(Error, match="a movie has no extra outputs and no comparisons"):
         renderer.movie(ball, seconds=1, output={"renderer": "reference"})
 
 
@@ -230,7 +230,7 @@ def test_the_program(program):
 
 
 def test_import_needs_no_device():
-    """Nor does it load what only pictures need."""
+    """The import does not open a device or load libraries that only pictures need."""
     code = "import edgesplat, sys; print(edgesplat.Volume('builtin:sphere:8').shape, 'numpy' in sys.modules)"
     environment = {**os.environ, "VK_DRIVER_FILES": "/nowhere", "PYTHONPATH": os.pathsep.join(sys.path)}
     environment["VK_ICD_FILENAMES"] = "/nowhere"

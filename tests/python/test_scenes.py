@@ -1,4 +1,4 @@
-"""Scenes from dicts, keywords, texts and files, with the program's words for what is wrong."""
+"""Scenes from dicts, keywords, texts and files, with the program's error messages."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ view = "oblique"
 """
 
 
-def test_the_ways_to_say_a_scene_agree(tmp_path):
+def test_all_forms_of_a_scene_agree(tmp_path):
     nested = {
         "iso_values": [100, 150],
         "materials": [{"color": [1, 0.5, 0]}, {"preset": "ct-bone"}],
@@ -86,7 +86,7 @@ def test_every_key_is_known():
         scene[key.path.replace("[]", "[0]")]
 
 
-def test_tables_come_and_go():
+def test_tables_can_be_added_and_removed():
     scene = Scene()
     assert scene["effects.fog"] is False and scene["effects.fog.density"] is None
     scene["effects.fog"] = True
@@ -102,13 +102,13 @@ def test_tables_come_and_go():
     assert scene["lights"] == 2 and scene["lights[0].kind"] == "directional"
 
 
-def test_none_leaves_as_it_is():
+def test_none_keeps_a_key():
     scene = Scene(ambient=0.5)
     scene.update(ambient=None, camera=Camera(view="back"))
     assert scene["ambient"] == 0.5 and scene["camera.fov"] == 45
 
 
-def test_a_preset_before_single_steps():
+def test_keys_override_the_preset():
     for preset in ("draft", "accurate"):
         one = Scene({"quality.sheet_spacing": 0.75, "quality.preset": preset})
         other = Scene({"quality.preset": preset, "quality.sheet_spacing": 0.75})
@@ -148,7 +148,7 @@ def test_all_or_nothing():
     assert scene.text() == before
 
 
-def test_texts_tell_their_lines():
+def test_errors_name_their_lines():
     with pytest.raises(SceneError) as raised:
         Scene("ambient = -1\n\n[effects.fog]\ndensty = 1\n")
     assert len(raised.value.problems) == 2
@@ -159,7 +159,7 @@ def test_texts_tell_their_lines():
         Scene("ambient = = 1")
 
 
-def test_files_that_are_not_there(tmp_path):
+def test_missing_files(tmp_path):
     with pytest.raises(SceneError, match="nothing.toml"):
         Scene(tmp_path / "nothing.toml")
     with pytest.raises(Error, match="scene: a int: expected"):

@@ -1,4 +1,4 @@
-"""The stub of the module says what is there, no less and no more."""
+"""The stub lists exactly the module's public names."""
 
 import ast
 import pathlib
@@ -23,14 +23,14 @@ def test_names_agree():
         assert public(members) == public(vars(getattr(_core, name))), name
 
 
-def test_everything_public_is_explained():
+def test_everything_public_has_a_docstring():
     for name in edgesplat.__all__:
-        thing = getattr(edgesplat, name)
-        if isinstance(thing, str):
+        entry = getattr(edgesplat, name)
+        if isinstance(entry, str):
             continue
-        assert thing.__doc__, name
-        if isinstance(thing, type) and not issubclass(thing, Exception):
-            for member in public(vars(thing)):
-                found = vars(thing)[member]
+        assert entry.__doc__, name
+        if isinstance(entry, type) and not issubclass(entry, Exception):
+            for member in public(vars(entry)):
+                found = vars(entry)[member]
                 if callable(found) or isinstance(found, property):
                     assert found.__doc__, f"{name}.{member}"

@@ -1,4 +1,4 @@
-"""Views: where the eye goes, what is drawn for it, and the controls of notebooks."""
+"""Views: camera motion, the pictures drawn for it, and the controls of notebooks."""
 
 import struct
 import zlib
@@ -63,7 +63,7 @@ def pixels(png):
     return out
 
 
-def test_it_begins_as_render_does(view, renderer):
+def test_first_view_equals_render(view, renderer):
     same = renderer.render(view.volume, iso_values=[100], camera={"view": "oblique"}, size=SIZE)
     assert np.array_equal(view.picture.color, same.color)
     assert (view.turn, view.tilt, view.wipe, view.flying) == (0, 0, 0, False)
@@ -107,7 +107,7 @@ def test_flying_keeps_the_eye(view):
     assert np.isclose(moved @ np.cross(camera.direction, camera.up), 1)
 
 
-def test_turning_right_brings_what_is_right_to_the_middle(view):
+def test_turning_right_moves_the_picture_to_the_left(view):
     view.flying = True
     shown = view.picture.color[..., 3].sum(axis=0)
     view.turn = 10
@@ -123,7 +123,7 @@ def test_distance_moves_the_eye_on_its_line(view):
     assert np.allclose(target - view.eye, direction / 2)
 
 
-def test_nothing_is_drawn_that_is_not_looked_at(view, counting):
+def test_only_requested_pictures_are_drawn(view, counting):
     assert counting.count == 1
     view.turn, view.tilt, view.distance = 10, 20, 40
     view.move(forward=1)
@@ -132,7 +132,7 @@ def test_nothing_is_drawn_that_is_not_looked_at(view, counting):
     assert counting.count == 2
     view.wipe = 0.5
     view.png()
-    assert counting.count == 3, "one picture more for what is left of the divider"
+    assert counting.count == 3, "one more picture, for the left side of the divider"
     view.wipe = 0.7
     view.png()
     assert counting.count == 3, "the divider needs no new picture"
@@ -183,7 +183,7 @@ def test_an_eye_inside_has_a_target_ahead(view):
         ("iso_values", [100, 50], "iso_values"),
     ],
 )
-def test_what_is_wrong_is_said_and_changes_nothing(view, name, value, words):
+def test_an_invalid_value_raises_and_changes_nothing(view, name, value, words):
     before = (view.scene.text(), view.wipe, view.against)
     with pytest.raises(edgesplat.Error, match=words.replace("(", r"\(")):
         setattr(view, name, value)
@@ -197,7 +197,7 @@ def test_pictures_of_other_sizes_are_refused(renderer, ball):
 
 
 class TestControls:
-    """By the widgets' own traits, as the front end sets them."""
+    """Sets the widgets' traits, as a front end does."""
 
     @staticmethod
     def panel_of(view):
@@ -238,7 +238,7 @@ class TestControls:
         assert np.allclose(view.eye, before)
         assert self.named(panel, "turn").value == 0
 
-    def test_what_cannot_be_is_said_and_the_picture_stays(self, view, counting):
+    def test_an_invalid_value_shows_a_message_and_keeps_the_picture(self, view, counting):
         view = edgesplat.View(view.volume, iso_values=[60, 100], size=SIZE, renderer=counting)
         panel = self.panel_of(view)
         image, said = panel.children[0], panel.children[1].children[-1]

@@ -25,7 +25,7 @@ def test_dtypes(dtype):
 
 
 @pytest.mark.parametrize("dtype", ["c8", "O", "U3", "M8[s]"])
-def test_dtypes_that_are_no_numbers(dtype):
+def test_invalid_dtypes(dtype):
     with pytest.raises(Error, match="expected integers, floats or bool"):
         Volume(np.zeros((2, 2, 2), dtype=dtype))
 
@@ -97,7 +97,7 @@ def test_an_axis_too_long():
 def test_not_finite():
     array = np.ones((3, 3, 3))
     array[0, 0, 0], array[1, 1, 1], array[2, 2, 2] = np.nan, np.inf, -np.inf
-    with pytest.warns(UserWarning, match="3 samples are not finite and taken as 1"):
+    with pytest.warns(UserWarning, match="3 samples are not finite; they are replaced by 1"):
         volume = Volume(array)
     assert np.all(volume.array == 1)
 
@@ -140,9 +140,9 @@ def test_geometry():
         ({"direction": np.ones((3, 3))}, "lie in one plane"),
         ({"direction": np.zeros((3, 3))}, "spacing of axis 0 is 0"),
         ({"name": "builtin:sphere"}, "expected another name"),
-        ({"raw": "2x2x2:uint8:little"}, "raw: is for files"),
-        ({"component": 0}, "component: is for files"),
-        ({"frame": 1}, "frame: 1: is for files"),
+        ({"raw": "2x2x2:uint8:little"}, "raw: only for files"),
+        ({"component": 0}, "component: only for files"),
+        ({"frame": 1}, "frame: 1: only for files"),
     ],
 )
 def test_wrong_options(options, words):
@@ -165,12 +165,12 @@ def test_raw_files(tmp_path, ball):
     assert np.array_equal(volume.array, ball)
 
 
-def test_files_that_are_not_there(tmp_path):
+def test_missing_files(tmp_path):
     with pytest.raises(Error, match="no such file or folder"):
         Volume(tmp_path / "nothing.nrrd")
     with pytest.raises(Error, match="did you mean|there are"):
         Volume("builtin:spere")
-    with pytest.raises(Error, match="origin: is for arrays"):
+    with pytest.raises(Error, match="origin: only for arrays"):
         Volume("builtin:sphere", origin=(0, 0, 0))
 
 

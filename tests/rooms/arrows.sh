@@ -1,20 +1,19 @@
 #!/usr/bin/env bash
-# Prints every include that points upwards: from a room to one that tests/rooms/rooms.txt does not allow it. Prints
-# nothing, and succeeds, where there is none.
+# Prints every include that tests/rooms/rooms.txt does not allow. Succeeds if there is none.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
 
 grep -rnE --include='*.h' --include='*.cpp' --include='*.glsl' --include='*.comp' --include='*.vert' --include='*.frag' \
     '^[[:space:]]*#[[:space:]]*include "[^"]*/' footprints shaders engine apps python examples tests |
     awk '
-    # The longest name that the path is, or lies in; in brackets or not.
+    # The room of a path: the longest name that equals the path or is a folder above it.
     function room_of(path,    i, best) {
         best = ""
         for (i = 1; i <= rooms; ++i)
             if ((path == name[i] || index(path, name[i] "/") == 1) && length(name[i]) > length(best)) best = name[i]
         return best
     }
-    # Whether the room `from` may include the room `to`: it is named, or lies in what is named.
+    # Whether the room `from` may include the room `to`: its list contains `to` or a folder above it.
     function allowed(from, to,    i, n, list) {
         if (from == to || (to in ground && order[to] < order[from])) return 1
         n = split(allows[from], list, " ")

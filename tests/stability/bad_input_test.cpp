@@ -1,5 +1,5 @@
-// Files that are not what they seem: cut off anywhere, in the wrong byte order, promising more than they hold, or no
-// files at all. Each is refused by one line that names it, nothing is written, and nothing is waited for.
+// Malformed input: files that are truncated anywhere, have the wrong byte order, promise more than they contain, or are
+// not regular files. Each is refused in one line that names it; nothing is written, and the program does not wait.
 #include <OpenImageIO/imageio.h>
 #include <itkGiplImageIO.h>
 #include <itkMetaImageIO.h>
@@ -37,7 +37,7 @@ using testing::StartsWith;
 
 class BadInput : public FolderTest {
   protected:
-    /// The error for what does not load; "" where it does, with just the values of `whole`.
+    /// The error if the file does not load; "" if it loads with exactly the values of `whole`.
     std::string refusal_unless_same(const std::string& path, const LoadOptions& options,
                                     const std::vector<float>& whole) const {
         try {
@@ -50,14 +50,14 @@ class BadInput : public FolderTest {
         return "";
     }
 
-    /// Every beginning of the file is refused in a line, or holds all samples already.
+    /// Every prefix of the file is refused in one line, or already contains all samples.
     void check_prefixes(const std::string& name, const LoadOptions& options = {}) const {
         SCOPED_TRACE(name);
         const std::string bytes = content_of(file(name));
         auto volume = load_volume(file(name), options);
         if (volume.packed) volume = edgesplat::load_level(volume, 0);
         const std::string extension = name.substr(name.find('.'));
-        // Long files are cut everywhere in what is likely their header and end, and at every 61st byte between.
+        // Long files are truncated at every byte of the probable header and end, and at every 61st byte between.
         for (std::size_t length = 0; length < bytes.size(); ++length) {
             if (length > 600 && length + 300 < bytes.size() && length % 61 != 0) continue;
             const std::string path = write("cut" + extension, bytes.substr(0, length));
@@ -93,7 +93,7 @@ TEST_F(BadInput, TruncatedAnywhere) {
 }
 
 TEST_F(BadInput, TruncatedTextAnywhere) {
-    // The last digit of a text is a whole number too: what is left must not be taken for another volume.
+    // A text without its last digit still ends in a whole number: it must not load as another volume.
     write("a.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 1\nencoding: ascii\n\n1 2 3 4\n");
     check_prefixes("a.nrrd");
     write("b.nrrd", "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 1\nencoding: hex\n\n01020304\n");
@@ -128,7 +128,7 @@ TEST_F(BadInput, WrongByteOrder) {
     EXPECT_THAT(refusal(file("a.nrrd")), AllOf(HasSubstr("a.nrrd"), HasSubstr("endian")));
     write("b.nrrd", "NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n\nabcdefgh");
     EXPECT_THAT(refusal(file("b.nrrd")), AllOf(HasSubstr("b.nrrd"), HasSubstr("endian")));
-    // A header in the one order whose dims are in the other one.
+    // A header in one byte order with dims in the other.
     write_itk(itk::NiftiImageIO::New(), file("a.nii"));
     auto bytes = content_of(file("a.nii"));
     for (int i = 0; i < 8; ++i)
@@ -142,16 +142,16 @@ TEST_F(BadInput, WrongByteOrder) {
     EXPECT_THAT(refusal(write("b.gipl", bytes)), HasSubstr("b.gipl"));
 }
 
-/// A header that promises what its file cannot hold, or more than a volume may have.
+/// A header that promises more than its file contains, or more than a volume may have.
 struct Lie {
     const char* name;
     const char* content;
-    const char* word;  ///< of the message
+    const char* word;  ///< part of the message
 };
 
 class LyingHeader : public BadInput, public testing::WithParamInterface<Lie> {};
 
-/// MiB that became resident, at most, while the file was refused; in a process of its own.
+/// The MiB of resident memory that refusing the file takes, at most; measured in a separate process.
 long mib_to_refuse(const std::string& path, const LoadOptions& options, const std::string& word) {
     int ends[2] = {-1, -1};
     EXPECT_EQ(pipe(ends), 0);
@@ -180,11 +180,11 @@ long mib_to_refuse(const std::string& path, const LoadOptions& options, const st
     return grown;
 }
 
-TEST_P(LyingHeader, IsRefusedBeforeMemoryIsTaken) {
+TEST_P(LyingHeader, IsRefusedBeforeAllocation) {
     const Lie& lie = GetParam();
     const std::string path = write(lie.name, lie.content);
     const long grown = mib_to_refuse(path, {}, lie.word);
-    EXPECT_GE(grown, 0) << "refused with another message, or not at all";
+    EXPECT_GE(grown, 0) << "refused with another message, or not refused";
     EXPECT_LT(grown, 64);
 }
 
@@ -215,7 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
         return name;
     });
 
-TEST_F(BadInput, ALimitOfMemoryIsKept) {
+TEST_F(BadInput, RespectsTheMemoryLimit) {
     write("a.raw", std::string(std::size_t{5} << 20, 'x'));
     const LoadOptions options{.raw = "1024x1024x5:uint8:little"};
     setenv("EDGESPLAT_READ_MEMORY", "16", 1);
@@ -231,7 +231,7 @@ TEST_F(BadInput, ALimitOfMemoryIsKept) {
     unsetenv("EDGESPLAT_READ_MEMORY");
 }
 
-/// The real program, and every place that takes a file. FILE stands for it.
+/// The real program, with every argument that is a file; FILE is its placeholder.
 class BadFile : public edgesplat::CliTest, public testing::WithParamInterface<const char*> {
   protected:
     std::string command(const std::string& name) const {
@@ -239,7 +239,7 @@ class BadFile : public edgesplat::CliTest, public testing::WithParamInterface<co
         text.replace(text.find("FILE"), 4, name);
         return text;
     }
-    /// What the name must end with for this place to look at it.
+    /// The ending that the name needs, so that this command reads the file.
     std::string extension() const {
         const std::string text = GetParam();
         const auto end = text.find("FILE") + 4;
@@ -247,14 +247,14 @@ class BadFile : public edgesplat::CliTest, public testing::WithParamInterface<co
     }
     void expect_refusal(const std::string& name, const std::vector<const char*>& words) const {
         const auto before = files();
-        // A FIFO that is opened is waited for.
+        // Opening a FIFO would wait for a writer.
         const auto result = run_shell("timeout 60 '" EDGESPLAT_PROGRAM "' " + command("'" + name + "'"));
         EXPECT_GT(result.status, 0);
-        EXPECT_NE(result.status, 124) << "waited";
-        if (!std::string(GetParam()).starts_with("scene check")) {  // what it finds is its result, not its failure
+        EXPECT_NE(result.status, 124) << "the program waited";
+        if (!std::string(GetParam()).starts_with("scene check")) {  // findings are its result, not an error
             EXPECT_THAT(result.err, StartsWith("edgesplat: error: "));
         }
-        // A wrong command line is followed by where help is; everything else is one line.
+        // After a wrong command line a second line refers to the help; every other error is one line.
         if (result.status == 1) {
             EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
         }
@@ -265,7 +265,7 @@ class BadFile : public edgesplat::CliTest, public testing::WithParamInterface<co
     }
 };
 
-TEST_P(BadFile, IsRefusedInALine) {
+TEST_P(BadFile, IsRefusedInOneLine) {
     const std::string end = extension();
     std::ofstream(folder_ / ("empty" + end)).flush();
     std::filesystem::create_directory(folder_ / ("folder" + end));
@@ -279,7 +279,7 @@ TEST_P(BadFile, IsRefusedInALine) {
     }
 }
 
-TEST_P(BadFile, UnreadableIsRefused) {
+TEST_P(BadFile, IsRefusedIfUnreadable) {
     if (geteuid() == 0) GTEST_SKIP() << "root may read every file";
     const std::filesystem::path file = folder_ / ("secret" + extension());
     std::ofstream(file) << "x";
@@ -304,7 +304,7 @@ INSTANTIATE_TEST_SUITE_P(BadInput, BadFile,
 
 class BadName : public edgesplat::CliTest {};
 
-TEST_F(BadName, NamesNeedNotBeUtf8) {
+TEST_F(BadName, MayBeOtherThanUtf8) {
     const std::string name = "\xff\xfe.nrrd";
     std::ofstream(folder_ / name) << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\nabcdefgh";
     const auto plain = run("info '" + name + "'");
@@ -315,14 +315,14 @@ TEST_F(BadName, NamesNeedNotBeUtf8) {
     EXPECT_THAT(json.out, HasSubstr("\xef\xbf\xbd\xef\xbf\xbd.nrrd"));
 }
 
-TEST_F(BadName, ASceneFileCannotHoldOneThatIsNotUtf8) {
+TEST_F(BadName, IsRefusedInASceneFileIfNotUtf8) {
     const std::string name = "\xff\xfe.nrrd";
     std::ofstream(folder_ / name) << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\nabcdefgh";
     const auto scene = run("scene new '" + name + "' -o a.toml");
     EXPECT_EQ(scene.status, 1);
     EXPECT_THAT(scene.err, AllOf(HasSubstr(name), HasSubstr("not UTF-8")));
     EXPECT_FALSE(std::filesystem::exists(folder_ / "a.toml"));
-    // A picture can be made; the scene in it names the volume as well as a scene can.
+    // Rendering works; the scene stored in the picture contains a UTF-8 version of the name.
     const auto picture = run("render '" + name + "' --size 8x8 -o a.png");
     EXPECT_EQ(picture.status, 0) << picture.err;
     const auto again = run("rerun a.png -o b.png");
@@ -330,7 +330,7 @@ TEST_F(BadName, ASceneFileCannotHoldOneThatIsNotUtf8) {
     EXPECT_THAT(again.err, HasSubstr("\xef\xbf\xbd\xef\xbf\xbd.nrrd"));
 }
 
-/// A PNG that says it has so many pixels, and has none.
+/// A PNG whose header claims this size, without any pixels.
 std::string lying_png(std::uint32_t width, std::uint32_t height) {
     const auto number = [](std::uint32_t n) {
         std::string bytes;
@@ -347,12 +347,12 @@ std::string lying_png(std::uint32_t width, std::uint32_t height) {
     return "\x89PNG\r\n\x1a\n" + chunk(header, 13) + chunk("IDAT", 0) + chunk("IEND", 0);
 }
 
-TEST_F(BadName, PicturesThatLieAreRefusedBeforeMemoryIsTaken) {
+TEST_F(BadName, LyingPicturesAreRefusedBeforeAllocation) {
     std::ofstream(folder_ / "a.png", std::ios::binary) << lying_png(60000, 60000);
     for (const char* command : {"compare a.png a.png", "info a.png", "rerun a.png -o b.png"}) {
         auto result = run_shell(std::string(EDGESPLAT_OWN_ALLOCATOR ? "" : "ulimit -v 3000000; ") +
                                 "'" EDGESPLAT_PROGRAM "' " + command);
-        // On a slow machine progress is shown first.
+        // A slow machine shows progress first.
         result.err = std::regex_replace(result.err, std::regex("\\[[.=#]*\\][^\n]*\n"), "");
         EXPECT_GT(result.status, 0);
         EXPECT_THAT(result.err, AllOf(StartsWith("edgesplat: error: "), HasSubstr("a.png")));
@@ -362,7 +362,7 @@ TEST_F(BadName, PicturesThatLieAreRefusedBeforeMemoryIsTaken) {
     EXPECT_THAT(files(), testing::ElementsAre("a.png"));
 }
 
-// With less than half of what the header promises, so that taking it first would be told as such.
+// The limit is less than half of what the header promises: an allocation before the check would give another message.
 TEST_F(BadName, LyingHeadersAreRefusedUnderALimit) {
     if (EDGESPLAT_OWN_ALLOCATOR) GTEST_SKIP() << "the address sanitizer reserves more than any limit";
     std::ofstream(folder_ / "a.nrrd") << NRRD("double", "1000 1000 1000", "gzip");
@@ -371,8 +371,8 @@ TEST_F(BadName, LyingHeadersAreRefusedUnderALimit) {
     EXPECT_THAT(result.err, AllOf(HasSubstr("8000000000"), HasSubstr("truncated"), testing::Not(HasSubstr("memory"))));
 }
 
-// Of no use is as none.
-TEST_F(BadInput, PreferencesThatAreNoFiles) {
+// Unusable preferences count as missing.
+TEST_F(BadInput, IgnoresPreferencesThatAreNoRegularFiles) {
     for (const auto kind : {0, 1, 2}) {
         const auto path = folder_ / ("fly" + std::to_string(kind));
         if (kind == 0) std::filesystem::create_directory(path);

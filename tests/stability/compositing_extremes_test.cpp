@@ -1,4 +1,4 @@
-// Where adding up and compositing is trouble: next to nothing, far too much, very many sheets and splats, few bits.
+// Extremes of compositing: tiny and huge extinction, very many sheets and splats, few bits.
 #include <algorithm>
 #include <cmath>
 
@@ -18,7 +18,7 @@ Shot torus_of(double extinction) {
 
 constexpr SheetFormat kFormats[] = {SheetFormat::Layers, SheetFormat::Tiles};
 
-/// A row of voxels along x, full of matter, seen end on.
+/// A row of voxels along x, full of matter, seen from its end.
 Shot row_of(int voxels, double extinction) {
     const auto row = volume_of({voxels, 5, 5}, [](const glm::ivec3&) { return 1.0F; });
     Shot shot = shot_of(row, 0.5, extinction);
@@ -28,13 +28,13 @@ Shot row_of(int voxels, double extinction) {
     return shot;
 }
 
-TEST(CompositingExtremes, NoExtinctionIsNoSplat) {
+TEST(CompositingExtremes, ZeroExtinctionGivesNoSplats) {
     const RenderResult result = sound(torus_of(0), "nothing");
     EXPECT_EQ(result.stats.splats_collected, 0U);
     EXPECT_EQ(middle_of(result.color, 3).most, 0);
 }
 
-TEST(CompositingExtremes, NextToNoExtinction) {
+TEST(CompositingExtremes, TinyExtinction) {
     for (const SheetFormat format : {SheetFormat::Layers, SheetFormat::Tiles}) {
         Shot shot = row_of(40, 1e-12);
         shot.settings.sheet_format = format;
@@ -44,8 +44,8 @@ TEST(CompositingExtremes, NextToNoExtinction) {
     }
 }
 
-TEST(CompositingExtremes, SmallExtinctionsAreNotLostOneByOne) {
-    // Each splat is below half a step of 1 - x: what is lost sheet by sheet would be all of it.
+TEST(CompositingExtremes, SmallExtinctionsAddUp) {
+    // Each splat is below half a step of 1 - x: losses in each sheet would add up to everything.
     for (const SheetFormat format : {SheetFormat::Layers, SheetFormat::Tiles}) {
         Shot shot = row_of(2000, 2e-8);
         shot.settings.sheet_format = format;
@@ -53,32 +53,32 @@ TEST(CompositingExtremes, SmallExtinctionsAreNotLostOneByOne) {
     }
 }
 
-TEST(CompositingExtremes, FarTooMuchExtinction) {
+TEST(CompositingExtremes, HugeExtinction) {
     for (const SheetFormat format : kFormats) {
         Shot shot = row_of(40, 1e12);
         shot.settings.sheet_format = format;
         const RenderResult result = sound(shot, "1e12 per mm");
         EXPECT_GE(middle_of(result.color, 3).least, 1 - 1e-6) << name_of(format);
-        // The sum of kernels is nobody's to see here: 1 to 1.25 % (kNarrowKernel).
+        // With opaque matter the sum of kernels is off by 1 to 1.25 % (kNarrowKernel).
         EXPECT_NEAR(middle_of(*result.tau, 0).mean / 40e12, 1, 0.0125) << name_of(format);
     }
 }
 
-TEST(CompositingExtremes, ExtinctionsThatOverflowWhenAddedUp) {
-    // 3e37 a splat, 40 of them: more than a float holds. Opaque, and tau stays a number.
+TEST(CompositingExtremes, ExtinctionsWithAnOverflowingSum) {
+    // 3e37 per splat, 40 splats: the sum overflows a float. Alpha must be 1, and tau must be finite.
     const RenderResult result = sound(row_of(40, 3e37), "3e37 per mm");
     EXPECT_GE(middle_of(result.color, 3).least, 1 - 1e-6);
-    EXPECT_GE(middle_of(*result.tau, 0).least, 1e20) << "held at 1e20 a voxel";
+    EXPECT_GE(middle_of(*result.tau, 0).least, 1e20) << "clamped to 1e20 per voxel";
 }
 
-TEST(CompositingExtremes, NextToNothingBeforeFarTooMuch) {
+TEST(CompositingExtremes, TinyExtinctionBeforeHugeExtinction) {
     const auto halves = volume_of({40, 5, 5}, [](const glm::ivec3& v) { return v.x < 20 ? 0.0F : 1.0F; });
     Shot shot = row_of(40, 1e12);
     shot.volume = halves;
     shot.scene.materials[0] = {{1, 0, 0}, 1e-12};
     shot.scene.materials[1].color = {0, 0, 1};
     const Image color = sound(shot, "1e-12 before 1e12").color;
-    EXPECT_LE(middle_of(color, 0).most, 1e-6) << "what is hardly there shows no colour";
+    EXPECT_LE(middle_of(color, 0).most, 1e-6) << "nearly transparent matter shows no colour";
     EXPECT_GE(middle_of(color, 2).least, 1 - 1e-6);
 }
 
@@ -101,7 +101,7 @@ TEST(CompositingExtremes, TenThousandSlicedSheets) {
 }
 
 TEST(CompositingExtremes, TenThousandSheetsInOneSplat) {
-    // One voxel 2600 mm deep in sheets of a twentieth of the shortest step.
+    // One voxel is 2600 mm deep, in sheets of a twentieth of the shortest step.
     const auto deep = volume_of(
         {2, 5, 5}, [](const glm::ivec3&) { return 1.0F; }, glm::dmat3(1300, 0, 0, 0, 1, 0, 0, 0, 1));
     Shot shot = shot_of(deep, 0.5, 1 / 2600.0);
@@ -109,12 +109,12 @@ TEST(CompositingExtremes, TenThousandSheetsInOneSplat) {
     shot.width = shot.height = 8;
     shot.settings.saturation = 1;
     shot.settings.sheet_spacing = 0.05;
-    // Matter of two voxels is divided by the share of a kernel that it has in the mean over lattices, not in this one.
+    // The weight of border voxels is a mean over lattices, which does not fit this lattice of two voxels exactly.
     EXPECT_NEAR(middle_of(sound(shot, "a deep voxel").color, 3).mean, 1 - std::exp(-1.0), 8e-3);
 }
 
 TEST(CompositingExtremes, AThousandSplatsOnAPixelInOneSheet) {
-    // A picture of a pixel: 10 x 10 x 10 splats share it, in sheets as thick as all of them.
+    // A picture of one pixel: 10 x 10 x 10 splats share it, in sheets as thick as all of them.
     const auto cube = volume_of({10, 10, 10}, [](const glm::ivec3&) { return 1.0F; });
     Shot shot = shot_of(cube, 0.5, 0.1);
     shot.camera = look(*cube, {-1e4, 4.5, 4.5}, {4.5, 4.5, 4.5}, 1e-4);
@@ -136,7 +136,7 @@ TEST(CompositingExtremes, AThousandSplatsBehindOneAnother) {
 }
 
 TEST(CompositingExtremes, NearlySaturatedPixels) {
-    // 1 - alpha passes the threshold slowly: a hundred sheets on either side of it.
+    // 1 - alpha passes the threshold slowly: about a hundred sheets on either side of it.
     for (const SheetFormat format : kFormats) {
         for (const double saturation : {0.9, 0.99, 0.999, 0.99999, 1.0}) {
             Shot shot = row_of(400, 0.03);
@@ -162,14 +162,14 @@ TEST(CompositingExtremes, OpacityNeverExceedsOne) {
     }
 }
 
-TEST(CompositingExtremes, TilesAndLayersAreTheSamePicture) {
+TEST(CompositingExtremes, TilesAndLayersGiveTheSamePicture) {
     for (const double extinction : {1e-6, 0.05, 2.0, 1e6}) {
         for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
             Shot shot = torus_of(extinction);
             shot.settings.sheets = sheets;
             const Image tiles = render(shot).color;
             shot.settings.sheet_format = SheetFormat::Layers;
-            // What is so dense shows the last 1e-7 of its kernels, which rounding decides.
+            // Matter of this density shows the last 1e-7 of its kernels, which depends on rounding.
             const bool dense = extinction > 1e3;
             EXPECT_LE(compare_images(tiles, render(shot).color).max, dense ? 0.035 : 2e-3) << extinction;
             EXPECT_GE(compare_images(tiles, render(shot).color).psnr, dense ? 60 : 72) << extinction;
@@ -177,8 +177,8 @@ TEST(CompositingExtremes, TilesAndLayersAreTheSamePicture) {
     }
 }
 
-TEST(CompositingExtremes, TheSamePictureBitForBitEveryTime) {
-    // Whatever order workgroups run in: also on a renderer of its own.
+TEST(CompositingExtremes, RepeatsBitForBit) {
+    // Independent of the order of workgroups; also in a second renderer.
     Shot shot = torus_of(0.7);
     shot.scene.iso_values = {0.2, 0.5};
     shot.scene.materials = {{}, {{0.2, 0.5, 1}, 0.1}, {{1, 0.8, 0.6}, 2}};
@@ -195,7 +195,7 @@ TEST(CompositingExtremes, TheSamePictureBitForBitEveryTime) {
     }
 }
 
-TEST(CompositingExtremes, OutputsOfOpaqueMatterAreThoseOfItsSurface) {
+TEST(CompositingExtremes, OutputsOfOpaqueMatterDescribeItsSurface) {
     Shot shot = row_of(40, 1e12);
     const RenderResult result = sound(shot, "opaque");
     EXPECT_NEAR(middle_of(*result.depth, 0).mean, 1e5, 2) << "depth of the first layer, 1e5 mm away";
@@ -203,7 +203,7 @@ TEST(CompositingExtremes, OutputsOfOpaqueMatterAreThoseOfItsSurface) {
     sound(shot, "an opaque torus");
 }
 
-TEST(CompositingExtremes, OutputsWhereNextToNothingIsSeen) {
+TEST(CompositingExtremes, OutputsOfNearlyTransparentMatter) {
     const RenderResult result = sound(torus_of(1e-30), "1e-30 per mm");
     for (const float d : result.depth->pixels)
         EXPECT_TRUE(d == 0 || (d > 10 && d < 80)) << d;

@@ -1,4 +1,4 @@
-// Numbers that are none: said by the pass and the splat where they come about, and looked for only when asked.
+// Non-finite numbers: reported with the pass and splat of their origin, and searched only on request.
 #include <limits>
 
 #include "tests/passes/pass_fixture.h"
@@ -9,8 +9,8 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// A torus in which one voxel, (13, 12, 15), is of a material of its own.
-PassScene one_of_its_own() {
+/// A torus in which one voxel, (13, 12, 15), has its own material.
+PassScene torus_with_special_voxel() {
     PassScene s = pass_scenes()[0];
     s.volume.values[static_cast<std::size_t>((15 * 26 + 12) * 28 + 13)] = 3;
     finish_volume(s.volume);
@@ -19,46 +19,47 @@ PassScene one_of_its_own() {
     return s;
 }
 
-std::string said_of(const PassScene& s) {
+std::string message_of(const PassScene& s) {
     DeviceUnderTest& state = prepared(s);
-    state.orders.check_numbers = true;
-    std::string said;
+    state.options.check_numbers = true;
+    std::string message;
     try {
         state.draw(s.scene, s.camera, s.settings, {40, 40}, shader::PAYLOAD_COLOR);
     } catch (const Error& error) {
-        said = error.what();
+        message = error.what();
     }
-    state.orders.check_numbers = false;
-    return said;
+    state.options.check_numbers = false;
+    return message;
 }
 
-TEST(CompositingNumbers, OfASoundPictureNothingIsSaid) {
-    EXPECT_EQ(said_of(one_of_its_own()), "");
+TEST(CompositingNumbers, IsSilentForValidPictures) {
+    EXPECT_EQ(message_of(torus_with_special_voxel()), "");
 }
 
-TEST(CompositingNumbers, TheSplatThatDrawsThemIsNamed) {
-    // Past all checks of what comes in: a colour that is none.
-    PassScene s = one_of_its_own();
+TEST(CompositingNumbers, NamesTheSplatThatDrawsThem) {
+    // A NaN colour, set after all input checks.
+    PassScene s = torus_with_special_voxel();
     s.scene.materials[2].color = {1, kNaN, 1};
     for (const SheetFormat format : {SheetFormat::Tiles, SheetFormat::Layers}) {
         s.settings.sheet_format = format;
-        const std::string said = said_of(s);
-        EXPECT_TRUE(said.starts_with(format == SheetFormat::Tiles ? "5_draw_tiles: splat " : "5_draw_splats: splat "))
-            << said;
-        EXPECT_NE(said.find("; material 2): pixel "), std::string::npos) << said;
-        EXPECT_NE(said.find("channel 1 is nan, expected a finite number"), std::string::npos) << said;
+        const std::string message = message_of(s);
+        EXPECT_TRUE(
+            message.starts_with(format == SheetFormat::Tiles ? "5_draw_tiles: splat " : "5_draw_splats: splat "))
+            << message;
+        EXPECT_NE(message.find("; material 2): pixel "), std::string::npos) << message;
+        EXPECT_NE(message.find("channel 1 is nan, expected a finite number"), std::string::npos) << message;
     }
 }
 
-TEST(CompositingNumbers, WhatIsThereWithoutSplatsIsNamed) {
-    PassScene s = one_of_its_own();
+TEST(CompositingNumbers, NamesThePassWithoutSplats) {
+    PassScene s = torus_with_special_voxel();
     s.scene.background = {0, 0, kNaN};
-    const std::string said = said_of(s);
-    EXPECT_TRUE(said.starts_with("7_resolve: pixel 0, 0, channel 2 is nan")) << said;
+    const std::string message = message_of(s);
+    EXPECT_TRUE(message.starts_with("7_resolve: pixel 0, 0, channel 2 is nan")) << message;
 }
 
-TEST(CompositingNumbers, ASplatClassifiedByNoneIsNamed) {
-    PassScene s = one_of_its_own();
+TEST(CompositingNumbers, NamesASplatWithANonFiniteValue) {
+    PassScene s = torus_with_special_voxel();
     s.scene.iso_values.clear();
     s.scene.materials = {{}};
     s.scene.transfer = {{0.2, {1, 0, 0}, 0}, {0.6, {1, 1, 1}, 3}};
@@ -70,15 +71,15 @@ TEST(CompositingNumbers, ASplatClassifiedByNoneIsNamed) {
     });
     try {
         check_splats(state.session, state.level);
-        ADD_FAILURE() << "not seen";
+        ADD_FAILURE() << "the NaN was not reported";
     } catch (const Error& error) {
         EXPECT_TRUE(std::string(error.what()).starts_with("2_collect_splats: splat 17 of ")) << error.what();
     }
     state.level.splats.drop();
 }
 
-TEST(CompositingNumbers, NotAskedForNothingIsReadBack) {
-    const PassScene s = one_of_its_own();
+TEST(CompositingNumbers, ReadsNothingBackWhenOff) {
+    const PassScene s = torus_with_special_voxel();
     DeviceUnderTest& state = prepared(s);
     state.device().forget_peaks();
     state.draw(s.scene, s.camera, s.settings, {40, 40}, shader::PAYLOAD_COLOR);

@@ -1,5 +1,5 @@
-// Pass 1 where the shape is trouble: no gradient, walls and edges closer than a voxel, borders, grids that are not
-// cubes, volumes of a few voxels and of very many.
+// Pass 1 with difficult shapes: no gradient, walls and edges closer than a voxel, borders, grids that are not cubic,
+// volumes of a few voxels and of very many.
 #include <algorithm>
 #include <cmath>
 
@@ -10,24 +10,24 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr double kEnd = 0.5;  // a body reaches half a voxel beyond its last sample
+constexpr double kEnd = 0.5;  // a body extends half a voxel beyond its last sample
 
 TEST(EstimationShapes, NoGradientAtTheIsoValue) {
-    // A cubic whose slope is 0 where it crosses: next to it there is no direction, a voxel on there is.
+    // A cubic with slope 0 where it crosses the iso-value: beside it there is no direction, but a voxel away there is.
     const double edge = 10.3;
     const auto flat = volume_of({21, 12, 12}, [&](const glm::ivec3& v) {
         return static_cast<float>(0.5 + 0.5 * std::pow((v.x - edge) / 10.7, 3));
     });
     expect_as_reference(shot_of(flat), "an inflection");
     const Estimate e = estimate(flat, {0.5}, EdgeEstimator::March);
-    EXPECT_FALSE(e.at({10, 6, 6}).has_edge && std::abs(e.at({10, 6, 6}).D) > 1) << "nothing is made up";
+    EXPECT_FALSE(e.at({10, 6, 6}).has_edge && std::abs(e.at({10, 6, 6}).D) > 1) << "the edge is invented";
     const Middle thick = thickness_along_x(shot_of(flat));
-    // A voxel and more from there the value is a thousandth off: no place is wrong.
+    // Even a voxel away the value differs only by a thousandth: no position is wrong.
     EXPECT_NEAR(thick.mean, 20 + kEnd - edge, 1.25);
     EXPECT_LE(thick.most - thick.least, 0.02);
 }
 
-/// Rises to 0.5 at x = 8, stays there to 14, and rises on.
+/// Rises to 0.5 at x = 8, is constant up to 14, and rises again.
 VolumePointer plateau() {
     return volume_of({24, 12, 12}, [](const glm::ivec3& v) {
         if (v.x <= 8) return static_cast<float>(std::max(0.0, 0.5 - (8 - v.x) * 0.125));
@@ -46,8 +46,8 @@ TEST(EstimationShapes, PlateauJustBelowTheIsoValueBelongsBelow) {
     EXPECT_NEAR(thickness_along_x(shot_of(plateau(), just_above)).mean, 23 + kEnd - 14, 0.6);
 }
 
-TEST(EstimationShapes, APeakThatHardlyMissesTheIsoValue) {
-    // A ridge whose parabola ends just below the iso-value, which one corner alone exceeds.
+TEST(EstimationShapes, PeakJustBelowTheIsoValue) {
+    // A ridge whose parabola ends just below the iso-value; only one corner exceeds it.
     const auto ridge = volume_of({20, 12, 12}, [](const glm::ivec3& v) {
         if (v == glm::ivec3(19, 11, 11)) return 1.0F;
         return static_cast<float>(std::max(0.7 - 0.03 * std::pow(v.x - 9.3, 2), 0.0));
@@ -57,7 +57,7 @@ TEST(EstimationShapes, APeakThatHardlyMissesTheIsoValue) {
     expect_as_reference(shot, "a peak", 0.003, 55);
     for (const EdgeEstimator estimator : {EdgeEstimator::March, EdgeEstimator::Cubic}) {
         const Estimate e = estimate(ridge, {0.705}, estimator);
-        EXPECT_FALSE(e.at({9, 6, 6}).has_edge) << name_of(estimator) << ": nothing is crossed there";
+        EXPECT_FALSE(e.at({9, 6, 6}).has_edge) << name_of(estimator) << ": there is no crossing";
     }
 }
 
@@ -87,34 +87,36 @@ TEST(EstimationShapes, SaddleWhereEightVoxelsMeet) {
     });
     Shot shot = shot_of(corner);
     expect_as_reference(shot, "eight octants", 0.06);
-    // Each line crosses one full octant. A kernel knows one plane: next to where planes cross matter is lost, a third
-    // of it here, and little is invented.
+    // Each line crosses one full octant. A kernel has one plane: where planes cross, matter is lost, here a third, and
+    // little is invented.
     const Middle warped = thickness_along_x(shot);
     EXPECT_LE(warped.most, 6.3);
     EXPECT_GE(warped.mean, 3.4);
     shot.settings.edges = EdgeEstimator::Off;
-    EXPECT_NEAR(thickness_along_x(shot).mean, 6, 0.01) << "plain kernels lose nothing";
+    EXPECT_NEAR(thickness_along_x(shot).mean, 6, 0.01) << "plain kernels lose no matter";
 }
 
-/// A wall across x with a linear profile of slope 1/2 a voxel: it reaches iso 0.5 at exactly centre +- thickness / 2.
+/// A wall perpendicular to x with a linear profile of slope 1/2 per voxel: it reaches iso 0.5 exactly at centre +-
+/// thickness / 2.
 VolumePointer wall(double thickness, double centre) {
     return volume_of({20, 14, 14}, [=](const glm::ivec3& v) {
         return static_cast<float>(std::clamp(0.5 + (thickness / 2 - std::abs(v.x - centre)) / 2, 0.0, 1.0));
     });
 }
 
-/// Thin walls are drawn as thick as they are, at most as a voxel where they are thinner, and without holes.
+/// Thin walls are drawn with their thickness, walls below a voxel at most one voxel thick, and without holes.
 void expect_wall(double thickness, double within) {
     for (const double shift : {0.0, 0.13, 0.24}) {
         const auto volume = wall(thickness, 9 + shift);
-        // With a voxel in its very middle rounding decides which of the two faces that one is said to have.
+        // For a voxel exactly in the middle, rounding decides which of the two faces is its nearest.
         const double ties = shift == 0 ? 1 : 0.003;
         expect_as_reference(shot_of(volume), fmt::format("a wall of {} at {}", thickness, shift), ties);
         const Middle thick = thickness_along_x(shot_of(volume));
         EXPECT_GE(thick.mean, thickness - within) << shift;
-        // Dense in the mean over lattices: one whose voxels lie in the very middle of a wall of one has a fifth more.
+        // The density is right in the mean over lattices: with voxels exactly in its middle, a wall of one voxel has a
+        // fifth more.
         EXPECT_LE(thick.mean, std::max(thickness, 1.0) + (thickness > 1 ? within : 0.3)) << shift;
-        EXPECT_LE(thick.most - thick.least, 0.06) << shift << ": even from voxel to voxel";
+        EXPECT_LE(thick.most - thick.least, 0.06) << shift << ": uneven from voxel to voxel";
     }
 }
 
@@ -140,7 +142,7 @@ TEST(EstimationShapes, TwoEdgesCloserThanAVoxel) {
     shot.scene.materials = {{}, {{0.2, 0.4, 1}, 0.5}, {{1, 0.8, 0.6}, 2}};
     expect_as_reference(shot, "two edges 0.2 voxels apart");
     shot.scene.materials[1] = shot.scene.materials[2];
-    EXPECT_NEAR(thickness_along_x(shot).mean, 19 + kEnd - 9.3, 0.3) << "one matter: the first edge";
+    EXPECT_NEAR(thickness_along_x(shot).mean, 19 + kEnd - 9.3, 0.3) << "with one material only the first edge counts";
 }
 
 TEST(EstimationShapes, FifteenEdgesInOneVoxel) {
@@ -156,7 +158,7 @@ TEST(EstimationShapes, FifteenEdgesInOneVoxel) {
     EXPECT_NEAR(thickness_along_x(shot).mean, 8, 0.6);
 }
 
-TEST(EstimationShapes, EdgeOnAVoxelIsTheSameFromBothSides) {
+TEST(EstimationShapes, EdgeOnAVoxelIsContinuous) {
     const auto ramp = [](double edge) {
         return volume_of({20, 14, 14}, [=](const glm::ivec3& v) {
             return static_cast<float>(std::clamp(0.5 + (v.x - edge) * 0.25, 0.0, 1.0));
@@ -167,7 +169,7 @@ TEST(EstimationShapes, EdgeOnAVoxelIsTheSameFromBothSides) {
     ASSERT_TRUE(e.at({9, 7, 7}).has_edge);
     EXPECT_NEAR(e.at({9, 7, 7}).D, 0, 1e-3);
     expect_as_reference(shot_of(on), "an edge on a voxel");
-    // The voxel on the edge changes sides between these two; what is seen must hardly.
+    // The voxel on the edge changes sides between these two; the picture must hardly change.
     const double before = thickness_along_x(shot_of(ramp(9 - 1e-5))).mean;
     const double after = thickness_along_x(shot_of(ramp(9 + 1e-5))).mean;
     EXPECT_NEAR(before, after, 0.15);
@@ -183,7 +185,7 @@ TEST(EstimationShapes, EdgesOnAndBeyondTheBorder) {
     }
 }
 
-/// Edges do not depend on where the grid's axes point: planes are estimated in index space.
+/// Edges do not depend on the directions of the grid's axes: planes are estimated in index space.
 void expect_same_edges(const glm::dmat3& axes) {
     const auto still = std::make_shared<const Volume>(sample(torus_scene({26, 24, 18}, {12.3, 11.6, 8.4}, 6.4, 3.3)));
     for (const EdgeEstimator estimator : {EdgeEstimator::March, EdgeEstimator::Cubic}) {
@@ -229,7 +231,8 @@ TEST(EstimationShapes, OneVoxelIsItsKernel) {
     }
 }
 
-/// A block of ones absorbs by the ray's chord in it; along an axis of one voxel as the sum of its kernels says.
+/// A block of ones absorbs according to the ray's chord in it; along an axis of one voxel, according to the sum of its
+/// kernels.
 void expect_block(const glm::ivec3& dims) {
     const auto block = volume_of(dims, [](const glm::ivec3&) { return 1.0F; });
     Shot shot = shot_of(block);
@@ -253,8 +256,8 @@ void expect_block(const glm::ivec3& dims) {
                         sum += kernel_footprint(std::max(glm::dot(to, to) - std::pow(glm::dot(to, u), 2), 0.0));
                     }
             const bool thick = glm::all(glm::greaterThan(dims, glm::ivec3(1)));
-            // Kernels of the outermost voxels weigh more, so that there is as much of the block as there is of its
-            // volume: of two voxels a third more in the middle, less where its faces meet.
+            // Kernels of the outermost voxels have a larger weight, which keeps the amount of matter: with two voxels a
+            // third more in the middle, less where faces meet.
             const double want = 2 * (thick ? inside.high - inside.low : sum);
             EXPECT_LE(got, 1.3 * want + 0.1) << x << ", " << y;
             const bool in_the_middle = x / 3 == shot.width / 6 && y / 3 == shot.height / 6;
@@ -280,7 +283,7 @@ TEST(EstimationShapes, OneVoxelThickAlongY) {
 TEST(EstimationShapes, OneVoxelThickAlongZ) {
     expect_block({9, 7, 1});
 }
-TEST(EstimationShapes, ALineOfVoxels) {
+TEST(EstimationShapes, LineOfVoxels) {
     expect_block({1, 1, 40});
     expect_block({40, 1, 1});
 }
@@ -298,8 +301,8 @@ TEST(EstimationShapes, OneVoxelThickVolumesHaveEdgesInTheirPlane) {
     expect_as_reference(shot_of(sheet), "a disc");
 }
 
-TEST(EstimationShapes, TheLastVoxelOfALargeVolume) {
-    // 2^25 voxels: indices that a float cannot count. A ball in the last corner looks as it does alone.
+TEST(EstimationShapes, LastVoxelOfALargeVolume) {
+    // 2^25 voxels: float32 cannot represent all indices. A ball in the last corner must look as it does alone.
     const glm::ivec3 dims(256, 256, 512), corner = dims - 20;
     const auto value = [](const glm::ivec3& v) {
         return static_cast<float>(

@@ -1,4 +1,4 @@
-// Pass 1 where values are trouble: none that differ, too small, too large, not a number, too few bits.
+// Pass 1 with difficult values: constant, too small, too large, not a number, too few bits.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,7 +8,7 @@
 namespace edgesplat::test {
 namespace {
 
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNaNSample = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A ball of values 0..1 in 20^3, iso-value 0.5.
@@ -17,7 +17,7 @@ VolumePointer ball() {
     return volume;
 }
 
-/// The ball's values through v * scale + offset look as the ball does.
+/// The ball with values v * scale + offset must look like the ball.
 void expect_the_balls_picture(double scale, double offset, double psnr) {
     const auto other = changed(ball(), [&](float v, const glm::ivec3&) {
         return static_cast<float>(static_cast<double>(v) * scale + offset);
@@ -45,7 +45,7 @@ TEST(EstimationValues, ConstantBelowTheIsoValueShowsNothing) {
     EXPECT_EQ(middle_of(sound(shot_of(volume), "constant").color, 3).most, 0);
 }
 
-TEST(EstimationValues, ConstantAboveTheIsoValueIsAFullBlock) {
+TEST(EstimationValues, ConstantAboveTheIsoValueGivesAFullBlock) {
     const auto volume = volume_of({12, 12, 12}, [](const glm::ivec3&) { return 0.75F; });
     expect_no_edges(volume, 0.5);
     const Middle thick = thickness_along_x(shot_of(volume));
@@ -53,7 +53,7 @@ TEST(EstimationValues, ConstantAboveTheIsoValueIsAFullBlock) {
     EXPECT_NEAR(thick.most, 12, 0.02);
 }
 
-TEST(EstimationValues, ConstantAtTheIsoValueIsAFullBlock) {
+TEST(EstimationValues, ConstantAtTheIsoValueGivesAFullBlock) {
     const auto volume = volume_of({12, 12, 12}, [](const glm::ivec3&) { return 0.5F; });
     expect_no_edges(volume, 0.5);
     const Middle thick = thickness_along_x(shot_of(volume));
@@ -66,25 +66,25 @@ TEST(EstimationValues, IsoValueAboveTheDataShowsNothing) {
     EXPECT_EQ(middle_of(sound(shot_of(ball(), 1.5), "above").color, 3).most, 0);
 }
 
-TEST(EstimationValues, IsoValueBelowTheDataIsAFullBlock) {
+TEST(EstimationValues, IsoValueBelowTheDataGivesAFullBlock) {
     expect_no_edges(ball(), -0.5);
     EXPECT_NEAR(thickness_along_x(shot_of(ball(), -0.5)).mean, 20, 5e-3);
 }
 
-TEST(EstimationValues, IsoValueAtTheLargestSampleLeavesThatVoxel) {
-    // The largest sample alone is at the iso-value or above: one kernel, however it is warped.
+TEST(EstimationValues, IsoValueAtTheLargestSampleGivesThatVoxel) {
+    // Only the largest sample is at the iso-value or above: one kernel, whichever way it is warped.
     const auto peak = volume_of({15, 15, 15}, [](const glm::ivec3& v) { return v == glm::ivec3(7) ? 1.0F : 0.0F; });
     Shot shot = shot_of(peak, 1);
     expect_as_reference(shot, "a peak", 0.05);
     EXPECT_GT(sound(shot, "a peak").color.at(16, 16, 3), 0.3F);
 }
 
-TEST(EstimationValues, IsoValueAtTheSmallestSampleIsAFullBlock) {
+TEST(EstimationValues, IsoValueAtTheSmallestSampleGivesAFullBlock) {
     expect_no_edges(changed(ball(), [](float v, const glm::ivec3&) { return v; }), 0);
     EXPECT_NEAR(thickness_along_x(shot_of(ball(), 0)).mean, 20, 5e-3);
 }
 
-TEST(EstimationValues, AGradientOfOneUlpIsAStepLikeAnyOther) {
+TEST(EstimationValues, StepOfOneUlpEqualsAnyOtherStep) {
     const float low = 1000, high = std::nextafter(low, 2000.0F);
     const auto step = volume_of({16, 14, 14}, [](const glm::ivec3& v) { return v.x < 8 ? 0.0F : 1.0F; });
     const auto ulp = volume_of({16, 14, 14}, [&](const glm::ivec3& v) { return v.x < 8 ? low : high; });
@@ -93,8 +93,8 @@ TEST(EstimationValues, AGradientOfOneUlpIsAStepLikeAnyOther) {
     EXPECT_EQ(estimate(ulp, {between}, EdgeEstimator::March).differing(), 0);
 }
 
-TEST(EstimationValues, OneUlpInALargeRangeIsNoEdge) {
-    // Below the smallest gradient (method.md): a wobble of an ulp on the iso-value has no direction to follow.
+TEST(EstimationValues, OneUlpInALargeRangeGivesNoEdge) {
+    // Below the minimum gradient (method.md): a change of one ulp at the iso-value has no direction.
     const float base = 0.5F, next = std::nextafter(base, 1.0F);
     const auto wobble = volume_of({16, 16, 16}, [&](const glm::ivec3& v) {
         if (v == glm::ivec3(0)) return 0.0F;
@@ -115,10 +115,10 @@ TEST(EstimationValues, OneUlpInALargeRangeIsNoEdge) {
     }
 }
 
-TEST(EstimationValues, Of1eMinus30) {
+TEST(EstimationValues, ScaledBy1eMinus30) {
     expect_the_balls_picture(1e-30, 0, 90);
 }
-TEST(EstimationValues, Of1ePlus30) {
+TEST(EstimationValues, ScaledBy1ePlus30) {
     expect_the_balls_picture(1e30, 0, 90);
 }
 TEST(EstimationValues, Negative) {
@@ -128,7 +128,7 @@ TEST(EstimationValues, OverTheWholeRangeOfFloats) {
     expect_the_balls_picture(6.8e38, -3.4e38, 90);
 }
 TEST(EstimationValues, SmallChangesOnALargeOffset) {
-    expect_the_balls_picture(4096, 1e6, 60);  // steps of 1/16: 16 bits of value are left
+    expect_the_balls_picture(4096, 1e6, 60);  // steps of 1/16: 16 bits of the value remain
 }
 
 TEST(EstimationValues, Denormal) {
@@ -136,16 +136,16 @@ TEST(EstimationValues, Denormal) {
     expect_the_balls_picture(1e-41, 0, 55);
 }
 
-TEST(EstimationValues, ASingleNanIsTheSmallestValue) {
+TEST(EstimationValues, SingleNanBecomesTheSmallestValue) {
     const glm::ivec3 where(9, 9, 9);
-    const auto nan = changed(ball(), [&](float v, const glm::ivec3& at) { return at == where ? kNaN : v; });
+    const auto nan = changed(ball(), [&](float v, const glm::ivec3& at) { return at == where ? kNaNSample : v; });
     const auto hole =
         changed(ball(), [&](float v, const glm::ivec3& at) { return at == where ? ball()->min_value : v; });
     EXPECT_EQ(nan->non_finite_count, 1U);
     EXPECT_EQ(sound(shot_of(nan), "NaN").color.pixels, sound(shot_of(hole), "hole").color.pixels);
 }
 
-TEST(EstimationValues, ASingleInfinityDoesNotStretchTheRange) {
+TEST(EstimationValues, SingleInfinityDoesNotChangeTheRange) {
     for (const float infinity : {kInfinity, -kInfinity}) {
         const auto bad =
             changed(ball(), [&](float v, const glm::ivec3& at) { return at == glm::ivec3(2) ? infinity : v; });
@@ -155,8 +155,9 @@ TEST(EstimationValues, ASingleInfinityDoesNotStretchTheRange) {
     }
 }
 
-TEST(EstimationValues, ASlabOfNanIsCutOut) {
-    const auto nan = changed(ball(), [&](float v, const glm::ivec3& at) { return at.x >= 8 && at.x < 11 ? kNaN : v; });
+TEST(EstimationValues, SlabOfNanIsCutOut) {
+    const auto nan =
+        changed(ball(), [&](float v, const glm::ivec3& at) { return at.x >= 8 && at.x < 11 ? kNaNSample : v; });
     const auto gap =
         changed(ball(), [&](float v, const glm::ivec3& at) { return at.x >= 8 && at.x < 11 ? ball()->min_value : v; });
     const Image color = sound(shot_of(nan), "NaN").color;
@@ -164,8 +165,8 @@ TEST(EstimationValues, ASlabOfNanIsCutOut) {
     EXPECT_NEAR(thickness_along_x(shot_of(nan)).most, 2 * 5.3 - 3, 1);
 }
 
-TEST(EstimationValues, NothingButNanShowsNothing) {
-    for (const float bad : {kNaN, kInfinity, -kInfinity}) {
+TEST(EstimationValues, OnlyNanShowsNothing) {
+    for (const float bad : {kNaNSample, kInfinity, -kInfinity}) {
         const auto nothing = volume_of({8, 9, 10}, [&](const glm::ivec3&) { return bad; });
         EXPECT_EQ(nothing->non_finite_count, 720U);
         expect_no_edges(nothing, 0.5);
@@ -174,13 +175,13 @@ TEST(EstimationValues, NothingButNanShowsNothing) {
 }
 
 TEST(EstimationValues, OneFiniteSampleAmongNan) {
-    const auto one = volume_of({9, 9, 9}, [](const glm::ivec3& v) { return v == glm::ivec3(4) ? 3.0F : kNaN; });
+    const auto one = volume_of({9, 9, 9}, [](const glm::ivec3& v) { return v == glm::ivec3(4) ? 3.0F : kNaNSample; });
     EXPECT_EQ(one->min_value, 3);
     EXPECT_EQ(one->max_value, 3);
-    EXPECT_NEAR(thickness_along_x(shot_of(one, 2.5)).mean, 9, 2e-3) << "all become the smallest finite value";
+    EXPECT_NEAR(thickness_along_x(shot_of(one, 2.5)).mean, 9, 2e-3) << "all samples become the smallest finite value";
 }
 
-/// Distance of the estimated planes to x = `edge`, the largest over the voxels within reach.
+/// Largest distance of the estimated planes to x = `edge`, over the voxels within reach.
 double plane_error(const VolumePointer& volume, double iso_value, double edge, EdgeEstimator estimator) {
     const Estimate e = estimate(volume, {iso_value}, estimator);
     EXPECT_LE(e.differing(), 0.015) << name_of(estimator);
@@ -192,12 +193,12 @@ double plane_error(const VolumePointer& volume, double iso_value, double edge, E
         worst = std::max(worst, std::abs(x + voxel.n.x * voxel.D - edge));
         ++found;
     }
-    EXPECT_GE(found, 1) << name_of(estimator) << ": no edge at all";
+    EXPECT_GE(found, 1) << name_of(estimator) << ": no edge";
     return worst;
 }
 
 TEST(EstimationValues, SteepRampOf8BitsIsPlacedWithinAStep) {
-    // 12 levels a voxel: a level is 1/12 of a voxel.
+    // 12 levels per voxel: a level is 1/12 of a voxel.
     const double slope = 12 / 255.0;
     const auto ramp = volume_of({24, 9, 9}, [&](const glm::ivec3& v) {
         return static_cast<float>(std::round(std::clamp(0.5 + (v.x - 11.3) * slope, 0.0, 1.0) * 255) / 255);
@@ -207,7 +208,7 @@ TEST(EstimationValues, SteepRampOf8BitsIsPlacedWithinAStep) {
 }
 
 TEST(EstimationValues, FlatRampOf8BitsIsPlacedWithinItsStairs) {
-    // 0.7 levels a voxel: stairs of one and two voxels. The iso-value between two levels is crossed once.
+    // 0.7 levels per voxel: stairs of one and two voxels. The iso-value between two levels is crossed once.
     const auto ramp = volume_of(
         {24, 9, 9}, [](const glm::ivec3& v) { return static_cast<float>(std::round(128 + (v.x - 11.3) * 0.7)); });
     const double iso = 128.5, truth = 11.3 + 0.5 / 0.7;
@@ -223,7 +224,7 @@ TEST(EstimationValues, BinaryHalfSpaceHasItsEdgeHalfWay) {
 }
 
 TEST(EstimationValues, LabelsThatTouchAcrossTwoIsoValues) {
-    // 0 | 2 side by side: both iso-values lie between the same two voxels; 0 | 1 | 2 elsewhere.
+    // 0 and 2 are adjacent: both iso-values lie between the same two voxels. Elsewhere the values are 0, 1, 2.
     const auto labels = volume_of({20, 12, 12}, [](const glm::ivec3& v) {
         if (v.x < 8) return 0.0F;
         return v.x < 11 && v.y < 6 ? 1.0F : 2.0F;
@@ -235,31 +236,31 @@ TEST(EstimationValues, LabelsThatTouchAcrossTwoIsoValues) {
     const Estimate e = estimate(labels, {0.5, 1.5}, EdgeEstimator::March);
     EXPECT_TRUE(e.at({8, 2, 6}).has_edge);
     EXPECT_TRUE(e.at({8, 9, 6}).has_edge);
-    EXPECT_NEAR(e.at({8, 9, 6}).D, 0.25, 0.05) << "1.5 lies a quarter of the way back from 2 to 0";
+    EXPECT_NEAR(e.at({8, 9, 6}).D, 0.25, 0.05) << "1.5 is a quarter of the way from 2 to 0";
 }
 
 TEST(EstimationValues, Checkerboard) {
     const auto board =
         volume_of({12, 12, 12}, [](const glm::ivec3& v) { return ((v.x + v.y + v.z) & 1) == 0 ? 0.0F : 1.0F; });
-    // The field turns at every voxel's centre: what is rounded otherwise finds another surface.
+    // The field has an extremum at every voxel's centre: other rounding finds another surface.
     expect_as_reference(shot_of(board), "checkerboard", 0.03);
-    // Half of the voxels are full: what crosses the whole is as thick as half of it.
+    // Half of the voxels are full: rays through the whole block pass half of its thickness.
     Shot plain = shot_of(board);
     plain.settings.edges = EdgeEstimator::Off;
     EXPECT_NEAR(thickness_along_x(plain).mean, 6, 0.02);
     const double faces = thickness_along_x(shot_of(board)).mean;
-    EXPECT_GE(faces, 5) << "each voxel a face of its own";
+    EXPECT_GE(faces, 5) << "each voxel has its own face";
     EXPECT_LE(faces, 7.2);
 }
 
-/// Matter as thin as a voxel, with a little noise, so that nothing is where it is by symmetry. Voxels beside it carry
-/// what its own do not reach.
-TEST(EstimationValues, OfFineMatterMostIsKept) {
+/// Matter as thin as a voxel, with a little noise that breaks the symmetry. Voxels beside it carry the part that its
+/// own voxels do not reach.
+TEST(EstimationValues, FineMatterIsMostlyKept) {
     constexpr int n = 20;
     using Pattern = std::function<int(const glm::ivec3&)>;
     struct Fine {
         const char* name;
-        Pattern pattern;  ///< odd where there is matter
+        Pattern pattern;  ///< odd values are matter
         float noise;
         double least, most;
     };
@@ -283,7 +284,7 @@ TEST(EstimationValues, OfFineMatterMostIsKept) {
         const double faces = thickness_along_x(shot).mean;
         shot.settings.edges = EdgeEstimator::Off;
         const double share = faces / thickness_along_x(shot).mean;
-        std::printf("%-16s %.2f of it\n", fine.name, share);
+        std::printf("%-16s %.2f of the matter\n", fine.name, share);
         EXPECT_GE(share, fine.least) << fine.name;
         EXPECT_LE(share, fine.most) << fine.name;
     }

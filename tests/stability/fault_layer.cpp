@@ -1,5 +1,5 @@
-// A Vulkan layer for tests: makes the N-th call of a kind fail, so that what the program does about it can be seen in
-// the program as it is. Enabled by VK_LAYER_PATH (or VK_ADD_LAYER_PATH) and VK_INSTANCE_LAYERS, steered by
+// A Vulkan layer for tests: makes the N-th call of a kind fail, so that the real program's reaction can be tested.
+// Enabled by VK_LAYER_PATH (or VK_ADD_LAYER_PATH) and VK_INSTANCE_LAYERS, controlled by
 //   EDGESPLAT_FAULT       allocate | submit | wait | pipeline: calls of vkAllocateMemory (out of device memory);
 //                         vkQueueSubmit, vkQueueSubmit2 or vkWaitForFences, vkWaitSemaphores (device lost, after the
 //                         work is done: the host must hear of it, lavapipe must not run on); vkCreate*Pipelines (out of
@@ -27,7 +27,7 @@ std::string variable(const char* name) {
     return value == nullptr ? "" : value;
 }
 
-/// What is to fail.
+/// The calls that must fail.
 struct Fault {
     std::string kind = variable("EDGESPLAT_FAULT");
     long first = std::atol(variable("EDGESPLAT_FAULT_AT").c_str());
@@ -43,19 +43,19 @@ const Fault& fault() {
 
 std::atomic<long> calls{0};
 
-/// Whether this call of a kind fails.
+/// Counts a call of this kind; true if it must fail.
 bool fails(const char* kind) {
     if (fault().kind != kind) return false;
     const long call = ++calls;
     return fault().first > 0 && call >= fault().first && call <= fault().last;
 }
 
-/// Functions of the next layer, by the dispatch table that instance or device and their queues have in common.
+/// Functions of the next layer. The key is the dispatch table that an instance, or a device and its queues, share.
 struct Next {
     PFN_vkGetInstanceProcAddr instance = nullptr;
     PFN_vkGetDeviceProcAddr device = nullptr;
     void* handle = nullptr;
-    // Asked for later, the loader says ours.
+    // Stored, since the loader would later return this layer's own functions.
     PFN_vkDestroyInstance destroy = nullptr;
     PFN_vkGetPhysicalDeviceFeatures2 features = nullptr;
 };
@@ -149,7 +149,7 @@ VKAPI_ATTR VkResult VKAPI_CALL allocate_memory(VkDevice device, const VkMemoryAl
     return of_device<PFN_vkAllocateMemory>(device, "vkAllocateMemory")(device, info, allocator, memory);
 }
 
-/// The device finishes what it has, and is lost.
+/// The device finishes its work, and is lost.
 VkResult lost(VkQueue queue) {
     of_device<PFN_vkQueueWaitIdle>(queue, "vkQueueWaitIdle")(queue);
     return VK_ERROR_DEVICE_LOST;

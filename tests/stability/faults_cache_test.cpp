@@ -1,4 +1,5 @@
-// The cache folder, whatever it is: read-only, missing, a file, damaged, used by many at once. The picture is the same.
+// The cache folder in every state: read-only, missing, a file, damaged, used by several processes. The picture is the
+// same.
 #include <sys/stat.h>
 
 #include "tests/stability/faults_program.h"
@@ -22,7 +23,7 @@ class FaultsCache : public FaultsTest {
         fs::remove(folder_ / "a.png");
     }
 
-    /// The same with another cache folder, inside the test's own.
+    /// The same command with another cache folder, inside the test's own folder.
     ProgramRun run_with(const std::string& folder, const std::string& before = "") {
         fs::remove(folder_ / "a.png");
         const ProgramRun result =
@@ -32,7 +33,7 @@ class FaultsCache : public FaultsTest {
         return result;
     }
 
-    /// The files of a cache.
+    /// The files of a cache, sorted.
     std::vector<fs::path> files_of(const std::string& folder) const {
         std::vector<fs::path> all;
         for (const auto& entry : fs::directory_iterator(folder_ / folder))
@@ -44,7 +45,7 @@ class FaultsCache : public FaultsTest {
     std::string picture_;
 };
 
-TEST_F(FaultsCache, IsMadeWhereItIsMissing) {
+TEST_F(FaultsCache, IsCreatedIfMissing) {
     EXPECT_THAT(run_with("deep/down/cache").err, IsEmpty());
     EXPECT_EQ(files_of("deep/down/cache").size(), 2U);
 }
@@ -56,12 +57,12 @@ TEST_F(FaultsCache, MayBeAFile) {
 }
 
 TEST_F(FaultsCache, MayBeReadOnly) {
-    // Root may write everywhere but on a file system that is mounted read-only.
+    // Root may write everywhere, except on a read-only file system.
     const bool root = geteuid() == 0;
     fs::create_directory(folder_ / "cache");
     if (!root) chmod((folder_ / "cache").c_str(), 0500);
     if (root && run_shell("unshare -m mount -t tmpfs -o ro none cache").status != 0)
-        GTEST_SKIP() << "no file system can be mounted here";
+        GTEST_SKIP() << "this test may not mount a file system";
     const ProgramRun result =
         root ? run_shell(
                    "unshare -m sh -c \"mount -t tmpfs -o ro none cache && EDGESPLAT_CACHE=cache '" EDGESPLAT_PROGRAM
@@ -74,11 +75,11 @@ TEST_F(FaultsCache, MayBeReadOnly) {
     EXPECT_TRUE(text_of(folder_ / "a.png") == picture_);
 }
 
-TEST_F(FaultsCache, MayBeNone) {
+TEST_F(FaultsCache, MayBeUnset) {
     EXPECT_THAT(run_with("", "env -u HOME -u XDG_CACHE_HOME ").err, HasSubstr("no cache folder is set"));
 }
 
-TEST_F(FaultsCache, IsMadeAnewWhereItIsDamaged) {
+TEST_F(FaultsCache, IsRebuiltIfDamaged) {
     run_with("cache");
     const auto files = files_of("cache");
     ASSERT_EQ(files.size(), 2U);
@@ -118,7 +119,7 @@ TEST_F(FaultsCache, IsMadeAnewWhereItIsDamaged) {
     EXPECT_THAT(run_with("cache").err, HasSubstr("footprints are not cached"));
 }
 
-TEST_F(FaultsCache, MayBeColdForEightAtOnce) {
+TEST_F(FaultsCache, MayBeFilledByEightProcesses) {
     run_with("alone");
     std::string together;
     for (int i = 0; i < 8; ++i) {
@@ -137,7 +138,7 @@ TEST_F(FaultsCache, MayBeColdForEightAtOnce) {
     EXPECT_TRUE(contents("cache") == contents("alone"));
 }
 
-TEST_F(FaultsCache, KilledWhileItIsWrittenItIsWrittenByTheNext) {
+TEST_F(FaultsCache, IsCompletedAfterAKill) {
     run_with("alone");
     fs::create_directory(folder_ / "cache");
     std::ofstream(folder_ / "cache/.x.table.edgesplat-1-1.tmp") << "half";

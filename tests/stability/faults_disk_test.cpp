@@ -1,5 +1,5 @@
-// A disk that is full: one message, the old file as it was, nothing half done. The disk is a small tmpfs in a mount
-// namespace of the test's own.
+// A full disk: one message, the old file unchanged, no partial output. The disk is a small tmpfs in the test's own
+// mount namespace.
 #include "tests/stability/faults_program.h"
 
 namespace edgesplat {
@@ -9,12 +9,12 @@ using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// Something that writes below disk/, and what lay there before.
+/// A command that writes below disk/, and the files that existed before.
 struct Writer {
     const char* name;
     const char* arguments;
-    std::vector<const char*> old;  ///< files with what a user would miss
-    std::vector<int> pages;        ///< of 4 KiB that are free
+    std::vector<const char*> old;  ///< files that must survive
+    std::vector<int> pages;        ///< free pages of 4 KiB
     const char* words = "No space left on device";
 };
 
@@ -27,10 +27,10 @@ class FaultsDisk : public FaultsTest {
     void SetUp() override {
         FaultsTest::SetUp();
         const ProgramRun tried = run_shell(unshare() + " mount -t tmpfs none /tmp");
-        if (tried.status != 0) GTEST_SKIP() << "no file system can be mounted here: " << tried.err;
+        if (tried.status != 0) GTEST_SKIP() << "this test may not mount a file system: " << tried.err;
     }
 
-    /// Runs the program with a disk of `pages` free pages; what is on it afterwards is in after/.
+    /// Runs the program with a disk of `pages` free pages, and copies the disk's files to after/.
     ProgramRun run_on_full_disk(const std::string& arguments, const std::vector<const char*>& old, int pages,
                                 const std::string& before = "") {
         std::filesystem::remove_all(folder_);
@@ -59,7 +59,7 @@ class FaultsDisk : public FaultsTest {
 
 class FaultsDiskWriter : public FaultsDisk, public testing::WithParamInterface<Writer> {};
 
-TEST_P(FaultsDiskWriter, LeavesWhatWasThere) {
+TEST_P(FaultsDiskWriter, KeepsExistingFiles) {
     const Writer& writer = GetParam();
     for (const int pages : writer.pages) {
         SCOPED_TRACE(std::to_string(pages) + " pages free");
@@ -89,7 +89,7 @@ INSTANTIATE_TEST_SUITE_P(
         Writer{
             "Film", "movie builtin:torus:16 --size 24x24 --orbit 20 --seconds .2 -o disk/a.mp4", {"a.mp4"}, {1, 2, 6}},
         Writer{"Pack", "pack builtin:torus:48 -o disk/a.esv", {"a.esv"}, {0, 4}, "MB are free"},
-        // As it goes on the last page is needed for ranges, histogram, samples or attributes.
+        // Ranges, histogram, samples or attributes need the last page, one after the other.
         Writer{"PackCompressed", "pack builtin:torus:48 --compress -o disk/a.esv", {"a.esv"}, {0, 1, 2, 4, 16, 24}},
         Writer{"SceneFile", "scene new builtin:torus:16 -o disk/a.toml", {"a.toml"}, {0, 1}},
         Writer{"Info", "info builtin:torus:16 --json disk/a.json", {"a.json"}, {0}},
@@ -98,19 +98,19 @@ INSTANTIATE_TEST_SUITE_P(
         Writer{"Bench", "bench suite.toml --repeat 1 -q -o disk/folder", {"folder/bench.json"}, {0, 1}}),
     [](const testing::TestParamInfo<Writer>& parameter) { return std::string(parameter.param.name); });
 
-TEST_F(FaultsDisk, AMovieGoesOnOnceThereIsRoom) {
+TEST_F(FaultsDisk, MovieResumesOnceThereIsRoom) {
     const std::string movie = "movie builtin:torus:16 --size 24x24 --orbit 20 --seconds .2 -o ";
     ASSERT_EQ(run_on_full_disk(movie + "disk/folder/f_%02d.png", {}, 3).status, 1);
     const std::size_t there = contents("after/folder").size();
     EXPECT_GT(there, 1U);
     const ProgramRun rest = run(movie + "after/folder/f_%02d.png");
     EXPECT_EQ(rest.status, 0) << rest.err;
-    EXPECT_THAT(rest.out, HasSubstr(std::to_string(there - 1) + " of 5 frames are there already"));
+    EXPECT_THAT(rest.out, HasSubstr(std::to_string(there - 1) + " of 5 frames exist already"));
     ASSERT_EQ(run(movie + "whole/f_%02d.png").status, 0);
     EXPECT_EQ(contents("after/folder"), contents("whole"));
 }
 
-TEST_F(FaultsDisk, AReportGoesOnOnceThereIsRoom) {
+TEST_F(FaultsDisk, ReportResumesOnceThereIsRoom) {
     ASSERT_EQ(run_on_full_disk(kReport, {}, 8).status, 1);
     const auto journal = contents("after/folder")["journal.jsonl"];
     EXPECT_GT(journal.size(), 1000U);
@@ -118,12 +118,12 @@ TEST_F(FaultsDisk, AReportGoesOnOnceThereIsRoom) {
     again.replace(again.find("disk"), 4, "after");
     const ProgramRun rest = run(again);
     EXPECT_EQ(rest.status, 0) << rest.err;
-    // No measurement was lost or made again.
+    // No measurement was lost or repeated.
     EXPECT_EQ(contents("after/folder")["journal.jsonl"].substr(0, journal.rfind('\n') + 1),
               journal.substr(0, journal.rfind('\n') + 1));
 }
 
-TEST_F(FaultsDisk, AFullCacheIsNoError) {
+TEST_F(FaultsDisk, FullCacheIsNoError) {
     ASSERT_EQ(run(std::string(kPicture) + "--footprints table -o a.png").status, 0);
     const std::string whole = text_of(folder_ / "a.png");
     for (const int pages : {0, 1}) {

@@ -1,6 +1,6 @@
-// kill -9 at moments drawn from a seed, spread over a whole run: what was there is the old file or the new one, and the
-// next start of the same command leaves what it would have left, and nothing else. All 200 moments with
-// EDGESPLAT_FULL_FAULTS=1.
+// kill -9 at random moments with a fixed seed, over a whole run. Afterwards each output is the old file or the new one.
+// The next start of the same command writes what the first would have written, and nothing else.
+// EDGESPLAT_FULL_FAULTS=1 tests all 200 moments.
 #include <random>
 
 #include "tests/stability/faults_program.h"
@@ -12,7 +12,8 @@ using testing::IsEmpty;
 
 using Clock = std::chrono::steady_clock;
 
-/// A command that writes; `outputs` are files, or a folder with a slash at its end that is only whole once it is over.
+/// A command that writes. `outputs`: files, or a folder with a slash at its end that is only complete at the end of the
+/// run.
 struct Writing {
     const char* name;
     const char* arguments;
@@ -26,7 +27,7 @@ class FaultsKill : public FaultsTest, public testing::WithParamInterface<Writing
         return std::chrono::duration<double>(Clock::now() - begin).count();
     }
 
-    /// The bytes of a file but for the time at which it was made, which an EXR file tells.
+    /// The bytes of a file without the time of its creation, which EXR files contain.
     std::string timeless(const char* file) const {
         std::string text = text_of(folder_ / file);
         const std::size_t at = text.find("capDate");
@@ -34,7 +35,7 @@ class FaultsKill : public FaultsTest, public testing::WithParamInterface<Writing
         return text;
     }
 
-    /// The outputs that are there.
+    /// The existing outputs.
     std::map<std::string, std::string> outputs() const {
         std::map<std::string, std::string> all;
         for (const char* output : GetParam().outputs)
@@ -42,7 +43,7 @@ class FaultsKill : public FaultsTest, public testing::WithParamInterface<Writing
         return all;
     }
 
-    /// Runs the command and kills it so long after its start, if it is not over by then. Whether it was killed.
+    /// Runs the command and kills it after `seconds`, if it still runs. Returns whether it was killed.
     bool killed_after(double seconds) const {
         const pid_t child = start(GetParam().arguments);
         std::this_thread::sleep_for(std::chrono::duration<double>(seconds));
@@ -54,14 +55,14 @@ class FaultsKill : public FaultsTest, public testing::WithParamInterface<Writing
     }
 };
 
-TEST_P(FaultsKill, AtAnyMomentNothingIsLost) {
+TEST_P(FaultsKill, LosesNothingAtAnyMoment) {
     const Writing& writing = GetParam();
     ASSERT_EQ(run(writing.arguments).status, 0);
     const auto fresh = outputs();
     const auto begin = Clock::now();
     ASSERT_EQ(run(writing.arguments).status, 0);
     const double lasts = seconds_since(begin);
-    ASSERT_TRUE(outputs() == fresh) << "what it writes must not change from run to run, or this test shows nothing";
+    ASSERT_TRUE(outputs() == fresh) << "this test needs outputs that do not change from run to run";
     std::vector<std::string> names = files();
 
     std::mt19937 random(20);  // NOLINT(cert-msc32-c,cert-msc51-cpp): the same moments each time
@@ -72,12 +73,12 @@ TEST_P(FaultsKill, AtAnyMomentNothingIsLost) {
         SCOPED_TRACE(i);
         for (const char* output : writing.outputs)
             std::ofstream(folder_ / output, std::ios::trunc) << "old " << output;
-        // One in each of as many equal spans, so that few moments, too, are early and late ones.
+        // One moment in each of `moments` equal spans, so that even few moments include early and late ones.
         killed += killed_after((i + within(random)) / moments * 1.1 * lasts) ? 1 : 0;
         for (const char* output : writing.outputs) {
             const std::string there = timeless(output);
             EXPECT_TRUE(there == std::string("old ") + output || there == fresh.at(output))
-                << output << " is neither the old nor the new one: " << there.size() << " bytes";
+                << output << " is neither the old file nor the new one: " << there.size() << " bytes";
         }
         const ProgramRun next = run(writing.arguments);
         EXPECT_EQ(next.status, 0) << next.err;
@@ -89,7 +90,7 @@ TEST_P(FaultsKill, AtAnyMomentNothingIsLost) {
     RecordProperty("killed", killed);
 }
 
-constexpr const char* kReport =
+constexpr const char* kKilledReport =
     "accuracy builtin:sphere:16 --report report --size 16x16 --repeats 1 --orbit 0 --knobs edges --cameras far -q";
 
 INSTANTIATE_TEST_SUITE_P(
@@ -106,18 +107,18 @@ INSTANTIATE_TEST_SUITE_P(
         Writing{"SceneFile", "scene new builtin:torus:16 -o a.toml", {"a.toml"}, 12, 25}),
     [](const testing::TestParamInfo<Writing>& parameter) { return std::string(parameter.param.name); });
 
-/// A report is many files, of which some tell times: what is compared is what was measured and kept.
-TEST_F(FaultsTest, KilledReportsGoOn) {
+/// A report has many files, and some contain times: only the measurements and the presence of files are compared.
+TEST_F(FaultsTest, KilledReportsResume) {
     std::mt19937 random(21);  // NOLINT(cert-msc32-c,cert-msc51-cpp)
     std::uniform_real_distribution<double> share(0, 8);
     std::string journal;
     for (int i = 0; i < (full_faults() ? 20 : 2); ++i) {
         SCOPED_TRACE(i);
-        const pid_t child = start(kReport);
+        const pid_t child = start(kKilledReport);
         std::this_thread::sleep_for(std::chrono::duration<double>(share(random)));
         kill(child, SIGKILL);
         waitpid(child, nullptr, 0);
-        // Lines that were whole stay, as they were.
+        // Complete lines stay unchanged.
         std::string now = text_of(folder_ / "report/journal.jsonl");
         now.resize(now.rfind('\n') == std::string::npos ? 0 : now.rfind('\n') + 1);
         EXPECT_TRUE(now.starts_with(journal)) << "measurements were lost";
@@ -128,7 +129,7 @@ TEST_F(FaultsTest, KilledReportsGoOn) {
             journal.clear();
         }
     }
-    const ProgramRun last = run(kReport);
+    const ProgramRun last = run(kKilledReport);
     EXPECT_EQ(last.status, 0) << last.err;
     EXPECT_TRUE(text_of(folder_ / "report/journal.jsonl").starts_with(journal));
     EXPECT_THAT(temporaries(), IsEmpty());

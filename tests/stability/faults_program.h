@@ -1,4 +1,4 @@
-// The real program under faults: on a full disk, killed, stopped, with a device that fails.
+// The real program under faults: on a full disk, killed, interrupted, with a failing device.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -11,13 +11,13 @@
 
 namespace edgesplat {
 
-/// Whether all moments are tried, not only as many as a suite has time for.
+/// Whether all moments are tested, not only a few.
 inline bool full_faults() {
     const char* value = std::getenv("EDGESPLAT_FULL_FAULTS");
     return value != nullptr && std::string(value) == "1";
 }
 
-/// A fresh folder and a cache of one's own, warm from the first test on.
+/// A fresh folder, and a cache for the suite that the first test fills.
 class FaultsTest : public CliTest {
   protected:
     static constexpr const char* kPicture = "render builtin:torus:16 --size 24x24 ";
@@ -31,7 +31,7 @@ class FaultsTest : public CliTest {
         return std::filesystem::temp_directory_path() / ("edgesplat_faults_cache_" + std::to_string(getpid()));
     }
 
-    /// Every file below the folder with its bytes, by its path from there.
+    /// All files below the folder with their bytes, by relative path.
     std::map<std::string, std::string> contents(const std::string& below = "") const {
         std::map<std::string, std::string> all;
         const auto root = folder_ / below;
@@ -41,7 +41,7 @@ class FaultsTest : public CliTest {
         return all;
     }
 
-    /// Files that only a running program has, here or in the cache.
+    /// Files that only a running program may have, here or in the cache.
     std::vector<std::string> temporaries() const {
         std::vector<std::string> found;
         for (const auto& root : {folder_, cache()}) {
@@ -55,7 +55,7 @@ class FaultsTest : public CliTest {
         return found;
     }
 
-    /// One line that says what is wrong, and that there was an error.
+    /// Expects an exit status of 1 and an error message of one line.
     static void expect_one_message(const ProgramRun& run, const std::string& words) {
         EXPECT_EQ(run.status, 1) << run.err;
         EXPECT_THAT(run.err, testing::StartsWith("edgesplat: error: "));
@@ -63,7 +63,7 @@ class FaultsTest : public CliTest {
         EXPECT_THAT(run.err, testing::HasSubstr(words));
     }
 
-    /// Starts `edgesplat ARGUMENTS` inside the folder, saying nothing; its process.
+    /// Starts `edgesplat ARGUMENTS` inside the folder without output; returns its process.
     pid_t start(const std::string& arguments) const {
         const std::string command = "cd '" + folder_.string() + "' && exec '" EDGESPLAT_PROGRAM "' " + arguments +
                                     " >/dev/null 2>&1 </dev/null";

@@ -1,5 +1,5 @@
-// Ctrl-C at any time in anything that takes long: over within two seconds, with the status that shells give it, and
-// either resumable or as if it had not been begun.
+// Ctrl-C at any time in any long command: it ends within two seconds, with the shell's status for it, and the output is
+// either resumable or untouched.
 #include "tests/stability/faults_program.h"
 
 namespace edgesplat {
@@ -9,18 +9,18 @@ using testing::IsEmpty;
 
 using Clock = std::chrono::steady_clock;
 
-/// Something that takes long, and how far it is when it is stopped.
+/// A long command, and when to interrupt it.
 struct LongRun {
     const char* name;
     const char* arguments;
     int milliseconds;        ///< after its start
-    const char* left = "";   ///< what may be there afterwards: files in this folder
+    const char* left = "";   ///< prefix of the files that may exist afterwards
     const char* ready = "";  ///< wait for this file first
 };
 
 class FaultsStop : public FaultsTest, public testing::WithParamInterface<LongRun> {
   protected:
-    /// Starts it in a fresh folder and waits; nothing if it was over by then.
+    /// Starts the command in a fresh folder and waits; nullopt if it has ended by then.
     std::optional<pid_t> running_after(std::chrono::milliseconds delay) const {
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
@@ -40,22 +40,22 @@ class FaultsStop : public FaultsTest, public testing::WithParamInterface<LongRun
     }
 };
 
-TEST_P(FaultsStop, IsOverSoonAndLeavesNothingHalfDone) {
+TEST_P(FaultsStop, EndsSoonWithoutPartialOutput) {
     const LongRun& long_run = GetParam();
-    // How long it takes is the machine's affair: where it is over before the signal, the signal comes earlier.
+    // Machines differ in speed: if the command ends before the signal, the signal comes earlier.
     std::optional<pid_t> begun;
     for (std::chrono::milliseconds delay(long_run.milliseconds); !begun; delay /= 2) {
         begun = running_after(delay);
-        ASSERT_TRUE(begun || delay.count() > 0) << "it was quicker than the signal";
+        ASSERT_TRUE(begun || delay.count() > 0) << "the command always ended before the signal";
     }
     const pid_t child = *begun;
     const auto asked = Clock::now();
     kill(child, SIGINT);
     int status = 0;
     waitpid(child, &status, 0);
-    // Two seconds on a machine of its own; tests share theirs.
+    // Two seconds on an otherwise idle machine; tests run in parallel.
     EXPECT_LT(std::chrono::duration<double>(Clock::now() - asked).count(), 3.0);
-    // A shell says 130 of both.
+    // A shell reports 130 for both.
     EXPECT_TRUE((WIFEXITED(status) && WEXITSTATUS(status) == 130) ||
                 (WIFSIGNALED(status) && WTERMSIG(status) == SIGINT))
         << status;
@@ -94,7 +94,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 using FaultsStopped = FaultsTest;
 
-TEST_F(FaultsStopped, TwoLargePicturesAreComparedUntilThen) {
+TEST_F(FaultsStopped, ComparisonOfLargePicturesEnds) {
     for (const char* name : {"a.exr", "b.exr"})
         ASSERT_EQ(run(std::string("render builtin:torus:16 --edges off --size 1500x1500 -o ") + name).status, 0);
     const pid_t child = start("compare a.exr b.exr --diff d.exr");

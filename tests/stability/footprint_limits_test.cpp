@@ -1,4 +1,4 @@
-// Warps and footprints at the corners of what is legal, where something is about to vanish or to overflow.
+// Warps and footprints at the limits of their parameters, where values vanish or overflow.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(FootprintLimits, PaperProfilesAtEveryLegalCorner) {
                         before = y;
                         ASSERT_GE(inverse, 0);
                         ASSERT_LE(inverse, 1);
-                        // Within 1e-13 of the place, however steep or flat p is there.
+                        // The inverse is accurate to 1e-13, however steep or flat p is.
                         ASSERT_LE(paper_profile(std::max(inverse - 1e-13, 0.0), profile), x + 1e-15);
                         ASSERT_GE(paper_profile(std::min(inverse + 1e-13, 1.0), profile), x - 1e-15);
                     }
@@ -62,9 +62,9 @@ TEST(FootprintLimits, PaperProfilesBeyondACornerAreRefused) {
             << profile.t1 << " " << profile.t2 << " " << profile.m1 << " " << profile.m2;
 }
 
-TEST(FootprintLimits, ThePapersInversionWhereItsSlopeVanishes) {
-    // p' = 0 at t1 and t2: Newton alone divides by nothing there. p is flat to second order, so p^-1 is known to the
-    // root of what p is.
+TEST(FootprintLimits, PaperInversionWhereTheSlopeVanishes) {
+    // p' = 0 at t1 and t2: Newton's method alone divides by 0 there. p is flat to second order, so p^-1 is only known
+    // to the square root of p's accuracy.
     const PaperProfile profile;
     for (const double m : {profile.m1, profile.m2}) {
         const double t = m == profile.m1 ? profile.t1 : profile.t2;
@@ -80,7 +80,8 @@ TEST(FootprintLimits, ThePapersInversionWhereItsSlopeVanishes) {
     }
 }
 
-/// Rays around a voxel: at every angle to the normal, also exactly along and across it, and at every distance.
+/// Rays around a voxel: at every angle to the normal, also exactly parallel and perpendicular to it, and at every
+/// distance.
 template <typename Check>
 void for_all_rays(const Check& check) {
     for (const double un : {-1.0, -1 + 1e-16, -0.7, -1e-9, 0.0, 1e-300, 0.3, 1 - 1e-9, 1.0}) {
@@ -104,7 +105,7 @@ TEST(FootprintLimits, FootprintsOfEveryRayAndDistanceAreBounded) {
                     ASSERT_TRUE(std::isfinite(f));
                     ASSERT_GE(f, 0);
                 }
-                // Neither is anywhere larger than the kernel, nor its support longer than that.
+                // No footprint exceeds the kernel's maximum times the length of its support.
                 ASSERT_LE(warped, kernel(0) * 2 * kPaperReach) << d << " " << ray.un;
                 ASSERT_LE(cut, kernel(0) * 2 * (kReach + kFaceDepth)) << d << " " << ray.un;
                 ASSERT_LE(flat, largest * (1 + 1e-12));
@@ -113,7 +114,7 @@ TEST(FootprintLimits, FootprintsOfEveryRayAndDistanceAreBounded) {
     }
 }
 
-TEST(FootprintLimits, AnEdgeOutOfReachIsNone) {
+TEST(FootprintLimits, EdgeOutOfReachChangesNothing) {
     for_all_rays([&](const Ray& ray) {
         const double plain = kernel_footprint(ray.rho2), reach = kReach + kFaceDepth;
         ASSERT_NEAR(procedural_footprint(ray, PaperEdge{kReach, {}}), plain, 1e-15);
@@ -122,7 +123,7 @@ TEST(FootprintLimits, AnEdgeOutOfReachIsNone) {
     });
 }
 
-TEST(FootprintLimits, ContinuousWhereTheRayLiesAcrossTheNormal) {
+TEST(FootprintLimits, ContinuousAcrossTheNormal) {
     const PaperEdge edge{0.4, {}};
     for (const double pn : {-0.6, 0.0, 0.3, 0.6, 0.9}) {
         const double across = exact_footprint({pn * pn + 0.04, pn, 0}, edge);
@@ -131,7 +132,7 @@ TEST(FootprintLimits, ContinuousWhereTheRayLiesAcrossTheNormal) {
     }
 }
 
-TEST(FootprintLimits, ContinuousWhereTheRayLiesAlongTheNormal) {
+TEST(FootprintLimits, ContinuousAlongTheNormal) {
     const PaperEdge edge{0.4, {}};
     for (const double rho : {0.0, 0.5, 1.2}) {
         const double along = exact_footprint({rho * rho, 0, 1}, edge);
@@ -143,7 +144,7 @@ TEST(FootprintLimits, ContinuousWhereTheRayLiesAlongTheNormal) {
     }
 }
 
-TEST(FootprintLimits, TheKernelEndsWhereItsRadiusIs) {
+TEST(FootprintLimits, TheKernelEndsAtItsRadius) {
     const double r2 = kKernelRadius * kKernelRadius;
     EXPECT_EQ(kernel(r2), 0);
     EXPECT_EQ(kernel(1e300), 0);
@@ -157,16 +158,16 @@ TEST(FootprintLimits, TheKernelEndsWhereItsRadiusIs) {
     EXPECT_DOUBLE_EQ(kernel_chord(0, -1e300), -kernel_footprint(0) / 2);
 }
 
-TEST(FootprintLimits, SlicesOfNothingAndOfEverything) {
+TEST(FootprintLimits, EmptyAndInfiniteSlices) {
     const PaperEdge edge{0.4, {}};
     constexpr double kInfinite = std::numeric_limits<double>::infinity();
     for_all_rays([&](const Ray& ray) {
         const double whole = procedural_footprint(ray, edge, 10);
         ASSERT_NEAR(procedural_footprint(ray, edge, 10, {-kInfinite, kInfinite}), whole, 1e-12);
         ASSERT_NEAR(procedural_footprint(ray, edge, 10, {-1e300, 1e300}), whole, 1e-12);
-        ASSERT_NEAR(procedural_footprint(ray, edge, 10, {0.3, 0.3}), 0, 1e-12) << "no thickness";
-        ASSERT_NEAR(procedural_footprint(ray, edge, 10, {1e6, 1e7}), 0, 1e-12) << "beyond it";
-        // Half-open slices, by the cut's place, add up to the whole up to the rule's own error.
+        ASSERT_NEAR(procedural_footprint(ray, edge, 10, {0.3, 0.3}), 0, 1e-12) << "a slice without thickness";
+        ASSERT_NEAR(procedural_footprint(ray, edge, 10, {1e6, 1e7}), 0, 1e-12) << "a slice beyond the kernel";
+        // Half-open slices add up to the whole, up to the quadrature error at the cut.
         const double halves = procedural_footprint(ray, edge, 10, {-kInfinite, 0.1}) +
                               procedural_footprint(ray, edge, 10, {0.1, kInfinite});
         ASSERT_NEAR(halves, whole, 5e-3 * kernel_footprint(0));

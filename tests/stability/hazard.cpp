@@ -11,7 +11,7 @@ namespace edgesplat::test {
 
 VolumePointer volume_of(const glm::ivec3& dims, const std::function<float(const glm::ivec3&)>& value,
                         const glm::dmat3& axes) {
-    // Doubles hold every float, those that are no numbers too.
+    // Doubles represent every float, also NaN and infinities.
     return sampled(
         dims, [&](const glm::dvec3& at) { return static_cast<double>(value(glm::ivec3(at))); }, axes);
 }
@@ -59,7 +59,7 @@ double Estimate::differing() const {
 
 namespace {
 
-/// How far from the surface, voxels, and askew, radians, a voxel's point of it is; none is nowhere.
+/// Distance (voxels) and angle (radians) of an estimated point to the surface, the larger of both; 1e9 without an edge.
 double off_surface_of(const reference::Field& field, const reference::ScaledScene& scene, std::size_t i,
                       const reference::VoxelEdge& edge, bool cubic) {
     if (!edge.has_edge || edge.border) return 1e9;
@@ -81,7 +81,7 @@ Estimate estimate(const VolumePointer& volume, const std::vector<double>& iso_va
     s.scene.iso_values = iso_values;
     s.scene.materials.assign(iso_values.size() + 1, Material{});
     for (std::size_t m = 0; m < s.scene.materials.size(); ++m)
-        s.scene.materials[m].extinction = static_cast<double>(m + 1);  // edges are estimated of what is seen: of all
+        s.scene.materials[m].extinction = static_cast<double>(m + 1);  // visible, so that their edges are estimated
     s.settings.edges = estimator;
     s.settings.cull_buried = false;
     DeviceUnderTest& state = prepared(s);
@@ -129,7 +129,7 @@ ImageDifference against_reference(const Shot& shot, const std::string& what) {
     const RenderResult device = sound(shot, what);
     reference::PreparedVolume drawn(*shot.volume, shot.scene, shot.settings, true);
     if (draws_faces(shot.settings)) {
-        // Where surfaces meet, touch and end rounding decides which face a voxel has: that of the device is drawn.
+        // Where surfaces meet, touch or end, rounding decides a voxel's face. The reference draws the device's faces.
         PassScene s;
         s.volume = *shot.volume;
         s.scene = shot.scene;

@@ -1,4 +1,4 @@
-// docs/numerics.md names every case of this program, and none that is not there.
+// docs/numerics.md names every case of this program, and no others.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -10,7 +10,7 @@
 namespace edgesplat::test {
 namespace {
 
-// NUMERICS_SUITE is another name in each program.
+// NUMERICS_SUITE has another value in each program.
 TEST(NUMERICS_SUITE, TheDocumentNamesEveryCase) {
     std::ifstream file(EDGESPLAT_SOURCE_DIR "/docs/numerics.md");
     const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -19,7 +19,7 @@ TEST(NUMERICS_SUITE, TheDocumentNamesEveryCase) {
     const testing::UnitTest& tests = *testing::UnitTest::GetInstance();
     for (int s = 0; s < tests.total_test_suite_count(); ++s) {
         const testing::TestSuite& suite = *tests.GetTestSuite(s);
-        // Without the prefix and the parameters of those that have them.
+        // Without the prefix and the parameters of parameterized suites.
         const std::string whole = suite.name(), name = whole.substr(whole.find('/') + 1);
         if (name.starts_with("Numerics") || name == "Renderer") continue;
         suites.insert(name);

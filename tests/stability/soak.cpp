@@ -23,8 +23,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kVisitors = 3;  ///< renderers that come and go
-constexpr int kMostStay = 60;         ///< frames that one of them draws
+constexpr std::size_t kVisitors = 3;  ///< renderers that are created and destroyed
+constexpr int kMostStay = 60;         ///< largest number of frames that one of them draws
 constexpr double kVisits = 0.2;       ///< share of frames that they draw
 
 double allocated_mib() {
@@ -34,10 +34,10 @@ double allocated_mib() {
 
 int open_descriptors() {
     const std::filesystem::directory_iterator all("/proc/self/fd");
-    return static_cast<int>(std::distance(begin(all), end(all))) - 1;  // but that of the listing
+    return static_cast<int>(std::distance(begin(all), end(all))) - 1;  // without the descriptor of this listing
 }
 
-/// What a frame shows.
+/// The content of a frame.
 struct Shot {
     std::shared_ptr<const Volume> volume;
     Scene scene;
@@ -62,7 +62,7 @@ class Shots {
         }
     }
 
-    /// Always the same.
+    /// The first shot: independent of the random numbers.
     Shot first() const {
         Shot shot;
         shot.volume = volumes_.front();
@@ -89,7 +89,7 @@ class Shots {
         shot.camera.fov_y = real(10, 110);
         shot.size = {16 + static_cast<int>(below(81)), 16 + static_cast<int>(below(81))};
         shot.aovs = {.tau = chance(0.1), .depth = chance(0.1), .normal = chance(0.1), .distance = chance(0.1)};
-        shot.rays = chance(0.1) && beyond_ray_casting(shot.scene).empty();
+        shot.rays = chance(0.1) && raycast_obstacle(shot.scene).empty();
         return shot;
     }
 
@@ -157,12 +157,12 @@ class Shots {
     std::vector<Shot> looks_;
 };
 
-/// A renderer and the volume it has.
+/// A renderer with its current volume.
 struct Held {
     Renderer renderer;
     std::shared_ptr<const Volume> volume;
     int stay = 0;
-    std::uint64_t messages = 0;  ///< of validation, that were noted
+    std::uint64_t messages = 0;  ///< validation messages that were already reported
 
     RenderResult draw(const Shot& shot) {
         if (volume != shot.volume) renderer.set_volume(shot.volume);
@@ -229,7 +229,7 @@ SoakResult soak(const SoakOptions& options, const std::function<void(const SoakS
         for (auto& visitor : visitors)
             visitor.reset();
         if (always.draw(first).color.pixels != wanted)
-            result.problems.push_back(fmt::format("frame {}: the first picture is another", frame));
+            result.problems.push_back(fmt::format("frame {}: the first picture has changed", frame));
         result.samples.push_back({frame, resident_mib(), allocated_mib(), always.renderer.held_bytes(),
                                   open_descriptors(), spent / options.every});
         if (note) note(result.samples.back());

@@ -1,6 +1,6 @@
-// soak [FRAMES [SEED [LOOKS [validation]]]]: many frames in one process, 10000 unless said otherwise. Fails where a
-// picture is not finite or another than before, where validation has something to say, or, without validation, whose
-// layer keeps memory of its own, where the process grows by more than 1 % from frame 1000 to the end.
+// soak [FRAMES [SEED [LOOKS [validation]]]]: draws many frames in one process, by default 10000. Fails if a picture is
+// not finite or changes, or on validation messages. Without validation, whose layer keeps memory of its own, it also
+// fails if the process grows by more than 1 % from frame 1000 to the end.
 #include <fmt/format.h>
 
 #include <cstdio>

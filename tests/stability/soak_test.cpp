@@ -1,4 +1,4 @@
-// What `soak` looks for over 10^4 frames, over as many as a suite has time for.
+// The checks of `soak` over 10^4 frames, here with fewer frames.
 #include "tests/stability/soak.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +10,7 @@
 namespace edgesplat::test {
 namespace {
 
-TEST(Soak, ManyPicturesInOneProcessAreFiniteAndLeaveNothing) {
+TEST(Soak, ManyPicturesAreFiniteWithoutLeaks) {
     const SoakResult result = soak({.frames = 200, .seed = 5, .every = 50, .looks = 4, .validation = true});
     EXPECT_THAT(result.problems, testing::IsEmpty());
     ASSERT_EQ(result.samples.size(), 4U);
@@ -20,9 +20,9 @@ TEST(Soak, ManyPicturesInOneProcessAreFiniteAndLeaveNothing) {
     }
 }
 
-TEST(Soak, VolumesThatChangeLeaveNothing) {
+TEST(Soak, ChangingVolumesDoNotLeak) {
 #ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the address sanitizer keeps what is freed";
+    GTEST_SKIP() << "the address sanitizer keeps freed memory";
 #endif
     const auto sampled = [](const char* name, int side) {
         return std::make_shared<const Volume>(sample(resized(analytic_scene(name), glm::ivec3(side))));
@@ -38,18 +38,18 @@ TEST(Soak, VolumesThatChangeLeaveNothing) {
         const Camera camera{.eye = volume->geometry.center() - glm::dvec3(0, 40, 0)};
         renderer.render(resolve_scene({.iso_values = {0.5}}, *volume), camera, {}, 32, 32);
     }
-    // A shader compiled anew for each of them would be 15 MiB.
+    // A shader recompiled in each frame would take 15 MiB.
     EXPECT_LT(resident_mib() - warm, 2);
 }
 
-TEST(Soak, RenderersThatComeAndGoLeaveNothing) {
+TEST(Soak, TemporaryRenderersDoNotLeak) {
 #ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the address sanitizer keeps what is freed";
+    GTEST_SKIP() << "the address sanitizer keeps freed memory";
 #endif
     const auto volume = std::make_shared<const Volume>(sample(resized(analytic_scene("sphere"), glm::ivec3(16))));
     const Camera camera{.eye = volume->geometry.center() - glm::dvec3(0, 40, 0)};
     leave_no_holes();
-    // While one is there the driver stays loaded, as in an application.
+    // Keeps the driver loaded, as in an application.
     const Renderer stays;
     constexpr int kWarm = 8, kRenderers = 36;
     double warm = 0;
@@ -62,11 +62,11 @@ TEST(Soak, RenderersThatComeAndGoLeaveNothing) {
         settings.warp = WarpFamily::Paper;
         renderer.render(resolve_scene({.iso_values = {0.5}}, *volume), camera, settings, 32, 32);
     }
-    // A shader compiled anew in each of them would be 1.8 MiB.
+    // A shader recompiled in each renderer would take 1.8 MiB.
     EXPECT_LT(resident_mib() - warm, 0.9);
 }
 
-TEST(Soak, GrowthIsTheLineThroughTheSamples) {
+TEST(Soak, GrowthIsTheSlopeOfTheFittedLine) {
     std::vector<SoakSample> samples;
     for (int frame = 100; frame <= 2000; frame += 100)
         samples.push_back({.frame = frame, .host_mib = frame < 1000 ? 7.0 : 100 + 0.01 * (frame - 1500)});

@@ -1,5 +1,5 @@
-// The same object stored, placed or measured otherwise is the same picture: mirrored, turned, with its axes in another
-// order, in another unit, with other values.
+// The same object gives the same picture in every representation: mirrored, rotated, with other orders of axes, other
+// units, other values.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// No two of its axes alike: a bent, dented body in 18 x 15 x 12 voxels of 1 x 1.1 x 1.3 mm, two materials, a light.
+/// An asymmetric, dented body in 18 x 15 x 12 voxels of 1 x 1.1 x 1.3 mm, with two materials and a light.
 Shot uneven() {
     static const VolumePointer volume = volume_of(
         {18, 15, 12},
@@ -27,17 +27,17 @@ Shot uneven() {
     return shot;
 }
 
-/// Largest difference of single precision and the few voxels that lie half-way between two planes.
+/// Bounds for single precision and for the few voxels half-way between two planes.
 void expect_alike(const Image& a, const Image& b, const std::string& what) {
     const ImageDifference difference = compare_images(a, b, 2e-3);
-    EXPECT_GT(middle_of(a, 3).most, 0.9) << what << ": nothing is seen";
+    EXPECT_GT(middle_of(a, 3).most, 0.9) << what << ": the picture is empty";
     EXPECT_LE(difference.share, 0.01) << what << ": largest " << difference.max;
     EXPECT_LE(difference.max, 0.03) << what;
     EXPECT_GE(difference.psnr, 60) << what;
 }
 
-/// The samples stored in another order, at the same places: axis i of the new grid is axis `order[i]` of the old one,
-/// backwards where `reversed[i]`.
+/// The samples stored in another order, at the same positions: axis i of the new grid is axis `order[i]` of the old
+/// one, reversed if `reversed[i]`.
 Shot restored(Shot shot, const glm::ivec3& order, const glm::bvec3& reversed = glm::bvec3(false)) {
     const Volume& old = *shot.volume;
     const auto stored = std::make_shared<Volume>();
@@ -80,7 +80,7 @@ TEST(SymmetryGrid, MirroredAcrossZ) {
     expect_alike(picture_of(uneven()), flipped(picture_of(moved(uneven(), {1, 0, 0, 0, 1, 0, 0, 0, -1}, {0, 0, 7}))),
                  "z");
 }
-TEST(SymmetryGrid, ThroughAPoint) {
+TEST(SymmetryGrid, MirroredThroughAPoint) {
     expect_alike(picture_of(uneven()), flipped(picture_of(moved(uneven(), glm::dmat3(-1)))), "x, y and z");
 }
 TEST(SymmetryGrid, TurnedByARightAngleAboutX) {
@@ -102,7 +102,7 @@ TEST(SymmetryGrid, StoredBackwardsAlongZ) {
     expect_alike(picture_of(uneven()), picture_of(restored(uneven(), {0, 1, 2}, {false, false, true})), "z backwards");
 }
 TEST(SymmetryGrid, StoredBackwardsAlongAll) {
-    // The order of all splats is turned round, also within every sheet.
+    // This reverses the order of all splats, also within every sheet.
     expect_alike(picture_of(uneven()), picture_of(restored(uneven(), {0, 1, 2}, glm::bvec3(true))), "all backwards");
 }
 TEST(SymmetryGrid, StoredInAnyOrderOfAxes) {
@@ -113,7 +113,7 @@ TEST(SymmetryGrid, StoredInAnyOrderOfAxes) {
 }
 
 TEST(SymmetryGrid, OrderWithinASheetDoesNotMatter) {
-    // Plain kernels, whole sheets: nothing but the order in which floats are added up differs.
+    // Plain kernels, whole sheets: only the order of float additions differs.
     Shot shot = uneven();
     shot.settings.edges = EdgeEstimator::Off;
     shot.scene.lights.clear();
@@ -144,8 +144,8 @@ TEST(SymmetryGrid, InNanometres) {
 TEST(SymmetryGrid, InKilometres) {
     expect_scaled(1e-6);
 }
-TEST(SymmetryGrid, InUnitsFromPicometresToMegametres) {
-    // The ends of what a spacing may be.
+TEST(SymmetryGrid, InPicometresAndMegametres) {
+    // The limits of a spacing.
     expect_scaled(1e-9);
     expect_scaled(7e8);
 }
@@ -177,14 +177,14 @@ TEST(SymmetryGrid, WithValuesScaledAndShifted) {
     expect_alike(picture_of(uneven()), picture_of(with_values(uneven(), 1e-9, 0)), "1e-9 v");
 }
 
-TEST(SymmetryGrid, WithValuesUpsideDown) {
-    // Light comes from where values fall: normals of the same surface point the other way, so without light.
+TEST(SymmetryGrid, WithNegatedValues) {
+    // Normals point to lower values, so they are reversed: the comparison is without light.
     Shot shot = uneven();
     shot.scene.lights.clear();
     expect_alike(picture_of(shot), picture_of(with_values(shot, -1, 0)), "-v");
 }
 
-TEST(SymmetryGrid, EveryEstimatorSeesAMirroredBodyMirrored) {
+TEST(SymmetryGrid, MirroredForEveryEstimator) {
     for (const EdgeEstimator estimator : kEstimators) {
         Shot shot = uneven();
         shot.settings.edges = estimator;
@@ -193,11 +193,11 @@ TEST(SymmetryGrid, EveryEstimatorSeesAMirroredBodyMirrored) {
     }
 }
 
-TEST(SymmetryGrid, SlicedKernelsAndThePapersToo) {
+TEST(SymmetryGrid, ForSlicedSheetsAndThePapersCurve) {
     Shot shot = uneven();
     shot.settings.sheets = SheetCut::Sliced;
     expect_alike(picture_of(shot), picture_of(restored(shot, {2, 1, 0}, {false, true, false})), "sliced");
-    shot.settings = papers_own(shot.settings);
+    shot.settings = paper_settings(shot.settings);
     expect_alike(picture_of(shot), picture_of(restored(shot, {2, 1, 0}, {false, true, false})), "the paper's");
 }
 

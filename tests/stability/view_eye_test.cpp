@@ -1,4 +1,4 @@
-// Where the eye is trouble: on a voxel, in matter, at a surface, very far away, and where it looks.
+// Difficult eye positions: on a voxel, in matter, at a surface, very far away; and difficult directions.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 namespace edgesplat::test {
 namespace {
 
-/// A torus that fills most of its grid, seen from somewhere.
+/// A torus that fills most of its grid, seen from `eye`.
 Shot torus_from(const glm::dvec3& eye, const glm::dvec3& target, double fov, double extinction = 2) {
     static const auto volume =
         std::make_shared<const Volume>(sample(torus_scene({24, 24, 14}, {11.6, 11.3, 6.4}, 6.7, 3.2)));
@@ -20,7 +20,7 @@ Shot torus_from(const glm::dvec3& eye, const glm::dvec3& target, double fov, dou
 }
 
 const glm::dvec3 kMiddle(11.6, 11.3, 6.4);
-const glm::dvec3 kTube = kMiddle + glm::dvec3(0, -6.7, 0);  // on the ring in the tube's middle
+const glm::dvec3 kTube = kMiddle + glm::dvec3(0, -6.7, 0);  // on the ring, in the middle of the tube
 
 void expect_like_the_reference(const Shot& shot, const std::string& what, double psnr = 58) {
     const ImageDifference difference = against_reference(shot, what);
@@ -41,23 +41,23 @@ TEST(ViewEye, BetweenEightVoxels) {
     expect_like_the_reference(torus_from(glm::round(kTube) + 0.5, kMiddle, 90, 0.3), "between voxels");
 }
 
-TEST(ViewEye, AtTheGridsCornerAndOnItsFaces) {
+TEST(ViewEye, AtACornerAndOnAFaceOfTheGrid) {
     expect_like_the_reference(torus_from({0, 0, 0}, kMiddle, 60), "in the corner");
     expect_like_the_reference(torus_from({-0.5, 11, 6}, kMiddle, 60), "on the face");
 }
 
-TEST(ViewEye, InsideOpaqueMatterEverythingIsMatter) {
+TEST(ViewEye, InsideOpaqueMatterEveryPixelIsOpaque) {
     for (const double fov : {1.0, 60.0, 150.0}) {
         const Shot shot = torus_from(kTube + glm::dvec3(0.31, 0.2, -0.13), kMiddle, fov, 50);
         expect_like_the_reference(shot, "in matter");
         const Image color = sound(shot, "in matter").color;
         for (std::size_t i = 3; i < color.pixels.size(); i += 4)
-            ASSERT_GT(color.pixels[i], 0.999F) << "a hole in matter";
+            ASSERT_GT(color.pixels[i], 0.999F) << "there is a hole in matter";
     }
 }
 
 TEST(ViewEye, InsideAUniformBodyTheRestOfTheRayCounts) {
-    // What lies ahead of the eye: from 8.3 to 19.5 along x.
+    // The matter ahead of the eye: from x = 8.3 to 19.5.
     const auto block = volume_of({20, 20, 20}, [](const glm::ivec3&) { return 1.0F; });
     Shot shot = shot_of(block, 0.5, 0.1);
     shot.width = shot.height = 16;
@@ -66,13 +66,13 @@ TEST(ViewEye, InsideAUniformBodyTheRestOfTheRayCounts) {
         for (const double x : {8.0, 8.25, 8.5, 8.3}) {
             shot.camera = look(*block, {x, 9.5, 9.5}, {19, 9.5, 9.5}, 2);
             const double got = middle_of(*sound(shot, "inside").tau, 0).mean;
-            // Kernels that the eye's plane cuts through are drawn whole or not at all where sheets are whole.
+            // With whole sheets, kernels that the eye's plane cuts are drawn completely or not at all.
             EXPECT_NEAR(got, 0.1 * (19.5 - x), sheets == SheetCut::Sliced ? 1e-3 : 0.06) << x;
         }
     }
 }
 
-TEST(ViewEye, AMillionthBeforeAndBehindASurface) {
+TEST(ViewEye, AMillionthInFrontOfAndBehindASurface) {
     const glm::dvec3 surface = kTube - glm::dvec3(0, 3.2, 0);
     const Shot before = torus_from(surface - glm::dvec3(0, 1e-6, 0), kMiddle, 60, 20);
     const Shot behind = torus_from(surface + glm::dvec3(0, 1e-6, 0), kMiddle, 60, 20);
@@ -89,7 +89,7 @@ TEST(ViewEye, AMillionVoxelsAway) {
     const Image near = sound(from(1e4), "1e4 voxels away").color;
     const Image far = sound(from(1e6), "1e6 voxels away").color;
     EXPECT_GT(middle_of(near, 3).most, 0.9);
-    EXPECT_GE(compare_images(near, far).psnr, 38) << "both are parallel projections, nearly";
+    EXPECT_GE(compare_images(near, far).psnr, 38) << "both are nearly parallel projections";
     expect_like_the_reference(from(1e6), "1e6 voxels away", 50);
 }
 
@@ -107,7 +107,7 @@ TEST(ViewEye, FieldOfViewOf179Degrees) {
     expect_like_the_reference(torus_from({12, 11, 6}, {12, 20, 6}, 179.9), "179.9 degrees in the hole");
 }
 
-/// Looks along `way` at a ball in the middle of its grid: the same from all six sides and along all diagonals.
+/// A ball in the middle of its grid, seen along `way`: the same from all six sides and along all diagonals.
 Image ball_along(const glm::dvec3& way, const glm::dvec3& up, double extinction = 0.2) {
     static const auto ball = std::make_shared<const Volume>(sample(sphere_scene({17, 17, 17}, {8, 8, 8}, 5.23)));
     Shot shot = shot_of(ball, 0.5, extinction);
@@ -178,7 +178,7 @@ TEST(ViewEye, UpNearlyParallelToTheView) {
         EXPECT_LE(compare_images(ball_along({0, 0, 1}, {0, off, 1}), ball_along({0, 0, 1}, {0, 1, 0})).max, 2e-4)
             << off;
     }
-    // Nearer than a millionth it says nothing about what is up, and counts as parallel.
+    // Below an angle of a millionth, `up` has no reliable direction, and counts as parallel.
     for (const double off : {5e-7, 1e-9, 1e-300})
         EXPECT_EQ(ball_along({0, 0, 1}, {0, off, 1}).pixels, ball_along({0, 0, 1}, {0, 0, 1}).pixels) << off;
 }

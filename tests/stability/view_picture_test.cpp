@@ -1,5 +1,5 @@
-// Where the picture is trouble: its size, splats smaller than a pixel or larger than the picture, sheets that begin on
-// a layer of voxels, matter in the plane of the eye.
+// Difficult pictures: sizes, splats smaller than a pixel or larger than the picture, sheets that begin on a layer of
+// voxels, matter in the plane of the eye.
 #include <algorithm>
 #include <cmath>
 
@@ -19,7 +19,7 @@ Shot torus_seen() {
     return shot;
 }
 
-/// The same rays as the middle of a picture `of` pixels high has, `size` of them.
+/// A shot of `size` pixels with the same rays as the middle of a picture `of` pixels high.
 Shot middle_part(Shot shot, int of, const glm::ivec2& size) {
     const double tangent = std::tan(glm::radians(shot.camera.fov_y) / 2) * size.y / of;
     shot.camera.fov_y = 2 * glm::degrees(std::atan(tangent));
@@ -28,7 +28,7 @@ Shot middle_part(Shot shot, int of, const glm::ivec2& size) {
     return shot;
 }
 
-/// The middle of a picture, cut out.
+/// Cuts out the middle of a picture.
 Image cut_out(const Image& image, const glm::ivec2& size) {
     Image part(size.x, size.y, image.channels);
     const int left = (image.width - size.x) / 2, top = (image.height - size.y) / 2;
@@ -39,7 +39,7 @@ Image cut_out(const Image& image, const glm::ivec2& size) {
     return part;
 }
 
-/// Pictures of this size show of the same rays what a picture of 97 x 97 (or 96 x 96) does.
+/// A picture of this size equals the middle of a picture of 97 x 97 (or 96 x 96) with the same rays.
 void expect_middle_of_a_larger(const glm::ivec2& size) {
     Shot whole = torus_seen();
     whole.width = 96 + size.x % 2;
@@ -47,8 +47,8 @@ void expect_middle_of_a_larger(const glm::ivec2& size) {
     const Image want = cut_out(render(whole).color, size);
     const Shot part = middle_part(whole, whole.height, size);
     const Image got = sound(part, "a part").color;
-    EXPECT_GT(middle_of(got, 3).most, 0.2) << "nothing in it";
-    // Pixels are told apart by the rounding of their rays alone.
+    EXPECT_GT(middle_of(got, 3).most, 0.2) << "the picture is empty";
+    // Pixels only differ by the rounding of their rays.
     EXPECT_LE(compare_images(want, got).max, 2e-4) << size.x << " x " << size.y;
 }
 
@@ -66,7 +66,7 @@ TEST(ViewPicture, OfOddSizes) {
     expect_middle_of_a_larger({17, 31});
     expect_middle_of_a_larger({33, 65});
 }
-TEST(ViewPicture, OfSizesBesideATiles) {
+TEST(ViewPicture, OfSizesNearMultiplesOfATile) {
     for (const int edge : {15, 16, 17, 31, 32, 33})
         expect_middle_of_a_larger({edge, edge + 1});
 }
@@ -90,7 +90,7 @@ TEST(ViewPicture, Of8192By8192Pixels) {
     try {
         all = render(large).color;
     } catch (const Error& error) {
-        // A driver that has 2 GiB in all holds fewer rows: it says so before it allocates anything.
+        // A driver with 2 GiB in total has room for fewer rows; it reports this before it allocates.
         EXPECT_NE(std::string(error.what()).find("MiB are available"), std::string::npos) << error.what();
         large.height = 8000;
         all = render(large).color;
@@ -103,7 +103,7 @@ TEST(ViewPicture, Of8192By8192Pixels) {
     EXPECT_LE(compare_images(cut_out(all, part), want).max, 2e-3) << "rays of 8192 pixels, in single precision";
 }
 
-/// A near wall with a hole in it, and specks of one voxel far behind.
+/// A near wall with a hole, and specks of one voxel far behind.
 Shot specks_shot() {
     Volume volume;
     volume.geometry.dims = {64, 64, 320};
@@ -125,22 +125,22 @@ Shot specks_shot() {
 }
 
 TEST(ViewPicture, SpecksSmallerThanAStepOfRefinedPixels) {
-    if (!refines_pixels()) GTEST_SKIP() << "every pixel is drawn on such a device";
+    if (!refines_pixels()) GTEST_SKIP() << "this device draws every pixel";
     Shot shot = specks_shot();
     const RenderResult refined = render(shot);
     EXPECT_TRUE(
         std::ranges::any_of(refined.stats.passes, [](const PassTime& p) { return p.name == "5_refine_pixels"; }));
     shot.settings.pixels = PixelChoice::Every;
     const Image every = render(shot).color;
-    EXPECT_NE(refined.color.pixels, every.pixels) << "some follow";
-    // The specks are what the middle of the picture shows.
+    EXPECT_NE(refined.color.pixels, every.pixels) << "some pixels must be interpolated";
+    // The middle of the picture shows the specks.
     EXPECT_GT(middle_of(every, 3).most, 0.5);
     EXPECT_LE(compare_images(refined.color, every).max, 6e-3);
 }
 
 TEST(ViewPicture, SplatsOfAThousandthOfAPixel) {
-    // The whole volume in a fiftieth of a pixel. What a pixel as wide as its footprints shows of it: opacity in
-    // proportion to its share of the pixel.
+    // The whole volume covers a fiftieth of a pixel. With footprints as wide as a pixel, opacity is proportional to the
+    // covered share.
     Shot shot = torus_seen();
     const double voxels_a_pixel = 1000, distance = 1e5;
     shot.width = shot.height = 9;
@@ -159,7 +159,7 @@ TEST(ViewPicture, SplatsOfAThousandthOfAPixel) {
     for (const float v : shot.volume->values)
         full += v >= 0.5F ? 1U : 0U;
     const double expected = 0.01 * static_cast<double>(full) / (voxels_a_pixel * voxels_a_pixel);
-    EXPECT_NEAR(sum / expected, 1, 0.05) << "matter lost or invented";
+    EXPECT_NEAR(sum / expected, 1, 0.05) << "matter was lost or invented";
 }
 
 TEST(ViewPicture, SplatsOfTenThousandPixels) {
@@ -171,7 +171,7 @@ TEST(ViewPicture, SplatsOfTenThousandPixels) {
     shot.camera = look(*one, {-distance, 0.8, 0}, {0, 0.8, 0}, 2 * glm::degrees(std::atan(16.5 * pixel / distance)));
     const Image tau = *sound(shot, "one voxel").tau;
     for (int x = 0; x < 33; ++x) {
-        // +x of the picture is -y of the world here: the eye looks along +x, up is about z.
+        // Here, +x of the picture is -y of the world: the eye looks along +x, up is about z.
         const glm::dvec3 eye(-distance, 0.8, 0);
         const glm::dvec3 u = reference::View(shot.camera, one->geometry, 33, 33).ray(x, 16);
         const double rho2 = glm::dot(eye, eye) - std::pow(glm::dot(eye, u), 2);
@@ -187,7 +187,7 @@ TEST(ViewPicture, CloserThanAVoxelToASurface) {
 }
 
 TEST(ViewPicture, VoxelsInThePlaneOfTheEye) {
-    // Looking along y from y = 11 exactly: 24 x 14 voxel centres have depth 0.
+    // Looks along y from y = 11 exactly: 24 x 14 voxel centres have depth 0.
     for (const double fov : {60.0, 150.0}) {
         Shot shot = torus_seen();
         shot.camera = look(*shot.volume, {11.6, 11, 6.4}, {11.6, 20, 6.4}, fov);
@@ -200,8 +200,8 @@ TEST(ViewPicture, VoxelsInThePlaneOfTheEye) {
 }
 
 TEST(ViewPicture, SheetsThatBeginOnALayerOfVoxels) {
-    // Looking along x from a whole number of sheets before the first layer: every layer lies on a boundary, and
-    // rounding says to which side it belongs. The picture must not care.
+    // Looks along x from a whole number of sheets before the first layer: every layer lies on a boundary, and rounding
+    // decides its side. The picture must not depend on it.
     const auto block = volume_of({16, 9, 9}, [](const glm::ivec3& v) { return v.x % 3 == 0 ? 0.4F : 1.0F; });
     for (const SheetCut sheets : {SheetCut::Whole, SheetCut::Sliced}) {
         for (const double spacing : {0.25, 0.5, 1.0, 2.0}) {

@@ -1,4 +1,4 @@
-// A journal that is cut off, damaged or another's.
+// Journals that are truncated, damaged or of another measurement.
 #include <gmock/gmock.h>
 #include <unistd.h>
 
@@ -38,7 +38,7 @@ class AccuracyJournal : public ::testing::Test {
     ordered_json identity_{{"volume", "v"}, {"size", 3}};
 };
 
-TEST_F(AccuracyJournal, RemembersWhatWasFinished) {
+TEST_F(AccuracyJournal, KeepsFinishedPieces) {
     fill();
     const Journal journal(path_, identity_);
     EXPECT_EQ(journal.size(), 3U);
@@ -47,7 +47,7 @@ TEST_F(AccuracyJournal, RemembersWhatWasFinished) {
     EXPECT_EQ(journal.find("d"), nullptr);
 }
 
-TEST_F(AccuracyJournal, ACutOffLineIsDoneAgain) {
+TEST_F(AccuracyJournal, RepeatsTruncatedLine) {
     fill();
     const std::string whole = text();
     write(whole.substr(0, whole.size() - 9));
@@ -61,7 +61,7 @@ TEST_F(AccuracyJournal, ACutOffLineIsDoneAgain) {
     EXPECT_EQ(text(), whole);
 }
 
-TEST_F(AccuracyJournal, ADamagedLineIsDroppedAndNoOther) {
+TEST_F(AccuracyJournal, DropsOnlyDamagedLine) {
     fill();
     std::string damaged = text();
     damaged.replace(damaged.find("0.1"), 3, "0.2");
@@ -72,14 +72,14 @@ TEST_F(AccuracyJournal, ADamagedLineIsDroppedAndNoOther) {
     EXPECT_NE(journal.find("c"), nullptr);
 }
 
-TEST_F(AccuracyJournal, RubbishIsNoJournal) {
+TEST_F(AccuracyJournal, RejectsMalformedJournal) {
     write(std::string("\0\xff{}{{\n[1,2]\nnull\n", 17));
     const Journal journal(path_, identity_);
     EXPECT_EQ(journal.size(), 0U);
     EXPECT_EQ(journal.dropped(), 3);
 }
 
-TEST_F(AccuracyJournal, AnotherMeasurementIsRefused) {
+TEST_F(AccuracyJournal, RefusesOtherMeasurement) {
     fill();
     ordered_json other = identity_;
     other["size"] = 4;
@@ -94,12 +94,12 @@ TEST_F(AccuracyJournal, AnotherMeasurementIsRefused) {
     EXPECT_EQ(Journal(path_, other).size(), 0U);
 }
 
-TEST_F(AccuracyJournal, TwoAtATimeAreRefused) {
+TEST_F(AccuracyJournal, RefusesSecondWriter) {
     const Journal journal(path_, identity_);
     EXPECT_THROW(Journal(path_, identity_), Error);
 }
 
-TEST_F(AccuracyJournal, AStoppedListGoesOnWhereItStopped) {
+TEST_F(AccuracyJournal, ResumesStoppedList) {
     std::vector<int> ran;
     const auto work = [&](Journal& journal, int stop_at) {
         WorkList list(journal, [&](const Progress& p) { return static_cast<int>(p.pieces_done) < stop_at; });
@@ -121,7 +121,7 @@ TEST_F(AccuracyJournal, AStoppedListGoesOnWhereItStopped) {
     EXPECT_EQ(ran.size(), 5U);
 }
 
-TEST_F(AccuracyJournal, APictureWhoseFileIsDamagedIsMadeAgain) {
+TEST_F(AccuracyJournal, RecomputesDamagedPicture) {
     Journal journal(path_, identity_);
     PictureStore store(folder_, journal);
     int made = 0;

@@ -1,4 +1,4 @@
-// Every figure of the accuracy report on input whose answer is known in closed form.
+// Metrics of the accuracy report on inputs with known answers.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -32,7 +32,7 @@ Image filled(float value, int channels = 4) {
     return image;
 }
 
-TEST(AccuracyMetrics, ImageErrorIsOfTheColoursOnly) {
+TEST(AccuracyMetrics, ImageErrorIgnoresAlpha) {
     Image a = filled(0.5F), b = filled(0.5F);
     b.at(1, 1, 3) = 0;  // alpha does not count
     EXPECT_EQ(image_error(a, b), ImageError{});
@@ -44,7 +44,7 @@ TEST(AccuracyMetrics, ImageErrorIsOfTheColoursOnly) {
     EXPECT_THROW(image_error(a, Image(4, 4, 4)), Error);
 }
 
-TEST(AccuracyMetrics, DecibelsAreOfTheRootMeanSquare) {
+TEST(AccuracyMetrics, DecibelsUseRootMeanSquare) {
     EXPECT_DOUBLE_EQ(decibels({.rms = 0.01, .max = 1}), 40);
     EXPECT_TRUE(std::isinf(decibels({})));
 }
@@ -56,8 +56,8 @@ TEST(AccuracyMetrics, PooledErrorIsTheRootMeanSquare) {
     EXPECT_EQ(pooled({}), ImageError{});
 }
 
-TEST(AccuracyMetrics, RiseAndLocationOfALine) {
-    // Falls from 1 to 0 over 2, its middle at 0.3: 10 to 90 % take 1.6.
+TEST(AccuracyMetrics, MeasuresRiseAndLocationOfLinearEdge) {
+    // A linear fall from 1 to 0 over a length of 2 around 0.3: from 10 to 90 % it takes 1.6.
     std::vector<double> profile;
     for (int i = 0; i <= 500; ++i)
         profile.push_back(std::clamp(0.5 - (-2.5 + 0.01 * i - 0.3) / 2, 0.0, 1.0));
@@ -67,27 +67,27 @@ TEST(AccuracyMetrics, RiseAndLocationOfALine) {
     EXPECT_NEAR(edge->location, 0.3, 1e-9);
 }
 
-TEST(AccuracyMetrics, RiseOfAGaussianBlur) {
+TEST(AccuracyMetrics, MeasuresRiseOfGaussianBlur) {
     std::vector<double> profile;
     for (int i = 0; i <= 500; ++i)
         profile.push_back(0.5 * std::erfc((-2.5 + 0.01 * i) / (0.7 * std::sqrt(2.0))));
     EXPECT_NEAR(profile_edge(profile, -2.5, 0.01)->rise, 2 * 1.2815515655 * 0.7, 1e-4);
 }
 
-TEST(AccuracyMetrics, AProfileWithoutEdgeHasNone) {
+TEST(AccuracyMetrics, FindsNoEdgeInFlatProfile) {
     EXPECT_FALSE(profile_edge(std::vector<double>(50, 1.0), 0, 1));
     EXPECT_FALSE(profile_edge(std::vector<double>(50, 0.0), 0, 1));
     EXPECT_FALSE(profile_edge({}, 0, 1));
 }
 
-TEST(AccuracyMetrics, PoppingOfKnownSequences) {
+TEST(AccuracyMetrics, MeasuresPoppingOfKnownSequences) {
     const std::vector<Image> still{filled(0.2F), filled(0.2F), filled(0.2F)};
     const std::vector<Image> moving{filled(0.2F), filled(0.3F), filled(0.6F)};
     const std::vector<Image> back{filled(0.6F), filled(0.5F), filled(0.2F)};
     EXPECT_NEAR(popping(moving, still).mean_excess, 0.2, 1e-6);
     EXPECT_NEAR(popping(moving, still).max_difference, 0.3, 1e-6);
     EXPECT_NEAR(popping(moving, moving).mean_difference, 0, 1e-12);
-    // Changes of equal size the other way: the excess cancels, the difference does not.
+    // Equal changes in the opposite order: the excess cancels, the difference does not.
     EXPECT_NEAR(popping(moving, back).mean_excess, 0, 1e-6);
     EXPECT_NEAR(popping(moving, back).mean_difference, 0.4, 1e-6);
     EXPECT_NEAR(popping(still, moving).max_excess, -0.1, 1e-6);
@@ -95,22 +95,22 @@ TEST(AccuracyMetrics, PoppingOfKnownSequences) {
     EXPECT_THROW(popping(std::vector<Image>{filled(0)}, std::vector<Image>{filled(0)}), Error);
 }
 
-TEST(AccuracyMetrics, QuantilesAreLinearBetweenValues) {
+TEST(AccuracyMetrics, QuantilesInterpolateLinearly) {
     EXPECT_DOUBLE_EQ(quantile({4, 1, 3, 2}, 0.5), 2.5);
     EXPECT_DOUBLE_EQ(quantile({7}, 0.1), 7);
     EXPECT_TRUE(std::isnan(quantile({}, 0.5)));
     EXPECT_DOUBLE_EQ(spread({0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10}).high, 9);
 }
 
-TEST(AccuracyMetrics, ParetoFrontDropsWhatIsBeaten) {
+TEST(AccuracyMetrics, ParetoFrontDropsDominatedPoints) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<CostAndError> points{{3, 1}, {1, 5}, {2, 5}, {2, 3}, {4, 1}, {1, 5}, {nan, 0}, {5, 0.5}};
     EXPECT_THAT(pareto_front(points), ElementsAre(1, 3, 0, 7));
     EXPECT_THAT(pareto_front({}), ElementsAre());
 }
 
-TEST(AccuracyTimes, TheRatioIsTakenFromNeighbours) {
-    // The machine is twice as slow in the second half: ratios do not see it.
+TEST(AccuracyTimes, ComputesRatioWithinTriples) {
+    // In the second visit all times are doubled; the ratio does not change.
     TimedVisit fast{{{10, 5, 10}, {10, 5, 10}}, {{9, 3, 9}, {9, 3, 9}}, {{"5_draw_splats", 7}}, 0}, slow = fast;
     for (TimedTriple& t : slow.triples)
         t = {2 * t.before, 2 * t.ray, 2 * t.after};
@@ -127,7 +127,7 @@ TEST(AccuracyTimes, TheRatioIsTakenFromNeighbours) {
     EXPECT_DOUBLE_EQ(again.triples[1].after, 20);
 }
 
-TEST(AccuracyTimes, EveryRoundHasAnOrderOfItsOwn) {
+TEST(AccuracyTimes, ShufflesOrderOfEveryRound) {
     EXPECT_NE(order_of_round(20, 0), order_of_round(20, 1));
     EXPECT_EQ(order_of_round(20, 3), order_of_round(20, 3));
     auto sorted = order_of_round(20, 5);
@@ -136,7 +136,7 @@ TEST(AccuracyTimes, EveryRoundHasAnOrderOfItsOwn) {
         EXPECT_EQ(sorted[i], i);
 }
 
-TEST(AccuracyConfigurations, EveryUsedStepAndPresetIsThere) {
+TEST(AccuracyConfigurations, IncludesEveryUsedStepAndPreset) {
     const auto rows = configurations({});
     std::size_t combinations = 0, steps = 0, expected_steps = 0;
     for (const Configuration& row : rows) {
@@ -159,14 +159,14 @@ TEST(AccuracyConfigurations, EveryUsedStepAndPresetIsThere) {
     std::set<std::string> pictures;
     for (const Configuration& row : rows)
         if (row.kind == ConfigurationKind::Base || row.rays) pictures.insert(picture_key(row));
-    EXPECT_EQ(pictures.size(), 3U) << "settings are the base's, pictures are not";
+    EXPECT_EQ(pictures.size(), 3U) << "ray configurations share the base's settings, but not its picture";
     for (const Preset& preset : presets())
         EXPECT_TRUE(std::any_of(rows.begin(), rows.end(), [&](const Configuration& row) {
             return row.kind == ConfigurationKind::Preset && row.name == preset.name && row.settings == preset.settings;
         })) << preset.name;
 }
 
-TEST(AccuracyConfigurations, TheModelForgetsTheMethod) {
+TEST(AccuracyConfigurations, ModelKeyIgnoresMethodSettings) {
     Settings a, b;
     a.footprints = FootprintMode::Warp2d;
     a.sheets = SheetCut::Sliced;
@@ -180,7 +180,7 @@ TEST(AccuracyConfigurations, TheModelForgetsTheMethod) {
     EXPECT_EQ(model_key(a), model_key(b));
 }
 
-TEST(AccuracyCameras, NoEyeIsInMatter) {
+TEST(AccuracyCameras, PlacesNoEyeInMatter) {
     for (const char* name : {"sphere", "cube-hole", "torus", "plates", "phantom", "orbital"}) {
         const AnalyticScene analytic = analytic_scene(name);
         const Volume volume = sample(analytic);
@@ -230,7 +230,8 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
     EXPECT_NEAR(off.rise_mean, 1.05, 0.15);
     EXPECT_LT(on.rise_mean, 0.25);
     EXPECT_LT(on.location_mean, off.location_mean);
-    // Rays show where the interpolated field passes the iso-value, with no rise but the profile's own step.
+    // A ray's edge lies where the interpolated field crosses the iso-value; its rise is only the profile's sampling
+    // step.
     const EdgeFigures rays = ray_edge_figures(volume, 0.5, points.points);
     EXPECT_EQ(rays.measured, 20);
     EXPECT_LE(rays.rise_max, 0.0100001);
@@ -238,8 +239,8 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
     EXPECT_LT(rays.location_mean, 0.1);
 }
 
-TEST(AccuracyEdges, ProfilesMeetFacesAsRaysDo) {
-    // Where noise leaves no quadric, what pictures show is the face that a ray finds.
+TEST(AccuracyEdges, ProfilesUseTracedFaces) {
+    // If noise prevents a quadric, pictures show the traced face that a ray finds.
     const AnalyticScene analytic = builtin_scene("builtin:vessels:noise=0.05");
     const Volume volume = sample(analytic);
     const SurfacePoints points = surface_points(analytic, 200);
@@ -257,7 +258,7 @@ TEST(AccuracyEdges, ProfilesMeetFacesAsRaysDo) {
     EXPECT_LT(met.rise_mean, 0.9 * quadrics.rise_mean) << quadrics.rise_mean;
 }
 
-TEST(AccuracyPage, TextIsSafeAndPicturesAreData) {
+TEST(AccuracyPage, EscapesTextAndEmbedsPictures) {
     EXPECT_EQ(escaped("a<b & \"c\""), "a&lt;b &amp; &quot;c&quot;");
     EXPECT_EQ(base64("Man"), "TWFu");
     EXPECT_EQ(base64("Ma"), "TWE=");
@@ -272,7 +273,7 @@ TEST(AccuracyPage, TextIsSafeAndPicturesAreData) {
     EXPECT_THAT(svg, Not(HasSubstr("nan")));
 }
 
-TEST(AccuracyPage, HeatRisesWithTheDifference) {
+TEST(AccuracyPage, HeatMapRisesWithDifference) {
     Image a = filled(0), b = filled(0);
     b.at(0, 0, 0) = 1;
     const Image map = heat_map(a, b);

@@ -1,4 +1,4 @@
-// Medians, percentiles and fits on data of which the answer is known; what runs come to next to each other.
+// Medians, percentiles and fits on data with known answers; comparison of two runs.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-TEST(BenchStatistics, MedianAndPercentiles) {
+TEST(BenchStatistics, ComputesMedianAndPercentiles) {
     std::vector<double> values;
     for (int i = 100; i >= 0; --i)
         values.push_back(i);
@@ -27,7 +27,7 @@ TEST(BenchStatistics, MedianAndPercentiles) {
     EXPECT_TRUE(std::isnan(sampled({}).median));
 }
 
-TEST(BenchStatistics, ExponentOfAPowerLaw) {
+TEST(BenchStatistics, FitsExponentOfPowerLaw) {
     std::vector<std::pair<double, double>> points{{0, 3}, {-1, 2}, {5, NAN}};
     for (const double x : {32.0, 64.0, 128.0, 512.0})
         points.emplace_back(x, 0.25 * std::pow(x, 2.5));
@@ -58,7 +58,7 @@ CaseResult case_of(const std::string& name, double scale) {
     return c;
 }
 
-TEST(BenchScaling, EachSeriesModeAndSizeIsFittedOnItsOwn) {
+TEST(BenchScaling, FitsEachSeriesModeAndSizeSeparately) {
     std::vector<CaseResult> cases;
     for (const double n : {16.0, 32.0, 64.0}) {
         CaseResult c = case_of("a", 1);
@@ -83,7 +83,7 @@ TEST(BenchScaling, EachSeriesModeAndSizeIsFittedOnItsOwn) {
     EXPECT_NEAR(scaling[2].fit.exponent, 0, 1e-9);
 }
 
-TEST(BenchCompare, RatiosNewOverOldWithAMarkBeyondTheScatter) {
+TEST(BenchCompare, MarksRatiosBeyondScatter) {
     BenchRun before{.program = "edgesplat 1", .cases = {case_of("a", 1), case_of("b", 1), case_of("old", 1)}};
     BenchRun after{.program = "edgesplat 2", .cases = {case_of("a", 0.5), case_of("b", 1.02), case_of("new", 1)}};
     after.cases[0].stats.draw_counts->shaded = 750;

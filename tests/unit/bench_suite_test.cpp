@@ -1,4 +1,4 @@
-// Suites of benchmarks: what is read, and what is said of what is wrong.
+// Benchmark suites: parsing and error messages.
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -39,12 +39,12 @@ std::string refusal_of(const std::string& text) {
     return refusal([&] { (void)parse_suite(text, "s.toml", {}); });
 }
 
-/// A suite of one case, `line` at the end of it.
+/// A suite of one case that ends with `line`.
 std::string with(const std::string& line) {
     return "[[cases]]\nname = \"a\"\nscene = { volume = { path = \"builtin:sphere:16\" } }\n" + line + "\n";
 }
 
-TEST(BenchSuite, CasesAreMadeForEachModeAndSize) {
+TEST(BenchSuite, MakesCaseForEachModeAndSize) {
     const Suite suite = parse_suite(kSuite, "folder/tiny.toml", {""});
     EXPECT_EQ(suite.name, "tiny");
     EXPECT_EQ(suite.about, "two cases");
@@ -61,14 +61,14 @@ TEST(BenchSuite, CasesAreMadeForEachModeAndSize) {
     EXPECT_EQ(suite.cases[3].document.quality.settings.sheet_spacing, 0.5);
 }
 
-TEST(BenchSuite, VolumesThatAreNotHereAreSkippedWithTheReason) {
+TEST(BenchSuite, SkipsMissingVolumesWithReason) {
     const Suite suite = parse_suite(kSuite, "s.toml", {""});
     ASSERT_EQ(suite.skipped.size(), 1U);
     EXPECT_EQ(suite.skipped[0].name, "gone/plain/512x512");
     EXPECT_THAT(suite.skipped[0].reason, AllOf(HasSubstr("no_such_folder/volume.nrrd"), HasSubstr("no such file")));
 }
 
-TEST(BenchSuite, CasesAreKeptByTheirNamesOrGroups) {
+TEST(BenchSuite, SelectsCasesByNameOrGroup) {
     const auto kept = [](const std::string& glob) {
         Suite suite = parse_suite(kSuite, "s.toml", {""});
         keep_cases(suite, glob);
@@ -80,7 +80,7 @@ TEST(BenchSuite, CasesAreKeptByTheirNamesOrGroups) {
     EXPECT_THAT(refusal([&] { (void)kept("cube"); }), AllOf(HasSubstr("'cube'"), HasSubstr("ball/default/64x48")));
 }
 
-TEST(BenchSuite, EachProblemNamesFileLineKeyValueAndWhatWasExpected) {
+TEST(BenchSuite, ProblemsNameFileLineKeyValueAndExpectation) {
     const std::pair<std::string, std::string> wrong[] = {
         {"= 3", "s.toml:1: no valid TOML"},
         {"about = \"x\"", "s.toml:1: cases: is missing; expected tables begun by [[cases]]"},
@@ -94,10 +94,10 @@ TEST(BenchSuite, EachProblemNamesFileLineKeyValueAndWhatWasExpected) {
         {with("sizes = [[0, 64]]"), "s.toml:4: cases[0].sizes: [ [ 0, 64 ] ]: expected"},
         {with("modes = [\"fast\"]"), "s.toml:4: cases[0].modes[0]: 'fast': expected one of default"},
         {with("camera = \"above\""),
-         "s.toml:4: cases[0].camera: \"above\": expected one of far, near, grazing, inside; others are in "
-         "scene.camera"},
+         "s.toml:4: cases[0].camera: \"above\": expected one of far, near, grazing, inside; use "
+         "scene.camera for other cameras"},
         {with("series = \"a b\""), "s.toml:4: cases[0].series: \"a b\": expected letters, digits and - _ . :"},
-        {with("") + with(""), "s.toml:6: cases[1].name: \"a\": a case before has this name"},
+        {with("") + with(""), "s.toml:6: cases[1].name: \"a\": an earlier case has this name"},
         {"[[cases]]\nname = \"a\"", "s.toml:1: cases[0].scene: expected a table with the keys of a scene file"},
         {"[[cases]]\nscene = { volume = { path = \"builtin:sphere\" } }",
          "s.toml:1: cases[0].name: is missing; expected a name"},
@@ -107,7 +107,7 @@ TEST(BenchSuite, EachProblemNamesFileLineKeyValueAndWhatWasExpected) {
         {"[[cases]]\nname = \"a\"\n[cases.scene]\nvolume = { path = \"builtin:sphere\" }\ncamera = { fov = 200 }",
          "s.toml:5: cases[0].scene.camera.fov: 200.0: expected a number above 0"},
         {"[[cases]]\nname = \"a\"\n[cases.scene]\nvolume = { path = \"builtin:sphere\" }\noutput = { size = [3, 3] }",
-         "cases[0].scene.output: is not for suites; sizes are in cases[0].sizes"},
+         "cases[0].scene.output: is not for suites; use cases[0].sizes for sizes"},
         {"[[modes]]\nname = \"m\"\nquality = { edgs = \"off\" }\n" + with(""),
          "modes[0].quality.edgs: unknown key; did you mean quality.edges?"},
         {"[[modes]]\nname = \"m\"\nquality = { edges = \"none\" }\n" + with(""), "modes[0].quality.edges: "},
@@ -116,20 +116,20 @@ TEST(BenchSuite, EachProblemNamesFileLineKeyValueAndWhatWasExpected) {
         EXPECT_THAT(refusal_of(text), HasSubstr(message)) << text;
 }
 
-TEST(BenchSuite, EveryProblemIsReportedOnce) {
+TEST(BenchSuite, ReportsEveryProblemOnce) {
     const std::string text = with("sizes = 3\nseries = 4\nmodes = []");
     const std::string said = refusal_of("[[modes]]\nname = \"a\"\n[[modes]]\nname = \"b\"\n" + text);
     EXPECT_EQ(std::count(said.begin(), said.end(), '\n'), 2) << said;
 }
 
-TEST(BenchSuite, EverySuiteOfTheProgramCanBeRead) {
+TEST(BenchSuite, ReadsEveryEmbeddedSuite) {
     std::vector<std::string> names;
     for (const EmbeddedSuite& suite : embedded_suites()) {
         const Suite read = read_suite(std::string(suite.name));
         EXPECT_FALSE(read.cases.empty()) << suite.name;
         names.emplace_back(suite.name);
     }
-    EXPECT_THAT(names, ::testing::UnorderedElementsAre("standard", "scaling", "full"));
+    EXPECT_THAT(names, ::testing::UnorderedElementsAre("standard", "effects", "scaling", "full"));
     EXPECT_THAT(refusal([] { (void)read_suite("standart"); }), HasSubstr("did you mean standard?"));
     EXPECT_THAT(refusal([] { (void)read_suite("none.toml"); }), HasSubstr("none.toml: no such file"));
 }

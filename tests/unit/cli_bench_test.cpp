@@ -1,4 +1,4 @@
-// `edgesplat bench` end to end: a tiny suite, its files and their keys, two runs compared. Nothing here asserts a time.
+// `edgesplat bench` end to end: a tiny suite, its files and their keys, comparison of two runs. No test asserts a time.
 #include <gmock/gmock.h>
 
 #include <chrono>
@@ -47,7 +47,7 @@ scene = { iso_values = [3], volume = { path = "gone.nrrd" } }
     }
 };
 
-TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
+TEST_F(CliBench, WritesEveryKeyAndComparesRuns) {
     const ProgramRun first = run("bench tiny.toml --repeat 1 -o one");
     ASSERT_EQ(first.status, 0) << first.err;
     EXPECT_THAT(first.out, HasSubstr("skipped gone/plain/512x512: gone.nrrd: no such file"));
@@ -60,7 +60,7 @@ TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
     EXPECT_EQ(one["schema"], "edgesplat bench 1");
     EXPECT_EQ(one["rounds"], 1);
     ASSERT_EQ(one["cases"].size(), 3U);
-    EXPECT_EQ(one["scaling"].size(), 2U) << "of the mode plain, which has two sizes of volume";
+    EXPECT_EQ(one["scaling"].size(), 2U) << "only the mode plain has two sizes of volume";
     for (const ordered_json& entry : one["cases"]) {
         for (const char* key :
              {"name",         "group",       "mode",         "series",    "volume",           "checksum",
@@ -85,7 +85,7 @@ TEST_F(CliBench, ATinySuiteGivesEveryKeyAndComparesWithItself) {
     ASSERT_EQ(second.status, 0) << second.err;
     EXPECT_THAT(second.out, HasSubstr("geometric mean"));
     EXPECT_THAT(second.out, HasSubstr("ball-16/plain/64x64: only in the earlier run"));
-    // What is counted is the same in every run.
+    // Counts are equal in every run.
     for (const char* key : {"splats", "vertices", "fragments", "shaded_fragments", "sheets", "dirty_share", "memory"})
         EXPECT_EQ(json("two")["cases"][0][key], one["cases"][2][key]) << key;
     const ProgramRun compared = run("bench --compare one/bench.json --with two/bench.json");
@@ -99,11 +99,11 @@ TEST_F(CliBench, ListsItsCases) {
     EXPECT_EQ(listed.out, "ball-16/default/64x64\nball-16/plain/64x64\n");
 }
 
-TEST_F(CliBench, RefusesWhatItCannotDoBeforeItMeasures) {
+TEST_F(CliBench, RefusesInvalidRequestsBeforeMeasuring) {
     EXPECT_THAT(run("bench tiny.toml -o no/such").err, HasSubstr("does not exist"));
-    EXPECT_THAT(run("bench tiny.toml --compare tiny.toml").err, HasSubstr("is no bench.json of this version"));
+    EXPECT_THAT(run("bench tiny.toml --compare tiny.toml").err, HasSubstr("is not a bench.json of this version"));
     EXPECT_THAT(run("bench standart").err, HasSubstr("did you mean standard?"));
-    EXPECT_THAT(run("bench tiny.toml --cases cube").err, HasSubstr("no case is like 'cube'"));
+    EXPECT_THAT(run("bench tiny.toml --cases cube").err, HasSubstr("no case matches 'cube'"));
     EXPECT_THAT(files(), ElementsAre("tiny.toml"));
 }
 

@@ -1,4 +1,4 @@
-// What the program says when it is used wrongly, with which status, and that it leaves nothing behind.
+// Invalid command lines: message, exit status, and no file is left.
 #include <gmock/gmock.h>
 
 #include "engine/image/image_file.h"
@@ -31,7 +31,7 @@ TEST_F(Cli, HelpAndVersionSucceed) {
     EXPECT_THAT(version.out, StartsWith("edgesplat 0."));
 }
 
-TEST_F(Cli, RenderHelpNamesEveryLadder) {
+TEST_F(Cli, RenderHelpListsOptions) {
     const std::string help = run("render --help").out;
     for (const char* option : {"--eye", "--target", "--direction", "--up", "--fov", "--view", "--voxel", "--iso",
                                "--size", "--aov", "--edges", "--footprints", "--warp", "--compare", "--json",
@@ -39,7 +39,7 @@ TEST_F(Cli, RenderHelpNamesEveryLadder) {
         EXPECT_THAT(help, HasSubstr(option));
 }
 
-/// A wrong command line, and what the message must hold.
+/// An invalid command line and words that its message must contain.
 struct Misuse {
     const char* name;
     const char* arguments;
@@ -82,21 +82,21 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"RemovedHalfWidth",
                "render builtin:sphere -o a.png --edge-half-width 1.6",
                2,
-               {"--edge-half-width is no more", "no band: leave it out"}},
+               {"--edge-half-width was removed", "no band: leave it out"}},
         Misuse{
-            "RemovedStrength", "render builtin:sphere -o a.png --edge-strength=16", 2, {"--edge-strength is no more"}},
-        Misuse{"RemovedShape", "render builtin:sphere -o a.png --edge-shape curved", 2, {"--edge-shape is no more"}},
-        Misuse{"RemovedWeights", "render builtin:sphere -o a.png --normalise edge", 2, {"--normalise is no more"}},
-        Misuse{"RemovedTableSize", "render builtin:sphere -o a.png --table-size fine", 2, {"--table-size is no more"}},
+            "RemovedStrength", "render builtin:sphere -o a.png --edge-strength=16", 2, {"--edge-strength was removed"}},
+        Misuse{"RemovedShape", "render builtin:sphere -o a.png --edge-shape curved", 2, {"--edge-shape was removed"}},
+        Misuse{"RemovedWeights", "render builtin:sphere -o a.png --normalise edge", 2, {"--normalise was removed"}},
+        Misuse{"RemovedTableSize", "render builtin:sphere -o a.png --table-size fine", 2, {"--table-size was removed"}},
         Misuse{"RemovedAccumulation",
                "render builtin:sphere -o a.png --accumulation half",
                2,
-               {"--accumulation is no more"}},
+               {"--accumulation was removed"}},
         Misuse{"RemovedFormat",
                "render builtin:sphere -o a.png --sheet-format float",
                2,
                {"--sheet-format", "write layers"}},
-        Misuse{"RemovedWarp", "render builtin:sphere -o a.png --warp edge", 2, {"--warp", "is no more; write face"}},
+        Misuse{"RemovedWarp", "render builtin:sphere -o a.png --warp edge", 2, {"--warp", "was removed; write face"}},
         Misuse{"RemovedEdges", "render builtin:sphere -o a.png --edges quadratic", 2, {"--edges", "write march"}},
         Misuse{"RemovedFootprints",
                "render builtin:sphere -o a.png --footprints table-lerp",
@@ -117,7 +117,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"GoneRenderer",
                "render builtin:sphere -o a.png --renderer raycast-warped",
                2,
-               {"'raycast-warped' is no more", "write raycast, with the filter cubic"}},
+               {"'raycast-warped' was removed", "write raycast, with the filter cubic"}},
         Misuse{"MaxError", "render builtin:sphere -o a.png --max-error 0", 2, {"--max-error", "'0'", "0.5%"}},
         Misuse{"MaxErrorReference",
                "render builtin:sphere:16 -o a.png --max-error 1% --renderer reference",
@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
         Misuse{"CompareNoFile", "compare a.png b.png", 2, {"a.png", "no such file"}}),
     [](const ::testing::TestParamInfo<Misuse>& parameter) { return std::string(parameter.param.name); });
 
-TEST_F(Cli, CompareJudges) {
+TEST_F(Cli, CompareReportsDifferences) {
     Image image(4, 4, 3);
     write_image(folder_ / "a.exr", image);
     image.at(1, 2, 0) = 0.25F;
@@ -160,7 +160,7 @@ TEST_F(Cli, CompareJudges) {
     EXPECT_THAT(files(), ElementsAre("a.exr", "b.exr", "d.exr", "small.exr"));
 }
 
-TEST_F(Cli, ErrorsAreNotOnStdoutAndResultsNotOnStderr) {
+TEST_F(Cli, WritesResultsOnlyToStdout) {
     write_image(folder_ / "a.png", Image(2, 2, 3));
     const ProgramRun result = run("compare a.png a.png");
     EXPECT_THAT(result.err, IsEmpty());

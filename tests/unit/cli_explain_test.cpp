@@ -1,4 +1,4 @@
-// --explain, --memory-budget and the command that measures effects, as a user meets them.
+// Tests --explain, --memory-budget and `edgesplat effects` end to end.
 #include <gmock/gmock.h>
 
 #include <nlohmann/json.hpp>
@@ -15,10 +15,10 @@ using ::testing::Not;
 
 class CliExplain : public CliTest {};
 
-TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
+TEST_F(CliExplain, PlansOnlyWithoutOutput) {
     const ProgramRun plan = run("render builtin:sphere:24 --size 40x30 --explain");
     ASSERT_EQ(plan.status, 0) << plan.err;
-    for (const char* text : {"5_draw_tiles", "edge field", "light: lights[0] is a headlight", "at most at once",
+    for (const char* text : {"5_draw_tiles", "edge field", "light: lights[0] is a headlight", "peak",
                              "splat record, 20 bytes", "left out", "sliced sheets", "--sheets sliced"})
         EXPECT_THAT(plan.out, HasSubstr(text));
     EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));
@@ -28,7 +28,7 @@ TEST_F(CliExplain, WithoutAnOutputOnlyPlans) {
     EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
-TEST_F(CliExplain, WithAnOutputIsMeasuredToo) {
+TEST_F(CliExplain, MeasuresWithOutput) {
     const ProgramRun done = run("render builtin:sphere:24 --size 40x30 --explain -o a.png --json a.json -q");
     ASSERT_EQ(done.status, 0) << done.err;
     EXPECT_THAT(done.out, HasSubstr("ms measured"));
@@ -45,28 +45,28 @@ TEST_F(CliExplain, WithAnOutputIsMeasuredToo) {
     EXPECT_TRUE(plan["effects"].contains("light"));
 }
 
-TEST_F(CliExplain, SaysWhichProfileAFrameIsMadeWith) {
+TEST_F(CliExplain, NamesDeviceProfile) {
     const ProgramRun forced =
         run("render builtin:sphere:16 --size 40x30 --explain -o a.png --json a.json -q --device-profile generic");
     ASSERT_EQ(forced.status, 0) << forced.err;
-    EXPECT_THAT(forced.out, HasSubstr("device profile generic: asked for by --device-profile"));
+    EXPECT_THAT(forced.out, HasSubstr("device profile generic: set by --device-profile"));
     EXPECT_THAT(forced.out, HasSubstr(" GROUP=32"));
     EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "a.json"))["plan"]["device_profile"], "generic");
     const ProgramRun discrete = run("render builtin:sphere:16 --size 40x30 --explain --device-profile discrete");
-    EXPECT_THAT(discrete.out, HasSubstr("device profile discrete does without")) << "its pixels are not refined";
+    EXPECT_THAT(discrete.out, HasSubstr("device profile discrete does not use it")) << "its pixels are not refined";
     EXPECT_THAT(discrete.out, Not(HasSubstr("refined pixels: ")));
     const ProgramRun wrong = run("render builtin:sphere:16 -o a.png --device-profile fast");
     EXPECT_EQ(wrong.status, 1);
     EXPECT_THAT(wrong.err, HasSubstr("device profile `fast`: expected lavapipe, generic or discrete"));
 }
 
-TEST_F(CliExplain, NeitherOutputNorExplainIsAnError) {
+TEST_F(CliExplain, RequiresOutputOrExplain) {
     const ProgramRun wrong = run("render builtin:sphere:24");
     EXPECT_EQ(wrong.status, 2);
     EXPECT_THAT(wrong.err, HasSubstr("--output"));
 }
 
-TEST_F(CliExplain, APictureBeyondTheBudgetIsRefusedWithWhatWouldFit) {
+TEST_F(CliExplain, OffersFittingSizeBeyondMemoryBudget) {
     const ProgramRun refused = run("render builtin:sphere:24 --size 400x300 --memory-budget 4 -o a.png --json a.json");
     EXPECT_EQ(refused.status, 1);
     EXPECT_THAT(refused.err, HasSubstr("4.00 MiB are available (the memory budget)"));
@@ -79,7 +79,7 @@ TEST_F(CliExplain, APictureBeyondTheBudgetIsRefusedWithWhatWouldFit) {
     EXPECT_EQ(fits.status, 0) << offer << ": " << fits.err;
 }
 
-TEST_F(CliExplain, EffectsAreMeasured) {
+TEST_F(CliExplain, MeasuresEffects) {
     const ProgramRun done =
         run("effects builtin:sphere:20 --size 24x24 --repeats 1 --only light,fog,'sliced sheets' --markdown -q");
     ASSERT_EQ(done.status, 0) << done.err;

@@ -1,4 +1,4 @@
-// Looks and transfer functions by name, an eye in matter, and what programs print of themselves.
+// Looks and transfer functions by name, the warning of an eye in matter, manual page, completion and version.
 #include <gmock/gmock.h>
 
 #include "tests/unit/cli_program.h"
@@ -18,7 +18,7 @@ class CliLooks : public CliTest {
     }
 };
 
-TEST_F(CliLooks, AreTakenByName) {
+TEST_F(CliLooks, AcceptsLooksByName) {
     EXPECT_EQ(render("--look ct-skin-bone").status, 0);
     EXPECT_EQ(render("--transfer ct-soft-tissue-and-bone").status, 0);
     EXPECT_THAT(run("scene new builtin:phantom:24 --look ct-skin-bone").out,
@@ -28,12 +28,12 @@ TEST_F(CliLooks, AreTakenByName) {
     EXPECT_THAT(nearly.err, HasSubstr("did you mean \"ct-skin-bone\"?"));
     const ProgramRun material = render("--transfer ct-bone");
     EXPECT_EQ(material.status, 2);
-    EXPECT_THAT(material.err, HasSubstr("\"ct-bone\" is no transfer function"));
+    EXPECT_THAT(material.err, HasSubstr("\"ct-bone\" is not a transfer function"));
     EXPECT_EQ(render("--labels yes").status, 2);
     EXPECT_THAT(run("scene presets").out, AllOf(HasSubstr("look"), HasSubstr("ct-skull"), HasSubstr("angiography")));
 }
 
-TEST_F(CliLooks, AnEyeInMatterSaysSo) {
+TEST_F(CliLooks, WarnsOfEyeInMatter) {
     const ProgramRun inside =
         run("render builtin:sphere:16 -o a.png --size 16x16 --voxel --eye 7.5,7.5,7.5 --direction 0,1,0");
     EXPECT_EQ(inside.status, 0);
@@ -41,7 +41,7 @@ TEST_F(CliLooks, AnEyeInMatterSaysSo) {
     EXPECT_THAT(run("render builtin:sphere:16 -o a.png --size 16x16").err, IsEmpty());
 }
 
-TEST_F(CliLooks, ProgramsPrintTheirPages) {
+TEST_F(CliLooks, PrintsManualAndCompletionScripts) {
     const ProgramRun man = run("--man");
     EXPECT_EQ(man.status, 0);
     EXPECT_THAT(man.out,
@@ -53,7 +53,7 @@ TEST_F(CliLooks, ProgramsPrintTheirPages) {
                 AllOf(StartsWith("edgesplat 0."), HasSubstr("built with Vulkan"), HasSubstr("ITK ")));
 }
 
-TEST_F(CliLooks, BashCompletes) {
+TEST_F(CliLooks, CompletesInBash) {
     const auto completed = [&](const std::string& words, int at) {
         return run_shell("'" EDGESPLAT_PROGRAM "' --completion bash >c && bash -c '. ./c; COMP_WORDS=(" + words +
                          "); COMP_CWORD=" + std::to_string(at) + "; _edgesplat; echo ${COMPREPLY[@]}'")
@@ -63,7 +63,7 @@ TEST_F(CliLooks, BashCompletes) {
     EXPECT_EQ(completed("edgesplat render a.nrrd --sheet-f", 3), "--sheet-format\n");
     EXPECT_EQ(completed("edgesplat render a.nrrd --sheet-format t", 4), "tiles\n");
     EXPECT_EQ(completed("edgesplat scene n", 2), "new\n");
-    EXPECT_EQ(completed("edgesplat render a.nrrd --output p", 4), "\n") << "files are left to the shell";
+    EXPECT_EQ(completed("edgesplat render a.nrrd --output p", 4), "\n") << "the shell completes file names";
 }
 
 }  // namespace

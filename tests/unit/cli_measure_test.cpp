@@ -31,7 +31,7 @@ class CliMeasure : public CliTest {
         EXPECT_THAT(result.out, IsEmpty());
         EXPECT_THAT(files(), IsEmpty());
     }
-    /// "BEFORE: 12.3 ± 0.4" somewhere in the text.
+    /// Expects "BEFORE: VALUE ± UNCERTAINTY" in the text; the truth must lie in this range.
     static void expect_measured(const std::string& text, const std::string& before, double truth) {
         const std::size_t at = text.find(before + ": ");
         ASSERT_NE(at, std::string::npos) << before << " in\n" << text;
@@ -45,7 +45,7 @@ class CliMeasure : public CliTest {
 // The builtin sphere has a radius of 20 voxels of 1 mm around 31.7, 31.4, 31.2.
 constexpr double kRadius = 20;
 
-TEST_F(CliMeasure, VolumesAndSurfaces) {
+TEST_F(CliMeasure, MeasuresVolumesAndSurfaces) {
     const double volume = 4.0 / 3 * std::numbers::pi * std::pow(kRadius, 3);
     const std::string text = good("builtin:sphere");
     expect_measured(text, "volume from 0.5", volume);
@@ -57,8 +57,8 @@ TEST_F(CliMeasure, VolumesAndSurfaces) {
                 AllOf(HasSubstr("\"volume_mm3\""), HasSubstr("\"area_mm2\""), HasSubstr("\"uncertainty\"")));
 }
 
-TEST_F(CliMeasure, DistancesAndAnglesOfPlacesAndPixels) {
-    // Places a little off the sphere's surface, and one pixel that sees its middle from the front.
+TEST_F(CliMeasure, MeasuresDistancesAndAngles) {
+    // Positions near the sphere's surface, then a pixel that shows its middle from the front.
     const std::string text =
         good("builtin:sphere --view front --size 64x64 --at 52.3,31.4,31.2 --at 31.7,31.4,50.8 --at 11.6,31.4,31.2");
     expect_measured(text, "distance 1 to 2", kRadius * std::numbers::sqrt2);
@@ -74,13 +74,13 @@ TEST_F(CliMeasure, DistancesAndAnglesOfPlacesAndPixels) {
     EXPECT_THAT(text_of(folder_ / "place.json"), ContainsRegex("\"iso_value\": 0.5"));
 }
 
-TEST_F(CliMeasure, RefusesWhatCannotBeMeasured) {
-    refuses("builtin:sphere --at 1,2,3,4", 2, "--at: '1,2,3,4' is neither a place X,Y,Z nor a pixel X,Y");
-    refuses("builtin:sphere --at 1,2,", 2, "neither a place");
+TEST_F(CliMeasure, RefusesUnmeasurableInput) {
+    refuses("builtin:sphere --at 1,2,3,4", 2, "--at: '1,2,3,4' is neither a position X,Y,Z nor a pixel X,Y");
+    refuses("builtin:sphere --at 1,2,", 2, "neither a position");
     refuses("builtin:sphere --at 31.7,31.4,31.2", 1, "no surface is within 2 voxels");
-    refuses("builtin:sphere --at 0,0 --view front --size 64x64", 1, "no surface is seen at this pixel of 64x64");
+    refuses("builtin:sphere --at 0,0 --view front --size 64x64", 1, "no surface is visible at this pixel of 64x64");
     refuses("builtin:sphere --at 52,31,31 --json out.txt", 1, "out.txt");
-    refuses("builtin:sphere --exact --at 1,1,1 --at 1,1,1 --at 2,2,2", 1, "two of its three places are the same");
+    refuses("builtin:sphere --exact --at 1,1,1 --at 1,1,1 --at 2,2,2", 1, "two of its three points are equal");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// `edgesplat movie`: its frames are pictures like any other, and whatever stops it, it goes on where it was.
+// `edgesplat movie`: its frames equal rendered pictures, and an interrupted movie resumes.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -49,8 +49,8 @@ class CliMovie : public CliTest {
                 all[name] = fs::last_write_time(folder_ / folder / name);
         return all;
     }
-    /// Starts a movie, waits for `count` frames, sends the signal, and returns how the shell saw it end. Where it was
-    /// over before the signal came, it is made anew.
+    /// Starts a movie, waits for `count` frames and sends the signal. Returns the exit status, or minus the signal that
+    /// ended the program. If the movie ends before the signal, it starts again, up to 8 times.
     int signalled(const std::string& arguments, const std::string& folder, std::size_t count, int signal) const {
         int status = 0;
         for (int attempt = 0; attempt < 8; ++attempt) {
@@ -82,45 +82,45 @@ class CliMovie : public CliTest {
     }
 };
 
-TEST_F(CliMovie, FramesArePicturesLikeAnyOther) {
+TEST_F(CliMovie, FramesEqualRenderedPictures) {
     EXPECT_THAT(good(kMovie + "-o all/frame_%04d.png"), HasSubstr("10 frames, 0.4 s at 25"));
     const auto all = frames("all");
     ASSERT_EQ(all.size(), std::size_t{kFrames});
-    // One of them alone, in a process of its own: the same bytes.
+    // One frame alone, from another process, has the same bytes.
     good(kMovie + "-o one/frame_%04d.png --frames 7:7");
     const auto one = frames("one");
     ASSERT_EQ(one.size(), 1U);
     EXPECT_EQ(one.begin()->first, "frame_0007.png");
     EXPECT_EQ(one.begin()->second, all.at("frame_0007.png"));
     EXPECT_NE(all.at("frame_0000.png"), all.at("frame_0007.png"));
-    // The first one is what `render` shows.
+    // The first frame equals the picture of `render`.
     good("render builtin:torus:20 --size 32x24 -o still.png");
     EXPECT_EQ(read_image(folder_ / "still.png").image.pixels, read_image(folder_ / "all/frame_0000.png").image.pixels);
     good(kMovie + "-o linear/f%d.exr --frames 0:1");
     EXPECT_THAT(names("linear"), testing::ElementsAre("f0.exr", "f1.exr", "movie.json"));
 }
 
-TEST_F(CliMovie, KilledItGoesOnWhereItWas) {
+TEST_F(CliMovie, ResumesAfterKill) {
     good(kMovie + "-o whole/frame_%05d.png");
     EXPECT_EQ(signalled(kMovie + "-o film.mp4 --keep-frames", "film.mp4.frames", 4, SIGKILL), -SIGKILL);
     const auto before = times("film.mp4.frames");
     ASSERT_GE(before.size(), 4U);
-    ASSERT_LT(before.size(), std::size_t{kFrames}) << "it was quicker than the kill";
+    ASSERT_LT(before.size(), std::size_t{kFrames}) << "the movie ended before the signal";
     for (const auto& [name, time] : before)
-        EXPECT_EQ(text_of(folder_ / "film.mp4.frames" / name), text_of(folder_ / "whole" / name)) << "half a frame";
+        EXPECT_EQ(text_of(folder_ / "film.mp4.frames" / name), text_of(folder_ / "whole" / name)) << "a partial frame";
     std::ofstream(folder_ / "film.mp4.frames/.frame_00009.png.edgesplat-1-1.tmp") << "half";
     EXPECT_THAT(good(kMovie + "-o film.mp4 --keep-frames"),
-                HasSubstr(std::to_string(before.size()) + " of 10 frames are there already"));
+                HasSubstr(std::to_string(before.size()) + " of 10 frames exist already"));
     const auto after = times("film.mp4.frames");
     for (const auto& [name, time] : before)
-        EXPECT_EQ(after.at(name), time) << name << " was made again";
+        EXPECT_EQ(after.at(name), time) << name << " was rendered again";
     EXPECT_EQ(frames("film.mp4.frames"), frames("whole"));
     EXPECT_GT(fs::file_size(folder_ / "film.mp4"), 1000U);
 }
 
 TEST_F(CliMovie, CtrlCFinishesTheFrame) {
     EXPECT_EQ(signalled(kMovie + "-o f/frame_%04d.png", "f", 3, SIGINT), 130);
-    EXPECT_THAT(text_of(folder_ / "said"), HasSubstr("the same command goes on from there"));
+    EXPECT_THAT(text_of(folder_ / "said"), HasSubstr("run the same command again to continue"));
     const auto before = times("f");
     EXPECT_GE(before.size(), 3U);
     EXPECT_LT(before.size(), std::size_t{kFrames});
@@ -130,7 +130,7 @@ TEST_F(CliMovie, CtrlCFinishesTheFrame) {
     EXPECT_EQ(times("f").size(), std::size_t{kFrames});
 }
 
-TEST_F(CliMovie, AnotherSceneIsNotMixedIn) {
+TEST_F(CliMovie, RefusesFramesOfOtherScene) {
     good(kMovie + "-o f/frame_%04d.png --frames 0:1");
     const auto before = frames("f");
     for (const auto& [change, named] :
@@ -145,12 +145,12 @@ TEST_F(CliMovie, AnotherSceneIsNotMixedIn) {
     EXPECT_EQ(frames("f"), before);
     good(kMovie + "-o f/frame_%04d.png --frames 1:1 --color 1,0,0 --restart");
     EXPECT_EQ(names("f"), (std::vector<std::string>{"frame_0001.png", "movie.json"}));
-    // Frames of unknown origin are left alone too.
+    // Frames of unknown origin are not overwritten either.
     fs::remove(folder_ / "f/movie.json");
-    EXPECT_THAT(run(kMovie + "-o f/frame_%04d.png").err, HasSubstr("nothing is known of"));
+    EXPECT_THAT(run(kMovie + "-o f/frame_%04d.png").err, HasSubstr("frames of unknown origin"));
 }
 
-TEST_F(CliMovie, FilmsAreWholeAndLeaveNothing) {
+TEST_F(CliMovie, FilmsAreCompleteAndLeaveNoFrames) {
     for (const char* film : {"a.mp4", "b.webm"}) {
         good(kMovie + "--frames 2:7 -o " + film);
         EXPECT_FALSE(fs::exists(folder_ / (std::string(film) + ".frames")));
@@ -161,7 +161,7 @@ TEST_F(CliMovie, FilmsAreWholeAndLeaveNothing) {
         ASSERT_EQ(std::system(probe.c_str()), 0);  // NOLINT: a shell is wanted here
         EXPECT_EQ(text_of(folder_ / "probe"), "32,24,6\n");
     }
-    // Without the encoder nothing is rendered, and it says what to install.
+    // Without the encoder nothing is rendered; the message names the package to install.
     const std::string nowhere = folder_.string();
     const std::string path = std::getenv("PATH");
     setenv("PATH", nowhere.c_str(), 1);
@@ -172,7 +172,7 @@ TEST_F(CliMovie, FilmsAreWholeAndLeaveNothing) {
     EXPECT_FALSE(fs::exists(folder_ / "c.mp4.frames"));
 }
 
-TEST_F(CliMovie, NumbersChangeWithTime) {
+TEST_F(CliMovie, AnimatesNumbers) {
     std::ofstream(folder_ / "s.toml") << R"(
 [volume]
 path = "builtin:torus:20"
@@ -198,13 +198,13 @@ values = [0, 0.05]
     EXPECT_NE(pixels("f/2.png"), pixels("first.png"));
 }
 
-TEST_F(CliMovie, RefusesWhatIsNoMovie) {
+TEST_F(CliMovie, RefusesInvalidMovies) {
     const auto says = [&](const std::string& arguments, const char* what) {
         const ProgramRun result = run(arguments);
         EXPECT_NE(result.status, 0) << arguments;
         EXPECT_THAT(result.err, HasSubstr(what)) << arguments;
     };
-    says("movie builtin:torus:20 -o f/%d.png", "how long the movie is");
+    says("movie builtin:torus:20 -o f/%d.png", "the movie has no duration");
     says(kMovie + "-o film.avi", "expected a film (.mp4 or .webm)");
     says(kMovie + "-o f/frame.png", "one number in it");
     says(kMovie + "-o f/%d.png --frames 5:20", "last frame is 9, not 20");

@@ -1,4 +1,4 @@
-// `mpirun edgesplat`: the picture of one process, made by several; and what is left of it where one of them fails.
+// `mpirun edgesplat`: several processes render the picture of one; if one of them fails, no file is left.
 #include <gmock/gmock.h>
 #include <signal.h>
 
@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-/// Seconds within which a job ends after one of its ranks did.
+/// Time limit of a job, seconds: it must end soon after one of its ranks ends.
 constexpr const char* kPatience = "60";
 
 class CliMpi : public CliTest {
@@ -49,8 +49,8 @@ class CliMpi : public CliTest {
         return run_shell("timeout " + std::string(kPatience) + " mpirun -n " + std::to_string(ranks) +
                          " '" EDGESPLAT_PROGRAM "' " + arguments);
     }
-    /// Rank 1 is started by the shell command `different`, which finds its arguments in $@, the others as usual. One
-    /// command for all, and no list of them: Open MPI 5's mpirun crashes on lists.
+    /// Rank 1 runs the shell command `different` first, with its arguments in $@; the other ranks start as usual. All
+    /// ranks get one command: Open MPI 5's mpirun crashes on a list of commands.
     ProgramRun mpirun_with(int ranks, const std::string& different, const std::string& arguments) const {
         return run_shell("timeout " + std::string(kPatience) + " mpirun -n " + std::to_string(ranks) +
                          " sh -c 'if [ $OMPI_COMM_WORLD_RANK = 1 ]; then " + different +
@@ -69,7 +69,7 @@ class CliMpi : public CliTest {
     nlohmann::json statistics(const std::string& name) const { return nlohmann::json::parse(text_of(folder_ / name)); }
 };
 
-TEST_F(CliMpi, PicturesAreThoseOfOneProcess) {
+TEST_F(CliMpi, PicturesEqualThoseOfOneProcess) {
     for (const char* scene :
          {"builtin:cube-hole --direction 0.3,0.5,-1 --up 0,1,0", "builtin:orbital:32 --view oblique",
           "builtin:phantom:32 --sheets sliced --background 0.1,0.2,0.4 --samples 2"}) {
@@ -95,7 +95,7 @@ TEST_F(CliMpi, PicturesAreThoseOfOneProcess) {
     }
 }
 
-TEST_F(CliMpi, ExtraOutputsAndComparisonsToo) {
+TEST_F(CliMpi, ExtraOutputsEqualThoseOfOneProcess) {
     const std::string request = "render builtin:orbital:24 --size 40x30 ";
     for (const char* more : {"--aov tau,depth,normal,distance", "--compare plain --overlay scale-bar,legend"}) {
         SCOPED_TRACE(more);
@@ -107,7 +107,7 @@ TEST_F(CliMpi, ExtraOutputsAndComparisonsToo) {
     }
 }
 
-/// A rod along z, thick and thin in turns: samples of one byte, x fastest.
+/// A rod along z of varying thickness: samples of one byte, x fastest.
 std::string rod(int width, int length) {
     std::string samples;
     for (int z = 0; z < length; ++z)
@@ -120,7 +120,7 @@ std::string rod(int width, int length) {
     return samples;
 }
 
-TEST_F(CliMpi, RanksHoldTheBlocksOfTheirSheetsOnly) {
+TEST_F(CliMpi, RanksHoldOnlyBlocksOfTheirSheets) {
     std::ofstream(folder_ / "rod.raw", std::ios::binary) << rod(28, 600);  // five blocks, one behind the other
     ASSERT_EQ(run("pack rod.raw --raw 28x28x600:uint8:little:1,1,1 -o vol.esv").status, 0);
     struct Case {
@@ -151,7 +151,7 @@ TEST_F(CliMpi, RanksHoldTheBlocksOfTheirSheetsOnly) {
         }
         std::printf(" of %llu\n", static_cast<unsigned long long>(all));
         EXPECT_GE(sum, all);
-        // A rank's sheets end within a block at either end, which its neighbour holds, too.
+        // A rank's first and last sheets lie in blocks that its neighbours hold, too.
         const std::uint64_t blocks = 5 / static_cast<std::uint64_t>(test.ranks) + 2;
         if (test.divides)
             EXPECT_LE(most, all * blocks / 5 + all / 20);
@@ -160,7 +160,7 @@ TEST_F(CliMpi, RanksHoldTheBlocksOfTheirSheetsOnly) {
     }
 }
 
-TEST_F(CliMpi, MoreRanksThanSheets) {
+TEST_F(CliMpi, WorksWithMoreRanksThanSheets) {
     const std::string request = "render builtin:cube-hole --sheet-spacing 16 --size 32x32 -o ";
     ASSERT_EQ(run(request + "1.exr").status, 0);
     good(5, request + "5.exr --json 5.json");
@@ -177,9 +177,9 @@ TEST_F(CliMpi, MoviesHaveTheSameFrames) {
         EXPECT_EQ(text_of(folder_ / "one" / name), text_of(folder_ / "two" / name)) << name;
         EXPECT_GT(text_of(folder_ / "two" / name).size(), 100U);
     }
-    // What is there is not made again.
+    // Existing frames are not rendered again.
     fs::remove(folder_ / "two/3.png");
-    EXPECT_THAT(good(3, movie + "-o two/%d.png").out, HasSubstr("6 of 7 frames are there already"));
+    EXPECT_THAT(good(3, movie + "-o two/%d.png").out, HasSubstr("6 of 7 frames exist already"));
     EXPECT_EQ(text_of(folder_ / "one/3.png"), text_of(folder_ / "two/3.png"));
     if (run("movie builtin:torus:20 --orbit 9 --seconds 0.04 --size 32x24 -o film.mp4").status != 0) return;
     good(2, movie + "-o film.mp4");
@@ -187,20 +187,20 @@ TEST_F(CliMpi, MoviesHaveTheSameFrames) {
     EXPECT_FALSE(fs::exists(folder_ / "film.mp4.frames"));
 }
 
-TEST_F(CliMpi, OneRankThatFailsEndsAll) {
+TEST_F(CliMpi, FailedRankEndsJob) {
     const ProgramRun failed =
         mpirun_with(3, "set -- \"$@\" --memory-budget 1", "render builtin:orbital:48 --size 64x64 -o a.exr");
     EXPECT_EQ(failed.status, 1) << failed.err;
     EXPECT_THAT(failed.err, HasSubstr("rank 1 of 3: error: "));
     EXPECT_THAT(failed.err, HasSubstr("the memory budget"));
     EXPECT_THAT(files(), IsEmpty());
-    // What is wrong with the command line of all is said once.
+    // All ranks have the same invalid command line.
     const ProgramRun wrong = mpirun(3, "render builtin:orbital -o a.exr --size 0x4");
     EXPECT_EQ(wrong.status, 2) << wrong.err;
     EXPECT_THAT(wrong.err, HasSubstr("--size"));
 }
 
-TEST_F(CliMpi, OneRankThatIsKilledEndsAll) {
+TEST_F(CliMpi, KilledRankEndsJob) {
     std::thread killer([this] {
         const fs::path note = folder_.string() + ".log/pid";
         for (int i = 0; i < 6000 && text_of(note).find('\n') == std::string::npos; ++i)
@@ -218,7 +218,7 @@ TEST_F(CliMpi, OneRankThatIsKilledEndsAll) {
     EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(CliMpi, InterruptedItLeavesNothing) {
+TEST_F(CliMpi, InterruptLeavesNoFile) {
     const ProgramRun stopped = run_shell("timeout --signal=INT --kill-after=" + std::string(kPatience) +
                                          " 1 mpirun -n 2 '" EDGESPLAT_PROGRAM
                                          "' render builtin:phantom:96 --sheets sliced --size 1200x1200 -o a.exr");
@@ -227,15 +227,15 @@ TEST_F(CliMpi, InterruptedItLeavesNothing) {
     EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(CliMpi, RefusesWhatIsNotDivided) {
+TEST_F(CliMpi, RefusesUndividedCommands) {
     const auto says = [&](const std::string& arguments, const char* what) {
         const ProgramRun result = mpirun(2, arguments);
         EXPECT_EQ(result.status, 1) << arguments;
         EXPECT_THAT(result.err, HasSubstr(what)) << arguments;
         EXPECT_THAT(files(), IsEmpty());
     };
-    says("info builtin:torus", "info is not divided among ranks");
-    says("render builtin:torus:20 -o a.exr --renderer raycast", "--renderer raycast draws no sheets");
+    says("info builtin:torus", "info does not divide its work among ranks");
+    says("render builtin:torus:20 -o a.exr --renderer raycast", "--renderer raycast does not draw sheets");
     says("render builtin:torus:20 -o a.exr --sheet-format layers", "--sheet-format tiles");
     EXPECT_THAT(good(2, "--version").out, HasSubstr("edgesplat"));
 }

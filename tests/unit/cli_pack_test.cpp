@@ -1,4 +1,4 @@
-// `edgesplat pack`: what it writes is what other commands read, how much memory it takes, and what it leaves behind.
+// `edgesplat pack`: other commands read its file, its memory is bounded, and failures leave no file.
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/resource.h>
@@ -17,7 +17,7 @@ using testing::IsEmpty;
 
 class CliPackTest : public CliTest {
   protected:
-    /// Starts the program inside the folder, without a shell between.
+    /// Starts the program inside the folder, without a shell.
     pid_t start(std::vector<std::string> arguments) const {
         arguments.insert(arguments.begin(), EDGESPLAT_PROGRAM);
         std::vector<char*> argv;
@@ -44,7 +44,7 @@ class CliPackTest : public CliTest {
     }
 };
 
-TEST_F(CliPackTest, WhatIsPackedIsDescribed) {
+TEST_F(CliPackTest, InfoDescribesPackedVolume) {
     const ProgramRun packed = run("pack builtin:phantom:100 -o vol.esv");
     ASSERT_EQ(packed.status, 0) << packed.err;
     EXPECT_THAT(packed.out, HasSubstr("vol.esv: 100 x 100 x 100 voxels as float32, 2 levels"));
@@ -64,16 +64,16 @@ TEST_F(CliPackTest, WhatIsPackedIsDescribed) {
     EXPECT_EQ(run("scene check vol.toml").status, 0);
 }
 
-TEST_F(CliPackTest, QuantisedItSaysByHowMuch) {
+TEST_F(CliPackTest, ReportsQuantisationError) {
     const ProgramRun packed = run("pack builtin:sphere:40 -o vol.esv --quantise 16 --compress");
     ASSERT_EQ(packed.status, 0) << packed.err;
     EXPECT_THAT(packed.out, HasSubstr("as uint16"));
-    EXPECT_THAT(packed.out, HasSubstr("quantised: samples are off by at most 7.6"));
+    EXPECT_THAT(packed.out, HasSubstr("quantised: the largest error of a sample is 7.6"));
     EXPECT_THAT(run("info vol.esv").out, HasSubstr("Quantised to 16 bits"));
     EXPECT_THAT(run("pack builtin:sphere:40 -o again.esv -q").out, IsEmpty());
 }
 
-TEST_F(CliPackTest, WhatCannotBeDoneIsSaidAndLeavesNothing) {
+TEST_F(CliPackTest, RefusesInvalidRequestsAndLeavesNoFile) {
     struct Case {
         const char* arguments;
         int status;
@@ -102,7 +102,7 @@ TEST_F(CliPackTest, WhatCannotBeDoneIsSaidAndLeavesNothing) {
     }
 }
 
-TEST_F(CliPackTest, ADiskThatIsTooSmallIsNoticedBeforehand) {
+TEST_F(CliPackTest, ChecksFreeDiskSpaceFirst) {
     if (std::filesystem::space(folder_).available > 1'100'000'000'000U) GTEST_SKIP() << "the disk is large enough";
     const ProgramRun result = run("pack builtin:sphere:10000 -o vol.esv");
     EXPECT_EQ(result.status, 1);
@@ -111,7 +111,7 @@ TEST_F(CliPackTest, ADiskThatIsTooSmallIsNoticedBeforehand) {
     EXPECT_THAT(files(), IsEmpty());
 }
 
-TEST_F(CliPackTest, InterruptedItLeavesNothing) {
+TEST_F(CliPackTest, InterruptLeavesNoFile) {
     bool began = false;
     const auto writing = [&] { return began = !files().empty(); };
     EXPECT_EQ(interrupted("pack builtin:sphere:320 -o vol.esv", writing), 130);
@@ -121,9 +121,9 @@ TEST_F(CliPackTest, InterruptedItLeavesNothing) {
 
 TEST_F(CliPackTest, MemoryDoesNotGrowWithTheVolume) {
 #if defined(__SANITIZE_ADDRESS__)
-    GTEST_SKIP() << "the sanitizer keeps what is freed";
+    GTEST_SKIP() << "the sanitizer keeps freed memory";
 #endif
-    // 256^3 samples are 64 MB as floats; an eighth of that is what they may take.
+    // 256^3 samples are 64 MB as floats; packing may take an eighth of that.
     const double small = peak_of("builtin:sphere:32"), large = peak_of("builtin:sphere:256");
     EXPECT_LT(large - small, 8) << small << " and " << large << " MB";
     std::ofstream(folder_ / "voxels.raw") << std::string(256 * 256 * 256 * 2, 'a');

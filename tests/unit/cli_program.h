@@ -1,4 +1,4 @@
-// Runs the real program and keeps what it said, for the cli_*_test.cpp files.
+// Test fixture that runs the real program and keeps its output, for the cli_*_test.cpp files.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ extern char** environ;  // NOLINT: the system's
 
 namespace edgesplat {
 
-/// What a run of the program left.
+/// Result of a run of the program.
 struct ProgramRun {
     int status = -1;       ///< exit status; -1: it was killed
     std::string out, err;  ///< stdout and stderr
@@ -32,7 +32,7 @@ struct ProgramRun {
 class CliTest : public ::testing::Test {
   protected:
     void SetUp() override {
-        // A program that was killed may have had the same number and left its folder.
+        // A killed process with the same id may have left its folder.
         std::filesystem::remove_all(folder_);
         std::filesystem::create_directories(folder_);
     }
@@ -54,9 +54,9 @@ class CliTest : public ::testing::Test {
                 text_of(log_folder() / "err")};
     }
 
-    /// Starts `edgesplat ARGUMENTS` likewise and presses Ctrl-C once `ready()`, after half a minute at the latest. The
-    /// exit status as a shell says it: 130, too, of a program that dies of the signal, as one does without a progress
-    /// bar.
+    /// Starts `edgesplat ARGUMENTS` in the same way and sends SIGINT once `ready()` is true, after 30 s at the latest.
+    /// Returns the exit status as a shell reports it. It is also 130 if the signal ends the program, as it does without
+    /// a progress bar.
     template <typename Ready>
     int interrupted(const std::string& arguments, const Ready& ready) const {
         const std::string command =
@@ -73,7 +73,7 @@ class CliTest : public ::testing::Test {
         return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
 
-    /// Names of what is in the folder, hidden files too, sorted.
+    /// Sorted names of all files in the folder, including hidden ones.
     std::vector<std::string> files() const {
         std::vector<std::string> names;
         for (const auto& entry : std::filesystem::directory_iterator(folder_))

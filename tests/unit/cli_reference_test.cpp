@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 using ::testing::IsSupersetOf;
 using ::testing::Pair;
 
-/// Every run is without any Vulkan driver.
+/// Runs the program without any Vulkan driver.
 class CliReference : public CliTest {
   protected:
     ProgramRun run_without_device(const std::string& arguments, const std::string& before = "") const {
@@ -27,7 +27,7 @@ class CliReference : public CliTest {
     void render(const std::string& arguments) const {
         const ProgramRun result = run_without_device(arguments);
         ASSERT_EQ(result.status, 0) << result.err;
-        EXPECT_EQ(result.err, "") << "progress is for terminals";
+        EXPECT_EQ(result.err, "") << "progress is only printed to terminals";
     }
     void refuses(const std::string& arguments, int status, const std::string& because) const {
         const ProgramRun result = run_without_device(arguments);
@@ -37,14 +37,14 @@ class CliReference : public CliTest {
     }
 };
 
-TEST_F(CliReference, PicturesSayWhoMadeThem) {
+TEST_F(CliReference, PicturesNameTheirRenderer) {
     for (const std::string name : {"reference", "truth"}) {
         render("builtin:sphere:24 -o a.exr --size 32x24 --json a.json --renderer " + name);
         const LoadedImage picture = read_image(folder_ / "a.exr");
         EXPECT_EQ(picture.image.width, 32);
         EXPECT_THAT(picture.metadata, Contains(Pair("edgesplat:renderer", name)));
         EXPECT_GT(picture.image.at(16, 12, 0), 0.3F) << "the sphere is in the middle";
-        EXPECT_EQ(picture.image.at(0, 0, 0), 0.0F) << "and the background around it";
+        EXPECT_EQ(picture.image.at(0, 0, 0), 0.0F) << "the background is around it";
         const auto s = nlohmann::json::parse(text_of(folder_ / "a.json"));
         EXPECT_EQ(s["renderer"], name);
         EXPECT_EQ(s["tolerance"], 1e-4);
@@ -60,7 +60,7 @@ TEST_F(CliReference, PicturesSayWhoMadeThem) {
     }
 }
 
-TEST_F(CliReference, TheyShowTheSameSphere) {
+TEST_F(CliReference, ReferenceAndTruthShowSameSphere) {
     render("builtin:sphere -o reference.exr --size 32x32 --renderer reference");
     render("builtin:sphere -o truth.exr --size 32x32 --renderer truth");
     const Image reference = read_image(folder_ / "reference.exr").image;
@@ -72,7 +72,7 @@ TEST_F(CliReference, TheyShowTheSameSphere) {
     EXPECT_NE(reference.pixels, truth.pixels);
 }
 
-TEST_F(CliReference, ToleranceIsKept) {
+TEST_F(CliReference, KeepsTolerance) {
     render("builtin:cube-hole -o fine.exr --size 24x24 --renderer reference --tolerance 1e-5 --json fine.json");
     render("builtin:cube-hole -o coarse.exr --size 24x24 --renderer reference --tolerance 0.01 --json coarse.json");
     const Image fine = read_image(folder_ / "fine.exr").image;
@@ -100,25 +100,25 @@ TEST_F(CliReference, ComparesWithPlainKernels) {
     EXPECT_GT(s["frames"][0]["samples"], 0);
 }
 
-TEST_F(CliReference, ReferenceHasTau) {
+TEST_F(CliReference, ReferenceWritesTau) {
     render("builtin:sphere:24 -o a.exr --size 16x16 --renderer reference --aov tau");
     const LoadedImage picture = read_image(folder_ / "a.exr");
     ASSERT_THAT(picture.channel_names, IsSupersetOf({"R", "G", "B", "A", "tau"}));
     EXPECT_GT(picture.image.at(8, 8, 4), 10.0F);
 }
 
-TEST_F(CliReference, RefusesWhatTheyCannotDo) {
-    refuses("builtin:sphere:24 -o a.exr --renderer reference --aov tau,depth", 1, "no extra output but tau");
+TEST_F(CliReference, RefusesUnsupportedOptions) {
+    refuses("builtin:sphere:24 -o a.exr --renderer reference --aov tau,depth", 1, "only the extra output tau");
     refuses("builtin:sphere:24 -o a.exr --renderer truth --aov tau", 1, "no extra outputs");
     refuses("head.nrrd -o a.exr --renderer truth", 1, "only builtin:NAME volumes have");
     refuses("builtin:sphere:24 -o a.exr --renderer truth --box-filter", 1, "--box-filter");
     refuses("builtin:sphere:24 -o a.exr --renderer truth --compare plain", 1, "--compare plain");
-    refuses("builtin:sphere:24 -o a.exr --renderer paint", 2, "there are splat, ");
+    refuses("builtin:sphere:24 -o a.exr --renderer paint", 2, "expected one of splat, ");
     refuses("builtin:sphere:24 -o a.exr --renderer reference --tolerance 0", 2, "above 0 and at most 0.1");
     refuses("builtin:sphere:24 -o a.exr --renderer reference --tolerance 0.2", 2, "above 0 and at most 0.1");
 }
 
-TEST_F(CliReference, AnInterruptLeavesNothing) {
+TEST_F(CliReference, InterruptLeavesNoFile) {
     const ProgramRun result =
         run_without_device("builtin:orbital -o a.exr --size 2000x2000 --renderer reference", "timeout -s INT 1");
     EXPECT_EQ(result.status, 124);

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsSupersetOf;
 using ::testing::Pair;
 
-/// Skips where the machine has no Vulkan device at all.
+/// Skips its tests if the machine has no Vulkan device.
 class CliRender : public CliTest {
   protected:
     void SetUp() override {
@@ -31,7 +31,7 @@ class CliRender : public CliTest {
     }
 };
 
-TEST_F(CliRender, PictureSaysHowItWasMade) {
+TEST_F(CliRender, PictureRecordsCommand) {
     render("builtin:sphere:24 -o 'my sphere.png' --size 48x32");
     EXPECT_THAT(files(), ElementsAre("my sphere.png"));
     const LoadedImage picture = read_image(folder_ / "my sphere.png");
@@ -44,30 +44,30 @@ TEST_F(CliRender, PictureSaysHowItWasMade) {
     EXPECT_THAT(picture.metadata, Contains(Pair("Software", HasSubstr("edgesplat 0."))));
     EXPECT_THAT(picture.metadata, Contains(Pair("edgesplat:checksum", ::testing::SizeIs(16))));
     EXPECT_GT(picture.image.at(24, 16, 0), 0.3F) << "the sphere is in the middle";
-    EXPECT_EQ(picture.image.at(0, 0, 0), 0.0F) << "and the background around it";
+    EXPECT_EQ(picture.image.at(0, 0, 0), 0.0F) << "the background is around it";
 }
 
-TEST_F(CliRender, ExrHoldsTheExtraOutputs) {
+TEST_F(CliRender, ExrContainsExtraOutputs) {
     render("builtin:sphere:24 -o a.exr --size 32x32 --aov tau,depth,normal,distance");
     EXPECT_THAT(files(), ElementsAre("a.exr"));
     EXPECT_THAT(read_image(folder_ / "a.exr").channel_names,
                 IsSupersetOf({"R", "G", "B", "A", "tau", "depth.Z", "normal.X", "normal.Y", "normal.Z", "distance"}));
 }
 
-TEST_F(CliRender, PngPutsTheExtraOutputsBesideIt) {
+TEST_F(CliRender, PngWritesExtraOutputsBesideIt) {
     render("builtin:sphere:24 -o a.png --size 32x32 --aov tau,normal");
     EXPECT_THAT(files(), ElementsAre("a.normal.exr", "a.png", "a.tau.exr"));
     EXPECT_THAT(read_image(folder_ / "a.normal.exr").channel_names, ElementsAre("normal.X", "normal.Y", "normal.Z"));
 }
 
-/// Whether the picture `part` stands in `whole` from the column `at` on, in red.
+/// Expects the red channel of `part` in `whole` from column `at` on.
 void expect_within(const Image& whole, int at, const Image& part) {
     for (int y = 0; y < part.height; ++y)
         for (int x = 0; x < part.width; ++x)
             ASSERT_EQ(whole.at(at + x, y, 0), part.at(x, y, 0)) << x << ',' << y;
 }
 
-TEST_F(CliRender, CompareIsTwoPicturesAndADivider) {
+TEST_F(CliRender, CompareJoinsTwoPicturesWithDivider) {
     render("builtin:sphere:24 -o both.exr --size 40x32 --compare plain --json both.json");
     render("builtin:sphere:24 -o plain.exr --size 40x32 --edges off");
     render("builtin:sphere:24 -o edges.exr --size 40x32");
@@ -84,7 +84,7 @@ TEST_F(CliRender, CompareIsTwoPicturesAndADivider) {
     EXPECT_EQ(statistics["frames"][1]["settings"]["edges"], "cubic");
 }
 
-TEST_F(CliRender, CompareIsAsManyPicturesAsAreNamed) {
+TEST_F(CliRender, CompareJoinsAllNamedPictures) {
     render("builtin:sphere:24 -o all.exr --size 40x32 --compare plain,raycast --raycast-filter cubic --json all.json");
     render("builtin:sphere:24 -o rays.exr --size 40x32 --renderer raycast --raycast-filter cubic");
     render("builtin:sphere:24 -o edges.exr --size 40x32");
@@ -116,7 +116,8 @@ TEST_F(CliRender, StatisticsAreComplete) {
 }
 
 TEST_F(CliRender, VoxelCoordinatesAndWorldCoordinatesAgree) {
-    // On its default grid builtin:sphere starts at 0,0,0 with 1 mm: index and world are the same there.
+    // The default grid of builtin:sphere starts at 0,0,0 with a spacing of 1 mm, so index and world coordinates are
+    // equal.
     render("builtin:sphere -o a.exr --size 24x24 --eye 32,-30,32 --direction 0,1,0.05 --fov 40");
     render("builtin:sphere -o b.exr --size 24x24 --eye 32,-30,32 --direction 0,1,0.05 --fov 40 --voxel");
     EXPECT_EQ(read_image(folder_ / "a.exr").image.pixels, read_image(folder_ / "b.exr").image.pixels);

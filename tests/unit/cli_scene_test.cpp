@@ -42,7 +42,7 @@ class CliScene : public CliTest {
   protected:
     void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
     void copy(const fs::path& scene) const { fs::copy_file(scene, folder_ / scene.filename()); }
-    /// Runs what must succeed.
+    /// Runs a command that must succeed.
     std::string good(const std::string& arguments) const {
         const ProgramRun result = run(arguments);
         EXPECT_EQ(result.status, 0) << arguments << '\n' << result.err;
@@ -53,20 +53,20 @@ class CliScene : public CliTest {
 
 class CliBrokenScene : public CliScene, public testing::WithParamInterface<std::string> {};
 
-TEST_P(CliBrokenScene, SaysWhatIsWrongAndWhere) {
+TEST_P(CliBrokenScene, ReportsProblemWithFileAndLine) {
     const std::string file = GetParam() + ".toml";
     copy(kScenes / "broken" / file);
     const std::string text = text_of(folder_ / file), mark = "# expect: ";
     ASSERT_TRUE(text.starts_with(mark));
     const std::string expected = text.substr(mark.size(), text.find('\n') - mark.size());
-    ASSERT_THAT(expected, StartsWith(file + ":")) << "file and line belong to every message";
+    ASSERT_THAT(expected, StartsWith(file + ":")) << "every message names file and line";
     const ProgramRun check = run("scene check " + file);
     EXPECT_EQ(check.status, 1);
     EXPECT_THAT(check.err, HasSubstr(expected));
     EXPECT_THAT(check.out, IsEmpty());
     std::istringstream lines(check.err);
     for (std::string line; std::getline(lines, line);)
-        EXPECT_THAT(line, StartsWith(file + ":")) << "one line a problem";
+        EXPECT_THAT(line, StartsWith(file + ":")) << "one line per problem";
     const ProgramRun render = run("render " + file + " -o a.png");
     EXPECT_EQ(render.status, 1);
     EXPECT_THAT(render.err, AllOf(StartsWith("edgesplat: error: "), HasSubstr(expected)));
@@ -75,11 +75,11 @@ TEST_P(CliBrokenScene, SaysWhatIsWrongAndWhere) {
 
 INSTANTIATE_TEST_SUITE_P(Cli, CliBrokenScene, testing::ValuesIn(scenes_in("broken")), test_name);
 
-TEST_F(CliScene, TheCorpusIsLarge) {
+TEST_F(CliScene, CorpusIsLarge) {
     EXPECT_GE(scenes_in("broken").size(), 40U);
 }
 
-TEST_F(CliScene, WhatIsNoFile) {
+TEST_F(CliScene, RefusesInvalidFiles) {
     fs::create_directories(folder_ / "folder.toml");
     fs::create_symlink("loop.toml", folder_ / "loop.toml");
     EXPECT_THAT(run("scene check none.toml").err, AllOf(HasSubstr("none.toml"), HasSubstr("no such file")));
@@ -93,15 +93,16 @@ TEST_F(CliScene, WhatIsNoFile) {
 
 class CliGoodScene : public CliScene, public testing::WithParamInterface<std::string> {};
 
-TEST_P(CliGoodScene, RendersAndRendersAgain) {
+TEST_P(CliGoodScene, RerunsToSamePixels) {
     const std::string name = GetParam();
     copy(kScenes / "good" / (name + ".toml"));
-    EXPECT_THAT(good("scene check " + name + ".toml"), HasSubstr("good"));
+    EXPECT_THAT(good("scene check " + name + ".toml"), HasSubstr("valid"));
     for (const char* extension : {".png", ".exr"}) {
         good("render " + name + ".toml -o a" + extension);
-        EXPECT_THAT(good(std::string("rerun a") + extension + " -o b" + extension + " --check"), HasSubstr("the same"));
+        EXPECT_THAT(good(std::string("rerun a") + extension + " -o b" + extension + " --check"),
+                    HasSubstr("identical"));
         EXPECT_EQ(picture(std::string("a") + extension).pixels, picture(std::string("b") + extension).pixels);
-        // The scene in the picture is a scene file.
+        // The scene in the picture's metadata is a valid scene file.
         const LoadedImage a = read_image(folder_ / (std::string("a") + extension));
         for (const auto& [key, text] : a.metadata)
             if (key == "edgesplat:scene") write("again.toml", text);
@@ -112,7 +113,7 @@ TEST_P(CliGoodScene, RendersAndRendersAgain) {
 
 INSTANTIATE_TEST_SUITE_P(Cli, CliGoodScene, testing::ValuesIn(scenes_in("good")), test_name);
 
-TEST_F(CliScene, ASceneSaysWhatOptionsSay) {
+TEST_F(CliScene, SceneEqualsOptions) {
     const std::string options =
         "--iso 0.4,0.6 --color 1,0,0 --color 0,1,0 --extinction 0.1,5 --background 0.1,0.1,0.2 --light 1,-1,1 "
         "--ambient 0.3 --eye 40,-50,30 --target 12,12,12 --up 0,0.1,1 --fov 35 --size 24x20 --edges march "
@@ -161,7 +162,7 @@ file = "b.exr"
     EXPECT_EQ(picture("a.exr").pixels, picture("c.exr").pixels);
 }
 
-TEST_F(CliScene, OldPicturesThatNameWhatIsNoMoreAreToldWhatToWrite) {
+TEST_F(CliScene, SuggestsReplacementsForRemovedKeys) {
     const ImageMetadata metadata{{"edgesplat:scene", R"([volume]
 path = "builtin:sphere:24"
 [quality]
@@ -170,8 +171,8 @@ edge_strength = 16
 )"}};
     write("old.png", encode_png(Image(4, 4, 3), metadata));
     EXPECT_THAT(run("rerun old.png --check").err,
-                AllOf(HasSubstr("old.png (edgesplat:scene)"), HasSubstr("\"edge\" is no more; write face"),
-                      HasSubstr("quality.edge_strength: is no more")));
+                AllOf(HasSubstr("old.png (edgesplat:scene)"), HasSubstr("\"edge\" was removed; write face"),
+                      HasSubstr("quality.edge_strength: was removed")));
 }
 
 TEST_F(CliScene, OptionsOverrideTheScene) {
@@ -191,7 +192,7 @@ TEST_F(CliScene, OptionsOverrideTheScene) {
     EXPECT_THAT(run("render a.toml --color 1,0,0 --color 0,1,0").err, HasSubstr("--color"));
 }
 
-TEST_F(CliScene, EffectOptionsArriveInThePicture) {
+TEST_F(CliScene, PictureMetadataContainsEffectOptions) {
     good(
         "render builtin:sphere:24 -o a.png --size 8x8 --fog 0.01 --silhouette --occlusion 4 --light 1,0,1 --shadows "
         "--clip-plane 1,2,3,0,0,1 --clip-plane 4,5,6,1,0,0 --cut-box 0,0,0,5,6,7 --antialias --smooth-outlines "
@@ -208,7 +209,7 @@ TEST_F(CliScene, EffectOptionsArriveInThePicture) {
     ASSERT_EQ(d.effects.clip.keep.size(), 2U);
     EXPECT_EQ(d.effects.clip.keep[1].point, glm::dvec3(4, 5, 6));
     EXPECT_EQ(d.effects.clip.remove.size(), 6U);
-    EXPECT_FALSE(d.remove_box) << "a picture holds the planes";
+    EXPECT_FALSE(d.remove_box) << "the picture's scene contains the planes instead";
     EXPECT_TRUE(d.effects.antialias);
     EXPECT_TRUE(d.effects.smooth_outlines);
     EXPECT_EQ(d.effects.samples, 2);
@@ -221,7 +222,7 @@ TEST_F(CliScene, EffectOptionsArriveInThePicture) {
     EXPECT_THAT(run("render builtin:sphere:24 -o b.png --shadows").err, HasSubstr("--light X,Y,Z"));
 }
 
-TEST_F(CliScene, BoxesAreTheirSixPlanes) {
+TEST_F(CliScene, BoxEqualsSixPlanes) {
     const std::string sphere = "[volume]\npath = 'builtin:sphere:24'\n";
     write("boxes.toml", sphere +
                             "[effects.clip.keep_box]\nlow = [2, 3, 4]\nhigh = [20, 21, 22]\n"
@@ -264,14 +265,14 @@ TEST_F(CliScene, NewWritesASceneWithEveryKey) {
                               leaf + " = "));
     }
     const SceneDocument d = read_scene_file(folder_ / "a.toml");
-    EXPECT_EQ(d.iso_values.size(), 2U) << "the builtin scene's own";
+    EXPECT_EQ(d.iso_values.size(), 2U) << "the builtin scene's own iso-values";
     EXPECT_TRUE(d.camera.eye && d.camera.target);
     good("render builtin:orbital:24 -o a.exr --size 16x16 --view oblique");
     good("render a.toml -o b.exr --size 16x16");
     const Image a = picture("a.exr"), b = picture("b.exr");
     EXPECT_GT(a.at(8, 8, 0), 0.05F);
     EXPECT_NEAR(a.at(8, 8, 0), b.at(8, 8, 0), 1e-4);
-    // Every line that is commented out can be had: all of it together is TOML.
+    // Every commented-out line is usable: all lines together are valid TOML.
     std::istringstream lines(printed);
     std::string all;
     for (std::string line; std::getline(lines, line);) {
@@ -287,7 +288,7 @@ TEST_F(CliScene, NewWritesASceneWithEveryKey) {
     EXPECT_THAT(problems, Not(HasSubstr("unknown key")));
 }
 
-TEST_F(CliScene, ListsForPeople) {
+TEST_F(CliScene, ListsKeysAndPresets) {
     EXPECT_THAT(good("scene keys"), AllOf(HasSubstr("effects.fog.density"), HasSubstr("per mm")));
     EXPECT_THAT(good("scene keys --markdown"), HasSubstr("| `density` |"));
     EXPECT_THAT(good("scene presets"), AllOf(HasSubstr("ct-bone"), HasSubstr("built in")));
@@ -295,7 +296,7 @@ TEST_F(CliScene, ListsForPeople) {
     EXPECT_THAT(run("scene chek a.toml").err, HasSubstr("Did you mean check?"));
 }
 
-/// A volume of 8^3 floats that a picture can be made of.
+/// Bytes of a volume of 8^3 floats: a ball with the value `inside`, 0 outside.
 std::string small_volume(float inside) {
     std::string bytes;
     for (int i = 0; i < 512; ++i) {
@@ -306,7 +307,7 @@ std::string small_volume(float inside) {
     return bytes;
 }
 
-TEST_F(CliScene, VolumesAreFoundBesideTheSceneAndInTheFolders) {
+TEST_F(CliScene, FindsVolumesBesideSceneAndInFolders) {
     fs::create_directories(folder_ / "scenes");
     fs::create_directories(folder_ / "data");
     const std::string scene =
@@ -325,7 +326,7 @@ TEST_F(CliScene, VolumesAreFoundBesideTheSceneAndInTheFolders) {
     good("rerun b.png --check");
     good("rerun b.png -o c.png");
     EXPECT_EQ(picture("a.png").pixels, picture("c.png").pixels);
-    // Other samples under the same name.
+    // A file with the same name but other samples.
     write("scenes/v.raw", small_volume(2));
     const ProgramRun other = run("rerun b.png -o d.png");
     EXPECT_EQ(other.status, 1);
@@ -350,12 +351,12 @@ TEST_F(CliScene, RerunChecksEveryPixel) {
     EXPECT_EQ(changed.status, 1);
     EXPECT_THAT(changed.err, HasSubstr("pixel 3,4"));
     write_image(folder_ / "plain.png", Image(4, 4, 3));
-    EXPECT_THAT(run("rerun plain.png --check").err, HasSubstr("does not say how it was made"));
+    EXPECT_THAT(run("rerun plain.png --check").err, HasSubstr("contains no scene"));
     EXPECT_THAT(run("rerun a.exr").err, HasSubstr("--check"));
     EXPECT_EQ(run("rerun none.png --check").status, 1);
 }
 
-TEST_F(CliScene, RerunOfEveryRenderer) {
+TEST_F(CliScene, RerunsEveryRenderer) {
     for (const char* options :
          {"--renderer raycast", "--renderer raycast --raycast-filter cubic", "--renderer raycast --raycast-step 0.3",
           "--renderer reference --tolerance 0.01 --aov tau", "--renderer truth --tolerance 0.01",

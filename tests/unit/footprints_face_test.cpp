@@ -13,7 +13,7 @@
 namespace edgesplat {
 namespace {
 
-/// A ray across a plane face at `distance`: u makes the angle `cosine` with n, and p lies `along` n and `across` it.
+/// A ray at a plane face at `distance`: dot(u, n) = `cosine`; p is `along` n and `across` perpendicular to it.
 FaceRay plane_ray(double distance, double cosine, double along, double across) {
     const double pn = along, sine2 = 1 - cosine * cosine;
     FaceRay ray;
@@ -24,7 +24,7 @@ FaceRay plane_ray(double distance, double cosine, double along, double across) {
     return ray;
 }
 
-/// Dense sum of the definition over the pieces.
+/// Integrates the definition with a dense sum.
 double summed(const FaceRay& ray, const FaceCut& cut) {
     constexpr int kSteps = 20000;
     const double half = std::sqrt(std::max(cut.reach * cut.reach - ray.rho2, 0.0));
@@ -36,7 +36,7 @@ double summed(const FaceRay& ray, const FaceCut& cut) {
     return sum * 2 * half / kSteps;
 }
 
-TEST(Face, ADeepKernelIsThePlainOne) {
+TEST(Face, DeepKernelIsUncut) {
     const FaceRay ray = plane_ray(2.3, 0.6, 0.1, 0.4);
     const FaceCut cut = face_cut(5, 0, 0, std::numeric_limits<double>::infinity());
     FaceRay deep = ray;
@@ -44,16 +44,16 @@ TEST(Face, ADeepKernelIsThePlainOne) {
     EXPECT_NEAR(FacePath(deep, cut).footprint(16).integral, kernel_footprint(ray.rho2), 1e-6);
 }
 
-TEST(Face, NothingLiesBeyondAFace) {
+TEST(Face, KernelIsZeroBeyondFace) {
     const FaceCut cut = face_cut(-3, 0, 0, std::numeric_limits<double>::infinity());
     EXPECT_EQ(FacePath(plane_ray(-3, 0, 0.2, 0.1), cut).footprint(8).integral, 0);
-    // Half a kernel, along the face: what is left is moved to where it is sampled.
+    // A ray parallel to the face: 0 just outside the face, positive just inside.
     const FaceCut at = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     EXPECT_EQ(FacePath(plane_ray(0.5, 0, 0.51, 0), at).footprint(8).integral, 0);
     EXPECT_GT(FacePath(plane_ray(0.5, 0, 0.49, 0), at).footprint(8).integral, 0.1);
 }
 
-/// The sum of kernels of all voxels of a corner x < a, y < b at the point x (z 0), along the y axis's rays.
+/// Sum of the kernels of all voxels in a corner (x < corner.x, y < corner.y) at the point (x.x, x.y, 0); rays along y.
 double sum_in_corner(const glm::dvec2& corner, const glm::dvec2& x) {
     double sum = 0;
     for (int i = -6; i <= 6; ++i)
@@ -61,7 +61,7 @@ double sum_in_corner(const glm::dvec2& corner, const glm::dvec2& x) {
             for (int k = -4; k <= 4; ++k) {
                 const glm::dvec2 distance(corner.x - i, corner.y - j);
                 if (distance.x < 0 || distance.y < 0) continue;
-                // The nearer plane is the face, as it is of voxels; the ray runs along y.
+                // The nearer plane is the voxel's face; the ray runs along y.
                 const bool first = distance.x <= distance.y;
                 FaceCut cut = face_cut(first ? distance.x : distance.y, 0, 0, std::numeric_limits<double>::infinity());
                 add_crease(cut, {first ? distance.y : distance.x, 0});
@@ -77,8 +77,8 @@ double sum_in_corner(const glm::dvec2& corner, const glm::dvec2& x) {
     return sum;
 }
 
-TEST(Face, AtACreaseTheSumIsThePlateau) {
-    // Beside both planes of a corner, and next to one of them, as deep in the matter; nothing beyond.
+TEST(Face, KernelsSumToPlateauAtCrease) {
+    // Points near both planes of the corner, near one plane and deep in the matter; beyond the planes the sum is 0.
     const glm::dvec2 corner(0.3, 0.6);
     double least = 1e9, most = 0;
     for (double x = -3; x < 0.3; x += 0.31)
@@ -87,14 +87,14 @@ TEST(Face, AtACreaseTheSumIsThePlateau) {
             least = std::min(least, sum);
             most = std::max(most, sum);
         }
-    // .8 of a voxel behind a plane lattices leave .82 at least; behind two of them the product.
+    // Kernels sampled 0.8 voxel behind one plane sum to at least .82; behind two planes to the product.
     EXPECT_GT(least, 0.67);
     EXPECT_LT(most, 1.02);
     EXPECT_EQ(sum_in_corner(corner, {0.31, 0}), 0);
     EXPECT_EQ(sum_in_corner(corner, {0, 0.61}), 0);
 }
 
-TEST(Face, ACreaseIsWhereTheRayEnters) {
+TEST(Face, RayEntersAtCrease) {
     FaceCut cut = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     add_crease(cut, {0.7, 0});
     FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face
@@ -104,7 +104,7 @@ TEST(Face, ACreaseIsWhereTheRayEnters) {
     EXPECT_NEAR(entered.entry.z, -0.7, 1e-12);
     ray.crease = {0, 1};
     EXPECT_EQ(FacePath(ray, cut).footprint(8).entry.plane, 0);
-    // Out of the other plane's reach nothing is cut.
+    // A second plane out of reach cuts nothing.
     FaceCut plain = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     const double reach = plain.reach;
     add_crease(plain, {4, 0});
@@ -112,7 +112,7 @@ TEST(Face, ACreaseIsWhereTheRayEnters) {
     EXPECT_EQ(plain.reach, reach);
 }
 
-TEST(Face, ACornersThirdPlaneEndsTheMatter) {
+TEST(Face, ThirdPlaneCutsAtCorner) {
     FaceCut cut = face_cut(0.5, 0, 0, std::numeric_limits<double>::infinity());
     add_crease(cut, {0.7, 0}, 0.4);
     FaceRay ray = plane_ray(0.5, 0, 0, 0);  // along the face and the crease
@@ -123,7 +123,7 @@ TEST(Face, ACornersThirdPlaneEndsTheMatter) {
     EXPECT_NEAR(entered.entry.z, -0.4, 1e-12);
     EXPECT_EQ(FacePath(ray, cut).kernel_at(-0.41), 0);
     EXPECT_GT(FacePath(ray, cut).kernel_at(-0.39), 0);
-    // Of two planes the nearer ends it.
+    // The nearer of two planes ends the matter.
     ray.crease = {0, -1};
     EXPECT_EQ(FacePath(ray, cut).footprint(8).entry.plane, 2);
     cut.corner = 0.8;
@@ -133,7 +133,7 @@ TEST(Face, ACornersThirdPlaneEndsTheMatter) {
     EXPECT_EQ(FacePath(ray, cut).footprint(8).leave.plane, 1);
 }
 
-TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {
+TEST(Face, QuadratureErrorIsSmall) {
     std::mt19937 random(5);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
     double squares = 0, worst_of_sixteen = 0;
@@ -152,7 +152,7 @@ TEST(Face, FewNodesAreWithinASmallShareOfThePeak) {
     EXPECT_LE(worst_of_sixteen, 0.01);
 }
 
-/// The sum of all kernels at a point `below` a plane face that lies `shift` beyond a lattice plane with this normal.
+/// Sum of all kernels at depth `below` under a plane face with normal n, `shift` beyond a lattice plane.
 double sum_of_kernels(const std::array<double, 3>& n, double shift, double below) {
     double sum = 0;
     for (int z = -6; z <= 6; ++z)
@@ -160,7 +160,7 @@ double sum_of_kernels(const std::array<double, 3>& n, double shift, double below
             for (int x = -6; x <= 6; ++x) {
                 const double along = n[0] * x + n[1] * y + n[2] * z, distance = shift - along;
                 if (!(distance >= 0)) continue;
-                // The point, off the lattice sideways too, relative to the voxel.
+                // The point relative to the voxel; it is also shifted sideways off the lattice.
                 const std::array<double, 3> r = {0.3 + (shift - below) * n[0] - x, 0.2 + (shift - below) * n[1] - y,
                                                  (shift - below) * n[2] - z};
                 const double rn = r[0] * n[0] + r[1] * n[1] + r[2] * n[2];
@@ -175,12 +175,12 @@ double sum_of_kernels(const std::array<double, 3>& n, double shift, double below
     return sum;
 }
 
-TEST(Face, KernelsSumToAPlateauUpToTheFace) {
+TEST(Face, KernelsSumToPlateauUpToFace) {
     double least = 2, most = 0, total = 0;
     int count = 0;
     for (double shift = 0; shift < 1; shift += 0.1) {
         const double at_face = sum_of_kernels({0, 0, 1}, shift, 1e-9), behind = sum_of_kernels({0, 0, 1}, shift, 0.7);
-        // One value from the face to where kernels are sampled: an edge that is a step.
+        // The sum is constant from the face to the depth of sampling: the edge is a step.
         EXPECT_NEAR(at_face, behind, 1e-6) << shift;
         least = std::min(least, at_face);
         most = std::max(most, at_face);
@@ -193,7 +193,7 @@ TEST(Face, KernelsSumToAPlateauUpToTheFace) {
     EXPECT_NEAR(sum_of_kernels({0, 0, 1}, 0.4, 2.2), 1, 1e-3);
 }
 
-TEST(Face, AWallIsEnteredFromEitherSide) {
+TEST(Face, RaysEnterWallFromEitherSide) {
     const FaceRay through = plane_ray(0.6, 1, 0, 0), back = plane_ray(0.6, -1, 0, 0);
     const FacePath path(through, face_cut(0.6, 0, 0, 1.5));
     const auto pieces = path.pieces();
@@ -208,8 +208,9 @@ TEST(Face, AWallIsEnteredFromEitherSide) {
     EXPECT_NEAR(out.integral, in.integral, 1e-6);
 }
 
-TEST(Face, WhatLiesDeepInAWallShowsItsOtherFace) {
-    // Rays along a wall of 2 voxels meet neither face: they show the near one, but beside the other.
+TEST(Face, DeepPartOfWallShowsOtherFace) {
+    // Rays parallel to a wall of 2 voxels meet neither face. They show the near face, beyond a depth of 1.6 the far
+    // face.
     const FaceCut cut = face_cut(0.6, 0, 0, 2);
     for (const double depth : {0.1, 0.9, 1.5, 1.7, 1.9}) {
         const FaceFootprint seen = FacePath(plane_ray(0.6, 0, 0.6 - depth, 0), cut).footprint(8);

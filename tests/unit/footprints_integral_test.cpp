@@ -15,7 +15,7 @@ using samples::Errors;
 using samples::rays;
 constexpr double kR = kKernelRadius;
 
-// An independent way to the same number: many short panels, no knowledge of where anything happens.
+// Independent integral: many short panels, without knowledge of the integrand's kinks.
 double brute_force(const Ray& ray, const PaperEdge& edge) {
     static const QuadratureRule rule = gauss_legendre(4);
     constexpr int kPanels = 4000;
@@ -30,7 +30,7 @@ double brute_force(const Ray& ray, const PaperEdge& edge) {
 }
 
 TEST(ExactFootprint, AgreesWithBruteForce) {
-    for (const auto& [d, ray] : rays(100, -0.5, 1.6))  // infinite slopes: brute force itself is good to about 1e-5
+    for (const auto& [d, ray] : rays(100, -0.5, 1.6))  // infinite slopes: brute force is accurate to about 1e-5
         EXPECT_NEAR(exact_footprint(ray, PaperEdge{d, {}}), brute_force(ray, PaperEdge{d, {}}), 1e-4);
     for (const auto& [d, ray] : rays(100, -0.5, 1.6)) {
         const PaperEdge smooth = {d, {0.3, 0.05, PaperCurve::Smooth}};
@@ -38,7 +38,7 @@ TEST(ExactFootprint, AgreesWithBruteForce) {
     }
 }
 
-TEST(ExactFootprint, ReachesNoFurtherThanItIsSaidTo) {
+TEST(ExactFootprint, StaysWithinDocumentedReach) {
     double farthest = 0;
     for (const auto& [d, ray] : rays(20000, -0.5, 1.6, 4)) {
         const double z = std::sqrt(std::max(kPaperReach * kPaperReach - ray.rho2, 0.0)) + 1e-9;
@@ -52,7 +52,7 @@ TEST(ExactFootprint, ReachesNoFurtherThanItIsSaidTo) {
             if (kernel(std::max(r2 - t * t + w * w, 0.0)) > 0) farthest = std::max(farthest, std::sqrt(r2));
         }
     }
-    EXPECT_GT(farthest, 1.83) << "the bound is no larger than it must be";
+    EXPECT_GT(farthest, 1.83) << "the bound is tight";
 }
 
 TEST(ExactFootprint, IsPlainWithoutAWarp) {
@@ -62,7 +62,7 @@ TEST(ExactFootprint, IsPlainWithoutAWarp) {
     }
 }
 
-TEST(ExactFootprint, EdgeOnIsTheShiftedFootprint) {
+TEST(ExactFootprint, IsShiftedFootprintEdgeOn) {
     for (double x = -1.5; x <= 1.5; x += 0.05) {
         const PaperEdge edge = {0.4, {0.3, 0.05, PaperCurve::Smooth}};
         const double w = warped_coordinate(x, edge);
@@ -71,8 +71,8 @@ TEST(ExactFootprint, EdgeOnIsTheShiftedFootprint) {
     }
 }
 
-TEST(ExactFootprint, CarriesTheSameMassInEveryView) {
-    // The integral over the picture is the warped kernel's volume, whatever the direction.
+TEST(ExactFootprint, HasSameMassInEveryView) {
+    // The integral over the picture is the warped kernel's volume in every direction.
     const PaperEdge edge = {0.6, {0.3, 0.05, PaperCurve::Smooth}};
     double volume = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -89,7 +89,7 @@ TEST(ExactFootprint, CarriesTheSameMassInEveryView) {
     }
 }
 
-TEST(ProceduralFootprint, PaperCurvesCostMoreNodesForTheirInfiniteSlopes) {
+TEST(ProceduralFootprint, IsAccurateForPaperCurves) {
     Errors cosine, smooth;
     for (const auto& [d, ray] : rays(4000, -0.5, 1.6, 8)) {
         const PaperEdge edge = {d, {}}, smooth_edge = {d, {0.3, 0.05, PaperCurve::Smooth}};
@@ -111,7 +111,7 @@ TEST(Warp2d, IsExactEdgeOnAndPlainAlongTheNormal) {
     }
 }
 
-TEST(Warp2d, IsAShortCutInBetween) {
+TEST(Warp2d, IsInexactAtObliqueAngles) {
     Errors errors;
     for (const auto& [d, ray] : rays(4000, 0, 1.6, 9))
         errors.add(warp2d_footprint(ray, PaperEdge{d, {}}), exact_footprint(ray, PaperEdge{d, {}}));

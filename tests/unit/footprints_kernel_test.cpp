@@ -52,7 +52,7 @@ TEST_P(EachKernel, FallsSmoothlyToZeroAtItsRadius) {
     EXPECT_LT(kernel(r * r, k), 1e-9);
 }
 
-TEST_P(EachKernel, HasClosedFormsThatAreTheIntegralsTheyClaimToBe) {
+TEST_P(EachKernel, ClosedFormsEqualIntegrals) {
     const Kernel& k = GetParam();
     for (double share : {0.0, 0.25, 0.56, 0.94}) {
         const double rho = share * k.radius, half = std::sqrt(k.radius * k.radius - rho * rho);
@@ -69,7 +69,7 @@ TEST_P(EachKernel, HasClosedFormsThatAreTheIntegralsTheyClaimToBe) {
     EXPECT_NEAR(integrate(shell, 0, k.radius), 1, 1e-7);
 }
 
-TEST_P(EachKernel, IsFittedAgainAsNothingMuchBetterOrWorse) {
+TEST_P(EachKernel, FitReproducesKernel) {
     const Kernel& k = GetParam();
     const Kernel fitted = fit_kernel(24, k.radius);
     EXPECT_LE(kernel_ripple(48, fitted), kernel_ripple(48, k) * 1.03);

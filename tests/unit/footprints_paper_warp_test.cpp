@@ -49,7 +49,7 @@ TEST(PaperProfile, IsMonotoneAndInvertedExactly) {
     EXPECT_EQ(paper_map(1.5, kProfiles[0]), 1.5);
 }
 
-TEST(PaperProfile, RefusesWhatWouldNotBeMonotoneAndSaysWhy) {
+TEST(PaperProfile, RefusesNonMonotoneProfiles) {
     EXPECT_THAT(
         [] {
             validate({0.6, 0.8, 0.1, 0.5});
@@ -59,12 +59,12 @@ TEST(PaperProfile, RefusesWhatWouldNotBeMonotoneAndSaysWhy) {
     EXPECT_THAT([] { validate({0.5, 0.4, 0.3, 0.6}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("t2 = 0.4")));
     EXPECT_THAT([] { validate({0.0, 0.4, 0.3, 0.6}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("t1 = 0")));
     EXPECT_THAT([] { validate({0.2, 0.8, 0.5, 0.5}); }, ThrowsMessage<std::invalid_argument>(HasSubstr("m2 = 0.5")));
-    // One step beyond the limit p really does turn back.
+    // Beyond the limit p is not monotone.
     const PaperProfile bad = {0.6, 0.8, 0.1, 0.5};
     EXPECT_LT(paper_profile(0.55, bad), paper_profile(0.3, bad));
 }
 
-TEST(PaperWarp, TheEdgeIsSampledHalfWayBetweenTheVoxels) {
+TEST(PaperWarp, SamplesEdgeHalfwayBetweenVoxels) {
     for (PaperCurve curve : {PaperCurve::Cosine, PaperCurve::Smooth})
         for (double d = 0.15; d <= 0.85; d += 0.05) {
             const PaperShape shape = {0.3, 0.05, curve};
@@ -74,18 +74,18 @@ TEST(PaperWarp, TheEdgeIsSampledHalfWayBetweenTheVoxels) {
 }
 
 TEST(PaperWarp, BothSidesOfAnEdgeShareOneCurve) {
-    // The four cases: primary and secondary splats at 0, -1 on one side, 1, 2 on the other, an edge at 0.3.
+    // Four cases with an edge at 0.3: primary and secondary splats at 0 and -1 on one side, at 1 and 2 on the other.
     const double edge = 0.3;
     for (double x = 0; x <= 1; x += 0.01) {
         const double position = warped_coordinate(x, PaperEdge{edge, {}});
         EXPECT_NEAR(warped_coordinate(x + 1, PaperEdge{edge + 1, {}}) - 1, position, 1e-6);
         EXPECT_NEAR(1 - warped_coordinate(1 - x, PaperEdge{1 - edge, {}}), position, 1e-6);
-        // Its secondary splat on the other side would be 1.7 away: out of the kernel's reach, no edge.
+        // The secondary splat on the other side is 1.7 from the edge, beyond the kernel's radius, so it has no edge.
         EXPECT_EQ(warped_coordinate(2 - x, PaperEdge{2 - edge, {}}), 2 - x);
     }
 }
 
-TEST(PaperWarp, EveryDistanceGivesALegalProfile) {
+TEST(PaperWarp, EveryDistanceGivesValidProfile) {
     for (double d = -1; d < 2; d += 0.01)
         EXPECT_NO_THROW(validate(paper_profile_for({d, {}}))) << d;
     EXPECT_EQ(warped_coordinate(1.3, PaperEdge{kKernelRadius, {}}), 1.3);

@@ -1,5 +1,5 @@
-// Compares with tabulated values computed independently. EDGESPLAT_MATH names the folder that holds reference.json;
-// without it these tests are skipped.
+// Compares with independently computed values. EDGESPLAT_MATH names the folder with reference.json; without it these
+// tests are skipped.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -20,8 +20,8 @@ struct Sample {
     Ray ray;
 };
 
-/// Random rays near a voxel, and edges at D in [low, high]; every fourth edge is seen nearly edge-on, where warps are
-/// sharpest, and some views are exactly edge-on or along the normal.
+/// Random rays near a voxel, with edges at D in [low, high]. Every fourth ray is nearly edge-on, where warps are
+/// sharpest; some rays are exactly edge-on or along the normal.
 inline std::vector<Sample> rays(std::size_t count, double low, double high, unsigned seed = 1) {
     std::mt19937 random(seed);
     const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<>(a, b)(random); };
@@ -33,7 +33,7 @@ inline std::vector<Sample> rays(std::size_t count, double low, double high, unsi
     return all;
 }
 
-/// Errors as parts of the isotropic footprint's peak.
+/// Errors relative to the isotropic footprint's peak.
 class Errors {
   public:
     void add(double value, double truth) { all_.push_back(std::abs(value - truth) / kPeak); }

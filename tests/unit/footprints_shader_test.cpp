@@ -14,7 +14,7 @@
 #include "shaders/shared/limits.h"
 #include "tests/unit/footprints_samples.h"
 
-// What GLSL brings: float functions.
+// GLSL's built-in float functions.
 namespace glsl {
 
 using edgesplat::shader::FootprintParams;
@@ -54,20 +54,20 @@ inline float acos(float v) {
     return std::acos(v);
 }
 
-// GLSL's literals are float, C++'s are double: results are rounded to float wherever they are stored.
+// GLSL literals are float, C++ literals are double: results are rounded to float when they are stored.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wdouble-promotion"
-// The including shader says how many nodes a piece of a footprint gets: one copy each.
+// The including shader sets the number of nodes per piece of a footprint: one copy of the source for each number.
 namespace nodes4 {
 const uint NODES = 4;
 uint NARROW = 0;
 #include "shaders/footprints/footprint.glsl"
 
-// After what it needs.
+// Included after its dependencies.
 const uint FACE_PIECES = 2;
 #include "shaders/footprints/face.glsl"
 
-// Of the table's layers, what a sampler with linear filter makes of them.
+// The table's layers, and the bilinear lookup of a sampler with linear filter.
 const std::uint16_t* layers = nullptr;
 using namespace edgesplat::shader;
 inline float table_texel(float x, float y, float layer) {
@@ -80,7 +80,7 @@ inline float table_texel(float x, float y, float layer) {
 }
 #include "shaders/footprints/footprint_layer.glsl"
 
-// After what it needs.
+// Included after its dependencies.
 #include "shaders/footprints/footprint_table.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
@@ -112,7 +112,7 @@ struct Float {
           d(static_cast<float>(distance)) {}
 };
 
-/// Every second ray the other way round.
+/// Reverses every second ray.
 Ray turned(const Ray& ray, std::size_t i) {
     return {ray.rho2, ray.pn, i % 2 == 0 ? ray.un : -ray.un};
 }
@@ -133,7 +133,7 @@ TEST(FootprintShader, MirrorsFaces) {
     Errors error;
     int entries = 0, cut = 0;
     for (int i = 0; i < 20000; ++i) {
-        // A quadric about a foot point on the x axis, seen along any ray.
+        // A quadric around a foot point on the x axis, and a random ray.
         const double distance = uniform(-1.5, 2.3), bend = uniform(-1, 1);
         const glm::dmat3 h = bend * glm::dmat3(0.3, 0.1, 0.05, 0.1, uniform(-1, 1), 0.1, 0.05, 0.1, uniform(-1, 1));
         const glm::dvec3 u = glm::normalize(glm::dvec3(uniform(-1, 1), uniform(-1, 1), uniform(-1, 1)));
@@ -189,13 +189,13 @@ TEST(FootprintShader, MirrorsFaces) {
         entries += differ(b.entry, a.entry) || differ(b.leave, a.leave) ? 1 : 0;
     }
     EXPECT_GT(cut, 5000);
-    // Where a ray but touches a face, rounding decides whether it meets it.
+    // If a ray only touches a face, rounding decides whether it meets the face.
     EXPECT_LE(entries, cut / 500);
     EXPECT_LE(error.percentile(99.5), 1e-3);
 }
 
-TEST(FootprintShader, OutermostKernelsWeighWhatThoseBeyondWouldHave) {
-    // Of a kernel half a voxel inside of the border, and of one half a voxel beyond it.
+TEST(FootprintShader, BorderWeightReplacesMissingKernels) {
+    // An outermost voxel lies half a voxel inside the border. `beyond`: the part of its kernel beyond the border.
     constexpr int kSteps = 4000;
     double beyond = 0;
     for (int i = 0; i < kSteps; ++i) {
@@ -216,7 +216,7 @@ TEST(FootprintShader, MirrorsTheTable) {
         int other = 0;
         for (const auto& [distance, ray] : rays(20000, -1, 3.2, 25)) {
             const FootprintLayer want = select_footprint_layer(distance, ray.un, depth);
-            // A blend next to the middle between two of its steps is rounded either way.
+            // A blend close to the midpoint between two steps may round either way.
             other += four::select_footprint_layer(f(distance), f(ray.un), f(depth)) != want.code ? 1 : 0;
             const four::FootprintLayer got = four::decode_footprint_layer(want.code, f(depth));
             EXPECT_NEAR(static_cast<double>(got.middle), want.middle, 1e-6);
@@ -283,10 +283,10 @@ TEST(FootprintShader, MirrorsSlicesOfEveryFootprint) {
     EXPECT_LE(paper.largest(), 5e-4);
 }
 
-TEST(FootprintShader, GivesNumbersForEveryInput) {
+TEST(FootprintShader, IsFiniteForEveryInput) {
     const auto params = params_of({});
     for (float rho2 : {0.0f, 1e-12f, 2.56f, 9.0f})
-        for (float pn : {-3.0f, 0.0f, 1e-9f, 1.6f})  // also beyond what rho allows
+        for (float pn : {-3.0f, 0.0f, 1e-9f, 1.6f})  // including |pn| > rho
             for (float un : {-1.0f, -1e-8f, 0.0f, 1.0f, 1.0000001f})
                 for (float d : {-2.9f, -0.5f, 0.0f, 1.0f, 2.9f, 4.0f})
                     for (const ten::Slice s : {kWhole, ten::Slice{-0.1f, 0.15f}, ten::Slice{0.0f, 0.0f},

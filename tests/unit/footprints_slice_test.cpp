@@ -1,4 +1,4 @@
-// Footprints of slices: against plain sums along the ray, and as parts of a whole.
+// Footprints of slices: compared with plain sums along the ray, and their sum with the whole footprint.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +19,7 @@ using samples::kPeak;
 using samples::rays;
 constexpr double kReach = kPaperReach;  // no kernel reaches further along a ray
 
-/// Footprints of one edge, whatever its kind.
+/// The kernel and the footprint of one edge.
 struct Model {
     const char* name;
     std::function<double(const Ray&, double z)> density;  ///< the kernel at z along the ray
@@ -39,7 +39,7 @@ std::vector<Model> models(double d) {
     return {of("cosine paper", PaperEdge{d, {}}), of("smooth paper", PaperEdge{d, {0.3, 0.05, PaperCurve::Smooth}})};
 }
 
-/// Many short panels, no knowledge of where anything happens.
+/// Many short panels, without knowledge of the integrand's kinks.
 double brute_force(const Model& model, const Ray& ray, const Slice& slice, int panels = 1500) {
     static const QuadratureRule rule = gauss_legendre(4);
     const double low = std::clamp(slice.low, -5.0, 5.0), high = std::clamp(slice.high, -5.0, 5.0);
@@ -50,8 +50,8 @@ double brute_force(const Model& model, const Ray& ray, const Slice& slice, int p
     return sum * (high - low) / panels;
 }
 
-/// Every second ray the other way round.
-Ray turned(const Ray& ray, std::size_t i) {
+/// Reverses every second ray.
+Ray turned_ray(const Ray& ray, std::size_t i) {
     return {ray.rho2, ray.pn, i % 2 == 0 ? ray.un : -ray.un};
 }
 
@@ -60,17 +60,17 @@ TEST(SlicedFootprint, AgreesWithPlainSums) {
     std::uniform_real_distribution<> place(-3, 3), width(0.05, 0.5);
     std::size_t i = 0;
     for (const auto& [d, plain_ray] : rays(160, -2.9, 2.9, 30)) {
-        const Ray ray = turned(plain_ray, i++);
+        const Ray ray = turned_ray(plain_ray, i++);
         const double low = place(random);
         const Slice slice = {low, low + width(random)};
-        // Slopes of the smooth curve jump to 6 at its knots, where the sums are good to 1e-5.
+        // The slope of the smooth curve jumps to 6 at its knots; there the sums are accurate to 1e-5.
         const Model model = of("smooth paper", PaperEdge{d, {0.3, 0.05, PaperCurve::Smooth}});
         ASSERT_NEAR(model.procedural(ray, 10, slice), brute_force(model, ray, slice, 400), 1e-4 * kPeak)
             << "D " << d << " un " << ray.un << " slice " << slice.low << " " << slice.high;
     }
 }
 
-TEST(SlicedFootprint, CosinesOfThePaperTooButForTheirInfiniteSlopes) {
+TEST(SlicedFootprint, PaperCosinesAgreeWithPlainSums) {
     for (const auto& [d, ray] : rays(100, -0.5, 1.6, 31)) {
         const Model model = of("cosine paper", PaperEdge{d, {}});
         for (const double low : {-0.7, -0.1, 0.2, 0.6})
@@ -85,7 +85,7 @@ TEST(SlicedFootprint, SlicesAddUpToTheWhole) {
     Errors smooth, warp2d, plain;
     std::size_t i = 0;
     for (const auto& [d, plain_ray] : rays(1000, -2.9, 2.9, 32)) {
-        const Ray ray = turned(plain_ray, i++);
+        const Ray ray = turned_ray(plain_ray, i++);
         const double first = start(random) - 3.25;
         const auto total = [&](const auto& footprint) {
             double sum = 0;
@@ -96,7 +96,7 @@ TEST(SlicedFootprint, SlicesAddUpToTheWhole) {
         const PaperEdge edge = {d, {0.3, 0.05, PaperCurve::Smooth}};
         smooth.add(total([&](const Slice& s) { return procedural_footprint(ray, edge, 4, s); }),
                    exact_footprint(ray, edge));
-        // The short cut moves the whole line: its slices are those of a plain footprint, in closed form.
+        // warp2d shifts the whole ray: its slices are slices of a plain footprint, in closed form.
         warp2d.add(total([&](const Slice& s) { return warp2d_footprint(ray, edge, s); }), warp2d_footprint(ray, edge));
         plain.add(total([&](const Slice& s) { return sliced_kernel_footprint(ray.rho2, s); }),
                   kernel_footprint(ray.rho2));
@@ -107,11 +107,11 @@ TEST(SlicedFootprint, SlicesAddUpToTheWhole) {
     EXPECT_LE(plain.largest(), 1e-12);
 }
 
-TEST(SlicedFootprint, IsNothingOutOfReachAndAllWhereThereIsNoEnd) {
+TEST(SlicedFootprint, IsZeroOutOfReachAndWholeWithoutLimits) {
     const double inf = std::numeric_limits<double>::infinity();
     std::size_t i = 0;
     for (const auto& [d, plain_ray] : rays(200, -2.9, 2.9, 33)) {
-        const Ray ray = turned(plain_ray, i++);
+        const Ray ray = turned_ray(plain_ray, i++);
         for (const Model& model : models(d)) {
             for (const Slice& beyond : {Slice{kReach, kReach + 0.25}, Slice{-50, -kReach}, Slice{kReach, inf}})
                 EXPECT_NEAR(model.procedural(ray, 4, beyond), 0, 1e-12) << model.name;
@@ -130,7 +130,8 @@ TEST(SlicedFootprint, IsNothingOutOfReachAndAllWhereThereIsNoEnd) {
 TEST(SlicedFootprint, ReversingTheRayReversesTheSlice) {
     for (const auto& [d, ray] : rays(300, -2.9, 2.9, 34))
         for (const Model& model : models(d)) {
-            // A plane seen edge-on is tilted by 1e-4, so that something is to be divided by; always the same way.
+            // procedural_footprint tilts an edge-on plane by 1e-4 to avoid a division by 0, always in the same
+            // direction.
             EXPECT_NEAR(model.procedural(ray, 4, {-0.3, 0.45}),
                         model.procedural({ray.rho2, ray.pn, -ray.un}, 4, {-0.45, 0.3}), 1e-5 * kPeak)
                 << model.name << " un " << ray.un;

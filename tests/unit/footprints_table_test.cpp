@@ -1,4 +1,4 @@
-// Footprints looked up in layers, against the integrals that they were made from.
+// Footprints from the table, compared with the integrals that it samples.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,14 +17,14 @@ using samples::rays;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// To 1e-5 of the peak: the integrand bends where the kernel is sampled no nearer to the face.
+/// Accurate to 1e-5 of the peak. The integrand has a kink where the depth of sampling reaches its minimum.
 double exact(const Ray& ray, double distance, double depth) {
     const FacePath path(plane_face(ray, distance), face_cut(distance, 0, 0, kInfinity, depth, kernel_of_table(depth)));
     const double bends = (distance - depth - ray.pn) / ray.un;
     return path.footprint(24, {.high = bends}).integral + path.footprint(24, {.low = bends}).integral;
 }
 
-/// Of each four layers the one that has most of the blend.
+/// Of the four blended layers, only the one with the largest weight.
 FootprintLayer without_blend(FootprintLayer layer) {
     constexpr std::uint32_t kMask = (1U << shader::TABLE_BLEND_BITS) - 1;
     const auto nearest = [&](std::uint32_t bits) {
@@ -51,12 +51,12 @@ class FootprintTableDepth : public testing::TestWithParam<double> {
     const double radius_ = kernel_.radius, peak_ = kernel_footprint(0, kernel_);
 };
 
-TEST_P(FootprintTableDepth, HoldsWhatAPlaneFaceLeavesOfAKernel) {
+TEST_P(FootprintTableDepth, TabulatesKernelsCutByPlaneFaces) {
     const double depth = GetParam();
     const FootprintTable& table = kept_footprint_table(depth);
     Statistics blended, nearest;
     for (const auto& [distance, ray] : rays(40000, depth - radius_, depth + radius_, 71)) {
-        if (ray.un < 1e-3) continue;  // a step, which a test of its own places
+        if (ray.un < 1e-3) continue;  // a step: EdgeOnFaceIsStep tests its position
         const double sine = std::sqrt(1 - ray.un * ray.un), x = sine > 0 ? ray.pn / sine : 0;
         const double y = std::sqrt(std::max(ray.rho2 - x * x, 0.0)), want = exact(ray, distance, depth);
         const FootprintLayer layer = select_footprint_layer(distance, ray.un, depth);
@@ -67,10 +67,10 @@ TEST_P(FootprintTableDepth, HoldsWhatAPlaneFaceLeavesOfAKernel) {
                 100 * blended.largest, 100 * blended.rms(), 100 * nearest.largest, 100 * nearest.rms());
     EXPECT_LE(blended.rms(), 0.004);
     EXPECT_LE(blended.largest, 0.06);
-    EXPECT_GT(nearest.rms(), 3 * blended.rms()) << "blending pays no more";
+    EXPECT_GT(nearest.rms(), 3 * blended.rms()) << "blending no longer reduces the error";
 }
 
-TEST_P(FootprintTableDepth, ThePlainLayerIsThePlainFootprint) {
+TEST_P(FootprintTableDepth, PlainLayerIsPlainFootprint) {
     const FootprintLayer plain = plain_footprint_layer(GetParam());
     const FootprintTable& table = kept_footprint_table(GetParam());
     double largest = 0;
@@ -81,12 +81,12 @@ TEST_P(FootprintTableDepth, ThePlainLayerIsThePlainFootprint) {
     }
     std::printf("depth %.1f, %% of the peak, largest: plain layer %.2f\n", GetParam(), 100 * largest);
     EXPECT_LE(largest, 0.004);
-    // No face that cuts nothing changes anything.
+    // A face that cuts nothing selects the plain layer.
     for (const double distance : {radius_ + GetParam(), 5.0})
         EXPECT_EQ(select_footprint_layer(distance, 1, GetParam()).code, plain.code);
 }
 
-TEST_P(FootprintTableDepth, AFaceSeenEdgeOnIsAStepWhereItStands) {
+TEST_P(FootprintTableDepth, EdgeOnFaceIsStep) {
     const double depth = GetParam();
     const FootprintTable& table = kept_footprint_table(depth);
     for (double distance = depth - 0.75 * radius_; distance < depth + 0.75 * radius_; distance += 0.073) {
@@ -100,7 +100,7 @@ TEST_P(FootprintTableDepth, AFaceSeenEdgeOnIsAStepWhereItStands) {
     }
 }
 
-TEST_P(FootprintTableDepth, NothingIsSeenOfAKernelBeyondItsFace) {
+TEST_P(FootprintTableDepth, KernelIsZeroBeyondFace) {
     const FootprintTable& table = kept_footprint_table(GetParam());
     for (const double distance : {GetParam() - radius_, -2.5})
         for (const double cosine : {0.0, 0.4, 1.0})
@@ -108,7 +108,7 @@ TEST_P(FootprintTableDepth, NothingIsSeenOfAKernelBeyondItsFace) {
                 EXPECT_NEAR(table.lookup(select_footprint_layer(distance, cosine, GetParam()), x, 0.1), 0, 1e-6);
 }
 
-TEST_P(FootprintTableDepth, CodesSayWhereTheFaceLies) {
+TEST_P(FootprintTableDepth, CodesDescribeFacePosition) {
     const double depth = GetParam();
     for (const double cosine : {0.0, 0.013, 0.5, 0.77, 0.999, 1.0}) {
         for (double distance = depth - radius_; distance <= depth + radius_; distance += 0.01) {
@@ -131,7 +131,7 @@ TEST(FootprintTable, IsMadeOnceAndHasOneSize) {
     EXPECT_EQ(table.texels().size(), std::size_t{shader::TABLE_LAYERS} * shader::TABLE_ROWS * shader::TABLE_WIDTH);
 }
 
-TEST(HalfFloats, AreTheNearest) {
+TEST(HalfFloats, RoundToNearest) {
     for (const float value : {0.0F, 1e-8F, 6e-8F, 1e-5F, 6.1e-5F, 0.1F, 0.3337F, 1.0F, 1.9997F, 100.0F, 65000.0F}) {
         const std::uint16_t half = half_from_float(value);
         const double error = std::abs(static_cast<double>(float_from_half(half)) - static_cast<double>(value));

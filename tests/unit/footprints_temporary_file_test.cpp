@@ -1,4 +1,4 @@
-// Temporary files: whole or not at all, and nothing of the dead is left.
+// Temporary files: they replace their target completely or vanish; files of dead processes are removed.
 #include "footprints/temporary_file.h"
 
 #include <fcntl.h>
@@ -39,7 +39,7 @@ class TemporaryFiles : public testing::Test {
         std::ifstream file(target_, std::ios::binary);
         return {std::istreambuf_iterator<char>(file), {}};
     }
-    /// Calls `body` in a process of its own, whose status it returns.
+    /// Calls `body` in a child process; returns its wait status.
     template <typename Body>
     static int in_child(const Body& body) {
         const pid_t child = fork();
@@ -76,7 +76,7 @@ TEST_F(TemporaryFiles, ReplaceTheirTargetOrVanish) {
     EXPECT_THAT(files(), ElementsAre("target.bin"));
 }
 
-TEST_F(TemporaryFiles, OfTheDeadAreRemovedAndOfTheLivingNot) {
+TEST_F(TemporaryFiles, RemovesOnlyThoseOfDeadProcesses) {
     const int status = in_child([&] {
         TemporaryFile file(target_);
         file.write("half");
@@ -85,12 +85,13 @@ TEST_F(TemporaryFiles, OfTheDeadAreRemovedAndOfTheLivingNot) {
     ASSERT_TRUE(WIFSIGNALED(status));
     ASSERT_EQ(files().size(), 1U);
     const TemporaryFile living(folder_ / "other.bin");
-    EXPECT_THAT(files(), ElementsAre(living.path().filename().string())) << "the first in a folder looks around";
+    EXPECT_THAT(files(), ElementsAre(living.path().filename().string()))
+        << "the first file in a folder removes stale ones";
     in_child([&] { remove_stale_temporaries(folder_); });
-    EXPECT_THAT(files(), ElementsAre(living.path().filename().string())) << "it is locked";
+    EXPECT_THAT(files(), ElementsAre(living.path().filename().string())) << "a locked file stays";
 }
 
-TEST_F(TemporaryFiles, OfOtherProgramsStay) {
+TEST_F(TemporaryFiles, KeepsThoseOfOtherPrograms) {
     const std::vector<std::string> foreign{".a.12-3.tmp",          ".a.edgesplat-.tmp", ".a.edgesplat-1-.tmp",
                                            ".a.edgesplat-x-1.tmp", ".a.edgesplat-1-1",  "a.edgesplat-1-1.tmp"};
     for (const std::string& name : foreign)
@@ -104,7 +105,7 @@ TEST_F(TemporaryFiles, OfOtherProgramsStay) {
     remove_stale_temporaries(folder_ / "missing");
 }
 
-TEST_F(TemporaryFiles, SayWhyTheyCannotBe) {
+TEST_F(TemporaryFiles, ReportsWhyCreationFails) {
     try {
         const TemporaryFile file(folder_ / "missing" / "target.bin");
         FAIL();
@@ -116,7 +117,7 @@ TEST_F(TemporaryFiles, SayWhyTheyCannotBe) {
     EXPECT_TRUE(fs::exists(longest.path()));
 }
 
-TEST_F(TemporaryFiles, WaitForSignals) {
+TEST_F(TemporaryFiles, DeferSignalsUntilWritten) {
     const int status = in_child([&] {
         std::optional<DeferSignals> outer(std::in_place), inner(std::in_place);
         raise(SIGTERM);

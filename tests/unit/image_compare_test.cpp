@@ -1,4 +1,4 @@
-// Metrics of picture differences against values worked out by hand.
+// Metrics of picture differences, compared with values computed by hand.
 #include "engine/image/image_compare.h"
 
 #include <gmock/gmock.h>
@@ -23,7 +23,7 @@ TEST(ImageCompare, EqualPicturesHaveNoDifference) {
     EXPECT_TRUE(std::isinf(d.psnr));
 }
 
-TEST(ImageCompare, OneChannelOfOnePixel) {
+TEST(ImageCompare, MeasuresOneChannelOfOnePixel) {
     const Image a(4, 2, 2);
     Image b = a;
     b.at(3, 1, 1) = -0.5F;
@@ -47,12 +47,12 @@ TEST(ImageCompare, NanNeverPasses) {
     EXPECT_EQ(compare_images(b, b).max, 0);
 }
 
-TEST(ImageCompare, DifferentShapesAreRefused) {
+TEST(ImageCompare, RefusesDifferentShapes) {
     EXPECT_THAT([] { compare_images(Image(2, 2, 3), Image(2, 3, 3)); }, ThrowsMessage<Error>(HasSubstr("2 x 3")));
     EXPECT_THAT([] { compare_images(Image(2, 2, 3), Image(2, 2, 4)); }, ThrowsMessage<Error>(HasSubstr("channels")));
 }
 
-TEST(ImageCompare, DifferencePictureLeavesAlphaOut) {
+TEST(ImageCompare, DifferencePictureOmitsAlpha) {
     const Image a(1, 1, 4);
     Image b = a;
     b.pixels = {0.25F, 0, -0.5F, 1};

@@ -1,4 +1,4 @@
-// PNG and EXR there and back, metadata, and what is left behind when a write fails.
+// PNG and EXR round trips, metadata, and no files left after a failed write.
 #include "engine/image/image_file.h"
 
 #include <gmock/gmock.h>
@@ -50,7 +50,7 @@ TEST_F(ImageFile, ExrKeepsEveryFloat) {
     EXPECT_EQ(back.image.pixels, image.pixels);
 }
 
-TEST_F(ImageFile, PngIsWithinHalfAStep) {
+TEST_F(ImageFile, PngErrorIsBelowHalfAStep) {
     const Image image = gradient(16, 16, 3);
     write_image(folder_ / "a.png", image);
     const LoadedImage back = read_image(folder_ / "a.png");
@@ -75,14 +75,14 @@ TEST_F(ImageFile, PngAlphaIsStraightInTheFileAndPremultipliedInMemory) {
         EXPECT_NEAR(back.pixels[i], image.pixels[i], 0.004F) << i;
 }
 
-TEST_F(ImageFile, PngClampsAndTakesNanAsBlack) {
+TEST_F(ImageFile, PngClampsAndWritesNanAsBlack) {
     Image image(1, 1, 3);
     image.pixels = {std::numeric_limits<float>::quiet_NaN(), -1.0F, std::numeric_limits<float>::infinity()};
     write_image(folder_ / "a.png", image);
     EXPECT_THAT(read_image(folder_ / "a.png").image.pixels, ElementsAre(0.0F, 0.0F, 1.0F));
 }
 
-TEST_F(ImageFile, MetadataComesBackFromBothFormats) {
+TEST_F(ImageFile, BothFormatsKeepMetadata) {
     const ImageMetadata metadata{{"Software", "edgesplat 0.1.0"},
                                  {"edgesplat:command", "edgesplat render 'a b.nrrd' --eye=-1,2,3 -o \"x\""},
                                  {"edgesplat:volume", "builtin:sphere"},
@@ -95,7 +95,7 @@ TEST_F(ImageFile, MetadataComesBackFromBothFormats) {
     }
 }
 
-TEST_F(ImageFile, ExrHoldsNamedLayers) {
+TEST_F(ImageFile, ExrContainsNamedLayers) {
     const Image color = gradient(3, 2, 4);
     const Image depth = gradient(3, 2, 1);
     const Image normal = gradient(3, 2, 3);
@@ -115,20 +115,20 @@ TEST_F(ImageFile, ExrHoldsNamedLayers) {
     EXPECT_EQ(back.image.at(1, 0, channel("A")), color.at(1, 0, 3));
 }
 
-TEST_F(ImageFile, ReplacesWhatWasThereAndLeavesNoTemporary) {
+TEST_F(ImageFile, ReplacesFileAndLeavesNoTemporary) {
     write_image(folder_ / "a.png", gradient(4, 4, 3));
     write_image(folder_ / "a.png", gradient(8, 8, 3));
     EXPECT_EQ(read_image(folder_ / "a.png").image.width, 8);
     EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ImageFile, AllFilesOrNone) {
+TEST_F(ImageFile, WritesAllFilesOrNone) {
     const std::array<FileContent, 2> files{{{folder_ / "good.png", "x"}, {folder_ / "missing" / "bad.png", "y"}}};
     EXPECT_THROW(write_files(files), Error);
     EXPECT_EQ(file_count(), 0);
 }
 
-TEST_F(ImageFile, SignalWaitsUntilTheFileIsThere) {
+TEST_F(ImageFile, SignalsWaitUntilFileIsWritten) {
     const FileContent file{folder_ / "a.bin", std::string(1 << 24, 'x')};
     for (int delay_ms = 0; delay_ms < 12; delay_ms += 2) {
         fs::remove(file.path);
@@ -140,14 +140,15 @@ TEST_F(ImageFile, SignalWaitsUntilTheFileIsThere) {
         usleep(static_cast<useconds_t>(delay_ms) * 1000);
         kill(child, SIGINT);
         waitpid(child, nullptr, 0);
-        // Whenever the signal came, before, during or after: the file is whole or absent, and nothing else is left.
+        // Whether the signal came before, during or after the write: the file is complete or absent, and no other file
+        // is left.
         const bool there = fs::exists(file.path);
         EXPECT_EQ(file_count(), there ? 1 : 0);
         EXPECT_EQ(there ? fs::file_size(file.path) : file.bytes.size(), file.bytes.size());
     }
 }
 
-TEST_F(ImageFile, OutputIsRefusedEarlyWithTheReason) {
+TEST_F(ImageFile, RefusesInvalidOutputPathsEarly) {
     static constexpr std::array<std::string_view, 2> kExtensions{".png", ".exr"};
     const auto refused = [&](const fs::path& path) { return [=] { check_output_path(path, kExtensions); }; };
     EXPECT_THAT(refused(folder_ / "a.jpg"), ThrowsMessage<Error>(HasSubstr("must end in .png or .exr")));
@@ -159,7 +160,7 @@ TEST_F(ImageFile, OutputIsRefusedEarlyWithTheReason) {
     EXPECT_EQ(file_count(), 1);
 }
 
-TEST_F(ImageFile, UnreadablePicturesNameTheFile) {
+TEST_F(ImageFile, ErrorsNameUnreadableFile) {
     EXPECT_THAT([&] { read_image(folder_ / "none.png"); }, ThrowsMessage<Error>(HasSubstr("none.png: no such file")));
     std::ofstream(folder_ / "text.png") << "not a picture";
     EXPECT_THAT([&] { read_image(folder_ / "text.png"); }, ThrowsMessage<Error>(HasSubstr("text.png")));

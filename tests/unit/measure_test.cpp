@@ -1,4 +1,4 @@
-// Volumes, surfaces, distances and angles against solids known in closed form.
+// Volumes, surfaces, distances and angles, compared with solids in closed form.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,8 @@ namespace {
 using namespace viewer_test;
 using std::numbers::pi;
 
-/// A solid in the middle of a turned, shifted volume of voxels of different sides, and its size in closed form.
+/// A solid in the middle of a rotated, shifted, anisotropic volume, with its volume (mm^3) and surface (mm^2) in closed
+/// form.
 struct Solid {
     Cavity cavity;
     double volume = 0, surface = 0;
@@ -63,7 +64,7 @@ void expect_within(const Quantity& measured, double truth, double least_relative
     EXPECT_LE(measured.uncertainty, least_relative * truth) << what;
 }
 
-TEST(Measure, VolumesAndSurfacesOfSmoothSolidsAreWithinTheirUncertainty) {
+TEST(Measure, MeasuresSmoothSolidsWithinUncertainty) {
     for (const Solid& s : {ball(14), ball(6), torus(11, 4)}) {
         const Extents extents = extents_of(s);
         ASSERT_EQ(extents.volumes.size(), 2);
@@ -75,7 +76,7 @@ TEST(Measure, VolumesAndSurfacesOfSmoothSolidsAreWithinTheirUncertainty) {
     }
 }
 
-TEST(Measure, MaterialsTogetherFillTheVolume) {
+TEST(Measure, MaterialVolumesSumToWhole) {
     const Solid s = ball(13);
     const std::vector<double> isos{0.2, 0.5, 0.8};
     const Extents extents = measure_extents(*sampled(s.cavity), isos);
@@ -84,14 +85,14 @@ TEST(Measure, MaterialsTogetherFillTheVolume) {
         all += q.value;
     const double box = 52 * 44 * 40 * 0.9 * 1.1 * 1.2;
     EXPECT_NEAR(all, box, 1e-6 * box);
-    // The edge is a Gaussian's integral: its contours are balls, to what the curvature moves them by.
+    // The edge profile is a Gaussian's integral: contours are balls, except for a small shift by curvature.
     for (std::size_t m = 1; m <= 3; ++m)
         EXPECT_GT(extents.volumes[m].value, 0);
     EXPECT_GT(extents.surfaces[0].value, extents.surfaces[1].value);
     EXPECT_GT(extents.surfaces[1].value, extents.surfaces[2].value);
 }
 
-TEST(Measure, ClipPlanesLeaveTheirShareAndNoSurface) {
+TEST(Measure, ClipPlanesRemoveTheirShare) {
     const Solid s = ball(14);
     const glm::dvec3 middle =
         s.cavity.to_world(glm::dvec3(s.cavity.dims - 1) * s.cavity.spacing / 2.0 + glm::dvec3(0.13, -0.21, 0.37));
@@ -100,14 +101,14 @@ TEST(Measure, ClipPlanesLeaveTheirShareAndNoSurface) {
     const Extents kept = extents_of(s, half);
     EXPECT_NEAR(kept.volumes[1].value, s.volume / 2, 0.005 * s.volume);
     EXPECT_NEAR(kept.surfaces[0].value, s.surface / 2, 0.01 * s.surface);
-    // What is cut out is what is left otherwise.
+    // Removing the same half space keeps the other half.
     Clip other;
     other.remove = half.keep;
     const Extents rest = extents_of(s, other);
     EXPECT_NEAR(kept.volumes[1].value + rest.volumes[1].value, extents_of(s).volumes[1].value, 0.002 * s.volume);
 }
 
-TEST(Measure, YesOrNoDataAreUncertainByHalfAVoxel) {
+TEST(Measure, BinaryDataAreUncertainByHalfAVoxel) {
     for (const double radius : {5.0, 9.0, 14.0}) {
         const Solid s = ball(radius, 0);
         const Extents extents = extents_of(s);
@@ -117,7 +118,7 @@ TEST(Measure, YesOrNoDataAreUncertainByHalfAVoxel) {
     }
 }
 
-TEST(Measure, CoarseRoundingIsSaid) {
+TEST(Measure, UncertaintyIncludesRounding) {
     const Solid s = ball(12);
     auto fine = std::make_shared<Volume>(*sampled(s.cavity));
     Volume coarse = *fine;
@@ -130,7 +131,7 @@ TEST(Measure, CoarseRoundingIsSaid) {
     EXPECT_GT(of_coarse.volumes[1].uncertainty, 2 * of_fine.volumes[1].uncertainty);
 }
 
-TEST(Measure, MatterAtTheSideOfTheVolumeEndsThere) {
+TEST(Measure, MatterEndsAtVolumeBorder) {
     Volume volume;
     volume.geometry.dims = {12, 10, 8};
     volume.values.assign(volume.geometry.voxel_count(), 1);
@@ -143,7 +144,7 @@ TEST(Measure, MatterAtTheSideOfTheVolumeEndsThere) {
     EXPECT_EQ(extents.volumes[0].value, 0);
 }
 
-TEST(Measure, FlatVolumesHaveNoSurface) {
+TEST(Measure, FlatVolumesGiveFiniteNumbers) {
     for (const glm::ivec3 dims : {glm::ivec3(1, 1, 1), glm::ivec3(1, 7, 5), glm::ivec3(6, 1, 1), glm::ivec3(2, 2, 2)}) {
         Volume volume;
         volume.geometry.dims = dims;
@@ -159,7 +160,7 @@ TEST(Measure, FlatVolumesHaveNoSurface) {
     }
 }
 
-TEST(Measure, LabelsAreCounted) {
+TEST(Measure, CountsLabels) {
     Volume volume;
     volume.geometry.dims = {4, 3, 2};
     volume.geometry.index_to_world_axes = glm::dmat3(2.0);
@@ -177,7 +178,7 @@ TEST(Measure, LabelsAreCounted) {
     EXPECT_EQ(labels[2].volume.uncertainty, 16);  // each of the four has another label above it
 }
 
-TEST(Measure, PlacesAreMovedToTheNearestSurface) {
+TEST(Measure, SnapsPlacesToNearestSurface) {
     const Solid s = ball(14);
     const auto volume = sampled(s.cavity);
     const glm::dvec3 middle =
@@ -198,7 +199,7 @@ TEST(Measure, PlacesAreMovedToTheNearestSurface) {
     const Quantity through = distance(places[0], places[2]);
     EXPECT_NEAR(through.value, 28, through.uncertainty);
     EXPECT_LT(through.uncertainty, 0.5);
-    // Thales: seen from the ball's surface its diameter is a right angle.
+    // Thales: a diameter subtends a right angle at the ball's surface.
     const Quantity right = angle(places[0], places[1], places[2]);
     EXPECT_NEAR(right.value, 90, right.uncertainty);
     EXPECT_LT(right.uncertainty, 3);
@@ -206,7 +207,7 @@ TEST(Measure, PlacesAreMovedToTheNearestSurface) {
     EXPECT_FALSE(nearest_surface(*volume, {&iso, 1}, middle));
 }
 
-TEST(Measure, UncertaintyOfAnAngleIsWhatMovedPlacesShow) {
+TEST(Measure, AngleUncertaintyMatchesPerturbedPlaces) {
     const Place a{{10, 0, 0}, 0.02, {}}, corner{{0, 0, 0}, 0.05, {}}, b{{3, 6, 0}, 0.03, {}};
     const Quantity q = angle(a, corner, b);
     double square = 0;
@@ -222,9 +223,9 @@ TEST(Measure, UncertaintyOfAnAngleIsWhatMovedPlacesShow) {
     EXPECT_NEAR(q.uncertainty, std::sqrt(square), 0.02 * q.uncertainty);
 }
 
-TEST(Measure, RefusesWhatCannotBeMeasured) {
+TEST(Measure, RefusesUnmeasurableInput) {
     const Place a{{1, 2, 3}, 0, {}}, b{{2, 2, 3}, 0, {}};
-    EXPECT_EQ(refusal([&] { angle(a, a, b); }), "angle: two of its three places are the same");
+    EXPECT_EQ(refusal([&] { angle(a, a, b); }), "angle: two of its three points are equal");
     const Solid s = ball(5);
     const double iso = 0.5;
     EXPECT_THROW(measure_extents(*sampled(s.cavity), {&iso, 1}, {}, [](double) { return false; }),

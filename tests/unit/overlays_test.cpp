@@ -1,4 +1,4 @@
-// Overlays say what is true, where they should, and touch nothing else.
+// Overlays show correct values and change only pixels inside their boxes.
 #include "engine/overlays/overlays.h"
 
 #include <gmock/gmock.h>
@@ -35,7 +35,7 @@ Image grey(int width, int height) {
     return image;
 }
 
-TEST(Overlays, TheScaleBarIsAsLongAsTheProjectionSays) {
+TEST(Overlays, ScaleBarMatchesProjection) {
     const Volume volume = patient_volume();
     const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);
     for (const double distance : {0.02, 3.0, 170.0, 20000.0}) {
@@ -46,7 +46,7 @@ TEST(Overlays, TheScaleBarIsAsLongAsTheProjectionSays) {
         draw_overlays(image, volume, scene, camera);
         const auto bar = scale_bar(volume, camera, 240, 0.25 * 320);
         ASSERT_TRUE(bar);
-        // Two points at the centre's depth, so far apart, seen by the camera.
+        // Two points at the centre's depth, bar->millimetres apart, projected by the camera.
         const CameraFrame frame = camera_frame(camera);
         const double depth = glm::dot(center - frame.eye, frame.forward);
         const auto column = [&](const glm::dvec3& p) {
@@ -70,25 +70,26 @@ TEST(Overlays, TheScaleBarIsAsLongAsTheProjectionSays) {
             }
         EXPECT_NEAR(longest, bar->pixels, 1.0);
     }
-    // Nothing can be said where the centre lies behind the eye.
+    // There is no scale bar if the centre lies at or behind the eye.
     EXPECT_FALSE(scale_bar(volume, {center, {0, 1, 0}, {0, 0, 1}, 45}, 240, 80));
     EXPECT_FALSE(scale_bar(volume, {center + glm::dvec3(0, 9, 0), {0, 1, 0}, {0, 0, 1}, 45}, 240, 80));
 }
 
-TEST(Overlays, TheMarkersAxesAreThoseTheCameraSees) {
+TEST(Overlays, MarkerAxesMatchCamera) {
     Volume volume = patient_volume();
     const Camera front{{0, -300, 0}, {0, 1, 0}, {0, 0, 1}, 45};
     auto axes = marker_axes(volume, front);
     EXPECT_EQ(axes[0].positive + axes[1].positive + axes[2].positive, "LPH");
     EXPECT_EQ(axes[0].negative + axes[1].negative + axes[2].negative, "RAF");
-    EXPECT_LT(glm::length(axes[0].along - glm::dvec2(1, 0)), 1e-12) << "seen from the front, left is on the right";
-    EXPECT_NEAR(axes[1].towards_eye, -1, 1e-12) << "the back is away from the eye";
+    EXPECT_LT(glm::length(axes[0].along - glm::dvec2(1, 0)), 1e-12)
+        << "seen from the front, the patient's left is on the right";
+    EXPECT_NEAR(axes[1].towards_eye, -1, 1e-12) << "posterior points away from the eye";
     EXPECT_LT(glm::length(axes[2].along - glm::dvec2(0, -1)), 1e-12);
     volume.in_patient = false;
     axes = marker_axes(volume, front);
     EXPECT_EQ(axes[0].positive + axes[1].positive + axes[2].positive, "XYZ");
-    EXPECT_LT(glm::length(axes[0].along - glm::dvec2(-1, 0)), 1e-12) << "the volume's own i runs to the right's left";
-    // From afar, a perspective picture of the axes goes the same way.
+    EXPECT_LT(glm::length(axes[0].along - glm::dvec2(-1, 0)), 1e-12) << "the index axis i points to the left";
+    // From far away, a perspective picture shows the axes in the same directions.
     const Camera oblique{{3000, -9000, 5000}, {-0.3, 0.9, -0.5}, {0.2, 0, 1}, 20};
     const CameraFrame frame = camera_frame(oblique);
     axes = marker_axes(volume, oblique);
@@ -103,7 +104,7 @@ TEST(Overlays, TheMarkersAxesAreThoseTheCameraSees) {
     }
 }
 
-TEST(Overlays, NothingOutsideTheirBoxesChangesAtAnySize) {
+TEST(Overlays, DrawOnlyInsideTheirBoxes) {
     const Volume volume = patient_volume();
     Scene transfer = two_materials();
     transfer.transfer = {{-1000, {0, 0, 0}, 0}, {-300, {1, 0.6, 0.5}, 0.1}, {400, {1, 1, 0.9}, 0.4}};

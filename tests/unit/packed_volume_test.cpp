@@ -1,4 +1,4 @@
-// Packed volumes: what is written is what is read, level by level, and damaged files are refused.
+// Packed volumes: every level round-trips, and damaged files are refused.
 #include "engine/volume/packed_volume.h"
 
 #include <hdf5.h>
@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 using PackedVolumeTest = volume_test::FolderTest;
 
-/// Values that no two neighbours share, from a formula that does not repeat within a brick.
+/// A volume in which neighbours differ; the formula does not repeat within a brick.
 Volume volume_of(const glm::ivec3& dims, const std::function<float(int hash)>& value) {
     Volume volume;
     volume.name = "made here";
@@ -104,7 +104,7 @@ TEST_P(PackedTypes, RoundTripIsExact) {
     }
 }
 
-TEST_P(PackedTypes, LevelsAreMeansOfTheOneBefore) {
+TEST_P(PackedTypes, LevelsAreMeansOfFinerLevel) {
     const Volume volume = volume_of({261, 67, 35}, GetParam().value);
     const std::string path = file("vol.esv");
     pack_volume(volume, path);
@@ -143,7 +143,7 @@ INSTANTIATE_TEST_SUITE_P(EveryType, PackedTypes,
                                          Type{"float32", as_float}),
                          [](const auto& test) { return std::string(test.param.name); });
 
-TEST_F(PackedVolumeTest, LevelsLieWhereTheirVoxelsAre) {
+TEST_F(PackedVolumeTest, LevelGeometryMatchesVoxelCentres) {
     const Volume volume = volume_of({200, 3, 130}, as_uint8);
     pack_volume(volume, file("vol.esv"));
     const Volume opened = edgesplat::open_packed(file("vol.esv"));
@@ -151,7 +151,8 @@ TEST_F(PackedVolumeTest, LevelsLieWhereTheirVoxelsAre) {
     for (int level = 0; level < 3; ++level) {
         const auto& geometry = opened.packed->geometry(level);
         const double factor = std::exp2(level);
-        // Voxel (1, 0, 2) of this level is the mean over these of level 0, whose middle is between the first and last.
+        // Voxel (1, 0, 2) of this level is the mean of a box of level 0; its centre is midway between the box's
+        // corners.
         const glm::dvec3 first = factor * glm::dvec3(1, 0, 2), last = first + factor - 1.0;
         const auto middle = volume.geometry.to_world((first + last) / 2.0);
         EXPECT_LT(glm::length(geometry.to_world({1, 0, 2}) - middle), 1e-9) << level;
@@ -163,7 +164,7 @@ TEST_F(PackedVolumeTest, LevelsLieWhereTheirVoxelsAre) {
     EXPECT_EQ(finest_level_within(*opened.packed, 1), 2);
 }
 
-TEST_F(PackedVolumeTest, RangesBoundWhatIsInTheBoxAndAreAttained) {
+TEST_F(PackedVolumeTest, RangesBoundSamplesTightly) {
     const Volume volume = volume_of({67, 33, 70}, as_float);
     pack_volume(volume, file("vol.esv"));
     const auto packed = PackedVolume::open(file("vol.esv"));
@@ -188,7 +189,7 @@ TEST_F(PackedVolumeTest, RangesBoundWhatIsInTheBoxAndAreAttained) {
                     EXPECT_EQ(range.low, wanted.low);
                     EXPECT_EQ(range.high, wanted.high);
                 }
-        // Across bricks: at least what is in the box.
+        // Across bricks the range may be wider than that of the box.
         const glm::ivec3 low = dims / 3, high = dims - dims / 4;
         const auto range = packed->range(level, low, high - low), inside = range_of(low, high);
         EXPECT_LE(range.low, inside.low);
@@ -196,7 +197,7 @@ TEST_F(PackedVolumeTest, RangesBoundWhatIsInTheBoxAndAreAttained) {
     }
 }
 
-TEST_F(PackedVolumeTest, BoxesAtBordersAndAcrossBricks) {
+TEST_F(PackedVolumeTest, ReadsBoxesAtBordersAndAcrossBricks) {
     const Volume volume = volume_of({67, 33, 41}, as_int16);
     pack_volume(volume, file("vol.esv"), {.compress = true});
     const auto packed = PackedVolume::open(file("vol.esv"));
@@ -224,7 +225,7 @@ TEST_F(PackedVolumeTest, BoxesAtBordersAndAcrossBricks) {
     EXPECT_THROW((void)packed->geometry(-1), edgesplat::Error);
 }
 
-TEST_F(PackedVolumeTest, FourThreadsReadAtOnce) {
+TEST_F(PackedVolumeTest, FourThreadsReadConcurrently) {
     const Volume volume = volume_of({100, 80, 90}, as_uint16);
     pack_volume(volume, file("vol.esv"), {.compress = true});
     const auto packed = PackedVolume::open(file("vol.esv"));
@@ -247,7 +248,7 @@ TEST_F(PackedVolumeTest, FourThreadsReadAtOnce) {
     EXPECT_THAT(wrong, testing::Each(0));
 }
 
-TEST_F(PackedVolumeTest, SamplesThatAreNotFiniteAreReplacedAndCounted) {
+TEST_F(PackedVolumeTest, ReplacesAndCountsNonFiniteSamples) {
     Volume volume = volume_of({40, 40, 40}, as_uint8);
     Volume spoilt = volume;
     for (const std::size_t at : {0U, 777U, 40U * 40 * 40 - 1}) {
@@ -263,7 +264,7 @@ TEST_F(PackedVolumeTest, SamplesThatAreNotFiniteAreReplacedAndCounted) {
     EXPECT_EQ(load_level(opened, 0).values, volume.values);
 }
 
-TEST_F(PackedVolumeTest, QuantisedWithinTheErrorItStates) {
+TEST_F(PackedVolumeTest, QuantisesWithinStatedError) {
     const Volume volume = volume_of({67, 33, 41}, as_float);
     for (const int bits : {8, 16}) {
         const std::string path = file(fmt::format("{}.esv", bits));
@@ -285,12 +286,12 @@ TEST_F(PackedVolumeTest, QuantisedWithinTheErrorItStates) {
         EXPECT_EQ(range.low, opened.min_value);
         EXPECT_EQ(range.high, opened.max_value);
     }
-    // What fits is kept exactly.
+    // Values that fit the type are stored exactly.
     EXPECT_EQ(pack_volume(volume_of({5, 5, 5}, as_int16), file("exact.esv"), {.quantise = 16}).sample_type, "int16");
     EXPECT_THROW(pack_volume(volume, file("12.esv"), {.quantise = 12}), edgesplat::Error);
 }
 
-TEST_F(PackedVolumeTest, StatisticsAreThoseOfAllSamples) {
+TEST_F(PackedVolumeTest, StatisticsCoverAllSamples) {
     const Volume volume = volume_of({90, 50, 40}, as_int16);
     pack_volume(volume, file("vol.esv"));
     const Volume opened = edgesplat::open_packed(file("vol.esv"));
@@ -301,7 +302,7 @@ TEST_F(PackedVolumeTest, StatisticsAreThoseOfAllSamples) {
     EXPECT_NEAR(opened.packed->mean(), sum / static_cast<double>(volume.values.size()), 1e-9);
 }
 
-TEST_F(PackedVolumeTest, BuiltinScenesAreTheSameAsInMemory) {
+TEST_F(PackedVolumeTest, BuiltinScenesEqualThoseInMemory) {
     for (const char* name : {"builtin:phantom:70x65x40", "builtin:sphere:66"}) {
         const Volume volume = edgesplat::load_volume(name);
         EXPECT_TRUE(edgesplat::pack_file(name, {}, file("vol.esv")).streamed);
@@ -312,7 +313,7 @@ TEST_F(PackedVolumeTest, BuiltinScenesAreTheSameAsInMemory) {
     }
 }
 
-/// Packs it and compares with what load_volume makes of it.
+/// Packs the file by streaming and compares the result with load_volume.
 void expect_streamed(const std::string& path, const std::string& packed, const edgesplat::LoadOptions& options = {}) {
     EXPECT_TRUE(edgesplat::pack_file(path, options, packed).streamed) << path;
     const Volume volume = edgesplat::load_volume(path, options), opened = edgesplat::open_packed(packed);
@@ -326,7 +327,7 @@ void expect_streamed(const std::string& path, const std::string& packed, const e
     EXPECT_EQ(load_level(opened, 0).values, volume.values) << path;
 }
 
-TEST_F(PackedVolumeTest, RawFilesAreReadWhereTheyLie) {
+TEST_F(PackedVolumeTest, StreamsRawFiles) {
     std::string bytes = "head";
     for (int i = 0; i < 70 * 34 * 3; ++i) {
         bytes += static_cast<char>(i * 7);
@@ -352,7 +353,7 @@ TEST_F(PackedVolumeTest, RawFilesAreReadWhereTheyLie) {
     EXPECT_FALSE(std::filesystem::exists(file("no.esv")));
 }
 
-TEST_F(PackedVolumeTest, UncompressedNrrdAndMetaImageAreReadWhereTheyLie) {
+TEST_F(PackedVolumeTest, StreamsUncompressedNrrdAndMetaImage) {
     const auto nrrd = itk::NrrdImageIO::New();
     const auto meta = itk::MetaImageIO::New();
     for (const char* name : {"a.nrrd", "a.nhdr"}) {
@@ -363,7 +364,7 @@ TEST_F(PackedVolumeTest, UncompressedNrrdAndMetaImageAreReadWhereTheyLie) {
         volume_test::write_itk(meta, file(name));
         expect_streamed(file(name), file("vol.esv"));
     }
-    // Big endian, bytes skipped from the front and from the end, a space that is the patient's.
+    // Big endian, byte skips from the start and from the end, patient space.
     std::string voxels;
     for (int i = 0; i < 60; ++i)
         voxels += {static_cast<char>(i / 9), static_cast<char>(i * 11)};
@@ -382,14 +383,14 @@ TEST_F(PackedVolumeTest, UncompressedNrrdAndMetaImageAreReadWhereTheyLie) {
                           "BinaryData = True\nBinaryDataByteOrderMSB = True\nElementType = MET_SHORT\n"
                           "ElementDataFile = plain.bin\n"),
                     file("vol.esv"));
-    // Compressed ones are read as a whole, with the same outcome.
+    // Compressed files are not streamed; the result is the same.
     volume_test::write_itk(nrrd, file("c.nrrd"), {}, true);
     EXPECT_FALSE(edgesplat::pack_file(file("c.nrrd"), {}, file("vol.esv")).streamed);
     EXPECT_EQ(edgesplat::open_packed(file("vol.esv")).checksum, edgesplat::load_volume(file("c.nrrd")).checksum);
     EXPECT_THROW(edgesplat::pack_file(file("vol.esv"), {}, file("twice.esv")), edgesplat::Error);
 }
 
-TEST_F(PackedVolumeTest, StoppedItLeavesNothing) {
+TEST_F(PackedVolumeTest, StoppingLeavesNoFile) {
     const Volume volume = volume_of({67, 33, 41}, as_float);
     for (const double at : {0.0, 0.6, 0.97}) {
         const auto progress = [&](double fraction, std::string_view) { return fraction < at; };
@@ -404,7 +405,7 @@ TEST_F(PackedVolumeTest, StoppedItLeavesNothing) {
     EXPECT_THROW(pack_volume(volume, file("no/such/folder/vol.esv")), edgesplat::Error);
 }
 
-/// Opens the file for changes with HDF5 itself.
+/// Changes the file through HDF5.
 void damage(const std::string& path, const std::function<void(hid_t file)>& change) {
     const hid_t file = H5Fopen(path.c_str(), H5F_ACC_RDWR, H5P_DEFAULT);
     ASSERT_GE(file, 0);
@@ -418,7 +419,7 @@ void set_number(hid_t file, const char* name, std::uint64_t value) {
     H5Aclose(attribute);
 }
 
-TEST_F(PackedVolumeTest, DamagedFilesAreRefusedByName) {
+TEST_F(PackedVolumeTest, RefusesDamagedFilesByName) {
     const Volume volume = volume_of({67, 33, 41}, as_uint8);
     const std::string good = file("good.esv"), path = file("vol.esv");
     pack_volume(volume, good);
@@ -460,7 +461,7 @@ TEST_F(PackedVolumeTest, DamagedFilesAreRefusedByName) {
                 HasSubstr("axes lie in one plane"));
 }
 
-TEST_F(PackedVolumeTest, TruncatedAndForeignFilesAreRefused) {
+TEST_F(PackedVolumeTest, RefusesTruncatedAndForeignFiles) {
     const std::string path = file("vol.esv");
     pack_volume(volume_of({67, 33, 41}, as_uint8), path);
     const std::string content = volume_test::content_of(path);
@@ -468,7 +469,7 @@ TEST_F(PackedVolumeTest, TruncatedAndForeignFilesAreRefused) {
         const auto cut = static_cast<std::size_t>(share * static_cast<double>(content.size()));
         EXPECT_THAT(volume_test::refusal(write("cut.esv", content.substr(0, cut))), HasSubstr("truncated")) << share;
     }
-    EXPECT_THAT(volume_test::refusal(write("text.esv", "not HDF5 at all")), HasSubstr("not a volume"));
+    EXPECT_THAT(volume_test::refusal(write("text.esv", "not HDF5 at all")), HasSubstr("unknown volume format"));
     const hid_t foreign = H5Fcreate(file("other.h5").c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
     ASSERT_GE(H5Fclose(foreign), 0);
     EXPECT_THAT(volume_test::refusal(file("other.h5")), HasSubstr("not one that `edgesplat pack` wrote"));
@@ -476,7 +477,7 @@ TEST_F(PackedVolumeTest, TruncatedAndForeignFilesAreRefused) {
     EXPECT_THAT(volume_test::refusal(path, {.component = 1}), HasSubstr("--component"));
 }
 
-TEST_F(PackedVolumeTest, DamagedBricksAreReported) {
+TEST_F(PackedVolumeTest, ReportsDamagedBricks) {
     const std::string path = file("vol.esv");
     pack_volume(volume_of({67, 33, 41}, as_uint16), path, {.compress = true});
     const hid_t stored = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
@@ -496,13 +497,13 @@ TEST_F(PackedVolumeTest, DamagedBricksAreReported) {
     std::vector<float> values(packed->geometry(0).voxel_count());
     try {
         packed->read(0, glm::ivec3(0), packed->geometry(0).dims, values);
-        ADD_FAILURE() << "was read";
+        ADD_FAILURE() << "the damaged brick was read";
     } catch (const edgesplat::Error& error) {
         EXPECT_THAT(error.what(), HasSubstr("/levels/0/samples: cannot be read"));
     }
 }
 
-TEST_F(PackedVolumeTest, WhatNeedsAllSamplesRefuses) {
+TEST_F(PackedVolumeTest, RefusesFiltersThatNeedAllSamples) {
     pack_volume(volume_of({67, 33, 41}, as_uint16), file("vol.esv"));
     const Volume opened = edgesplat::open_packed(file("vol.esv"));
     for (const auto& work : std::vector<std::function<void()>>{
@@ -511,14 +512,14 @@ TEST_F(PackedVolumeTest, WhatNeedsAllSamplesRefuses) {
              [&] { (void)pack_volume(opened, file("again.esv")); }}) {
         try {
             work();
-            ADD_FAILURE() << "was done";
+            ADD_FAILURE() << "no error";
         } catch (const edgesplat::Error& error) {
             EXPECT_THAT(error.what(), HasSubstr("needs all samples in memory"));
         }
     }
 }
 
-TEST_F(PackedVolumeTest, HistogramAndSuggestionsComeFromTheFile) {
+TEST_F(PackedVolumeTest, ReadsHistogramAndSuggestionsFromFile) {
     const Volume volume = edgesplat::load_volume("builtin:phantom:80");
     edgesplat::pack_file("builtin:phantom:80", {}, file("vol.esv"));
     const Volume opened = edgesplat::open_packed(file("vol.esv"));

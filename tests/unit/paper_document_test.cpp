@@ -1,4 +1,4 @@
-// docs/paper.md: its curves, its proofs, and that the page in the checkout is whole.
+// docs/paper.md: its curves and proofs, and whether the page in the checkout is complete.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +29,7 @@ std::string text_of(const std::filesystem::path& path) {
     return text.str();
 }
 
-TEST(PaperCurves, FigureEightIsTheGroundTruth) {
+TEST(PaperCurves, FigureEightMatchesGroundTruth) {
     const char* folder = std::getenv("EDGESPLAT_MATH");
     if (!folder) GTEST_SKIP() << "EDGESPLAT_MATH does not name a folder of reference values";
     std::ifstream in(std::filesystem::path(folder) / "reference.json");
@@ -52,7 +52,7 @@ TEST(PaperCurves, FigureEightIsTheGroundTruth) {
     }
 }
 
-TEST(PaperCurves, WarpsSharpenAndPutTheEdgeInItsPlace) {
+TEST(PaperCurves, WarpsSharpenAndLocateEdge) {
     const CurveExample e;
     const StepQuality plain = step_quality(e, [&](double x) { return reconstruction(e, x); });
     const StepQuality paper = step_quality(e, [&](double x) { return reconstruction(e, paper_map(x, e.profile)); });
@@ -106,7 +106,7 @@ TEST(PaperMisprints, IntervalThreeHasOneSolution) {
     }
 }
 
-TEST(PaperMisprints, MonotoneExactlyWhereTheRuleSays) {
+TEST(PaperMisprints, RulePredictsMonotoneProfiles) {
     const MonotoneScan scan = scan_monotone(12);
     EXPECT_GT(scan.monotone, 0);
     EXPECT_GT(scan.profiles, scan.monotone);
@@ -116,7 +116,7 @@ TEST(PaperMisprints, MonotoneExactlyWhereTheRuleSays) {
 TEST(PaperMisprints, MapIsASquareRootAtItsKnots) {
     for (const PaperProfile& q : kProfiles) {
         const std::vector<SlopeRow> rows = map_slopes(q);
-        for (std::size_t i = 2; i < rows.size(); ++i) {  // from h = 1e-6 on nothing but the square root is left
+        for (std::size_t i = 2; i < rows.size(); ++i) {  // from h = 1e-6 on only the square root matters
             EXPECT_NEAR(rows[i].below_m1 / rows[i - 1].below_m1, 10, 0.15);
             EXPECT_NEAR(rows[i].above_m2 / rows[i - 1].above_m2, 10, 0.15);
             EXPECT_NEAR(rows[i].smooth, (q.t2 - q.t1) / (q.m2 - q.m1), 0.01);
@@ -124,7 +124,7 @@ TEST(PaperMisprints, MapIsASquareRootAtItsKnots) {
     }
 }
 
-TEST(PaperPictures, EdgesAreAsWideAsTheyAreBlurred) {
+TEST(PaperPictures, MeasuredEdgeWidthMatchesBlur) {
     double energy = 0;
     for (const double deviation : {4.0, 2.0, 1.0}) {  // pixels; a Gaussian's step rises from 10 to 90 % over 2.563
         Image image(96, 96, 4);
@@ -141,7 +141,7 @@ TEST(PaperPictures, EdgesAreAsWideAsTheyAreBlurred) {
     }
 }
 
-TEST(PaperDocument, SectionsAreFoundAgain) {
+TEST(PaperDocument, SectionsRoundTrip) {
     const std::string page = page_of({{"one", "# One\n\ntext\n"}, {"two", "![a](b.png)\n| ![c](d.svg) |\n"}});
     EXPECT_EQ(kept_section(page, "one"), "# One\n\ntext\n");
     EXPECT_EQ(kept_section(page, "two"), "![a](b.png)\n| ![c](d.svg) |\n");
@@ -150,7 +150,7 @@ TEST(PaperDocument, SectionsAreFoundAgain) {
     EXPECT_THAT(pictures_in(page), testing::ElementsAre("b.png", "d.svg"));
 }
 
-TEST(PaperDocument, ParagraphsAreFilledAndTheRestIsLeftAlone) {
+TEST(PaperDocument, FillsOnlyParagraphs) {
     const std::string word(70, 'w');
     EXPECT_EQ(filled("a\nb\n\n| c |\n| d |\n"), "a b\n\n| c |\n| d |\n");
     EXPECT_EQ(filled(word + " " + word + "\n"), word + "\n" + word + "\n");
@@ -158,7 +158,7 @@ TEST(PaperDocument, ParagraphsAreFilledAndTheRestIsLeftAlone) {
               "text\n```sh\nx\ny\n```\n`code` at the start\n");
 }
 
-TEST(PaperDocument, ThePageIsWhole) {
+TEST(PaperDocument, PageIsComplete) {
     const std::string page = text_of(kDocs / "paper.md");
     for (const char* number : {"4", "6", "7", "8", "9", "10", "11", "12"})
         EXPECT_THAT(kept_section(page, std::string("figure ") + number), HasSubstr(std::string("## Figure ") + number));
@@ -173,7 +173,7 @@ TEST(PaperDocument, ThePageIsWhole) {
         bytes += std::filesystem::file_size(kDocs / picture);
         EXPECT_THAT(text_of(kDocs / picture), Not(testing::AnyOf(HasSubstr("/work/"), HasSubstr("/home/")))) << picture;
     }
-    EXPECT_LT(bytes, 1500000U) << "pictures of the page are to stay small";
+    EXPECT_LT(bytes, 1500000U) << "the page's pictures must stay small";
 }
 
 }  // namespace

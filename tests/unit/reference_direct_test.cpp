@@ -1,4 +1,4 @@
-// Direct evaluation of the model: against closed forms, and against plain steps along the ray.
+// Direct evaluation of the model, compared with closed forms and with plain steps along the ray.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -27,7 +27,7 @@ DirectResult evaluated(const PreparedVolume& prepared, const Camera& camera, int
     return direct_evaluation(prepared, camera, size, size, output, options);
 }
 
-/// The same sum in equal steps (voxels), each a slab of constant density; every voxel is asked at every step.
+/// The same sum in equal steps (voxels), each a slab of constant density; every step evaluates every near voxel.
 Image stepped(const PreparedVolume& prepared, const Camera& camera, int size, double step) {
     const Field field = prepared.field();
     const Scene& scene = prepared.scene();
@@ -45,7 +45,7 @@ Image stepped(const PreparedVolume& prepared, const Camera& camera, int size, do
             const glm::dvec3 u = view.ray(x, y);
             const double mm = glm::length(geometry.index_to_world_axes * u);
             const double middle = glm::dot(center - view.eye_index, u);
-            // Only the voxels the ray can touch at all.
+            // Only voxels that the ray can touch.
             std::vector<std::pair<SplatRecord, glm::dvec4>> near;
             for (const SplatRecord& record : records) {
                 const glm::dvec3 v = glm::dvec3(field.voxel(record.voxel)) - view.eye_index;
@@ -76,7 +76,7 @@ Image stepped(const PreparedVolume& prepared, const Camera& camera, int size, do
     return image;
 }
 
-TEST(Direct, IsTheLimitOfSmallSteps) {
+TEST(Direct, EqualsLimitOfSmallSteps) {
     const Volume volume = ball(12, 3.6);
     const Camera camera = looking_at(volume, {1, 2, -1}, 40, 20);
     for (const double extinction : {0.2, 8.0}) {
@@ -85,8 +85,8 @@ TEST(Direct, IsTheLimitOfSmallSteps) {
         for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5}) {
             const DirectResult result = evaluated(prepared, camera, 12, tolerance);
             const double error = largest_difference(result.image, truth);
-            // The steps themselves, and the picture's float32, are good to some 1e-6,
-            // and one in which a kernel ends is off by half of it.
+            // Steps and float32 are accurate to about 1e-6. A step in which a kernel ends is wrong by up to half a
+            // step.
             EXPECT_LT(error, result.error_estimate + 0.5e-3 * std::min(extinction, 1.0))
                 << extinction << ", " << tolerance;
             EXPECT_LE(result.error_estimate, tolerance) << extinction;
@@ -112,8 +112,8 @@ TEST(Direct, TighterTolerancesAgree) {
     }
 }
 
-TEST(Direct, InsideAHomogeneousBodyTauIsExtinctionTimesLength) {
-    // Plain kernels sum to one to within their ripple (2e-3); over whole voxels along an axis it averages out.
+TEST(Direct, TauOfHomogeneousBodyIsExtinctionTimesLength) {
+    // Plain kernels sum to 1 within their ripple (2e-3), which averages out over whole voxels along an axis.
     const Volume volume = sampled(glm::ivec3(16, 48, 16), [](const glm::dvec3& x) { return x.y < 100 ? 1.0 : 0.0; });
     Scene scene = solid_scene(0.05);
     scene.lights.clear();
@@ -136,7 +136,7 @@ TEST(Direct, InsideAHomogeneousBodyTauIsExtinctionTimesLength) {
     }
 }
 
-TEST(Direct, OneSplatHasItsFootprintInClosedForm) {
+TEST(Direct, OneSplatMatchesClosedForm) {
     const Volume volume = sampled(glm::ivec3(3), [](const glm::dvec3& x) { return x == glm::dvec3(1) ? 1.0 : 0.0; });
     Settings settings;
     settings.edges = EdgeEstimator::Off;
@@ -151,7 +151,8 @@ TEST(Direct, OneSplatHasItsFootprintInClosedForm) {
                 const glm::dvec3 v = glm::dvec3(1) - view.eye_index;
                 const double along = glm::dot(v, view.ray(x, y));
                 const double rho2 = glm::dot(v, v) - along * along;
-                // From the eye on: the half behind the nearest point and what lies between it and the eye.
+                // The half of the footprint beyond the point nearest to the voxel, plus the chord from the eye to that
+                // point.
                 const double expected = 0.7 * (kernel_footprint(rho2) / 2 + kernel_chord(rho2, along));
                 EXPECT_NEAR(static_cast<double>(tau.at(x, y, 0)), expected, 2e-6);
                 EXPECT_NEAR(static_cast<double>(alpha.at(x, y, 3)), -std::expm1(-expected), 2e-6);
@@ -159,12 +160,12 @@ TEST(Direct, OneSplatHasItsFootprintInClosedForm) {
         }
     };
     check();
-    camera.eye = {1.2, 0.7, 0.9};  // inside the kernel: only what is in front counts
+    camera.eye = {1.2, 0.7, 0.9};  // inside the kernel: only the part in front of the eye counts
     camera.fov_y = 80;
     check();
 }
 
-TEST(Direct, AnisotropicAndObliqueGridsMeasureInMillimetres) {
+TEST(Direct, MeasuresAnisotropicGridsInMillimetres) {
     const glm::dmat3 axes(0.5, 0.1, 0, 0, 2, 0.3, 0, 0, 1.2);
     const Volume volume = sampled(
         glm::ivec3(12), [](const glm::dvec3& x) { return blurred(glm::length(x - 5.5) - 3.5); }, axes);
@@ -199,7 +200,7 @@ TEST(Direct, DegenerateInputsGiveFiniteNumbers) {
     }
 }
 
-TEST(Direct, ProgressRisesAndCanStop) {
+TEST(Direct, ProgressRisesAndCancels) {
     const Volume volume = ball(10, 3);
     const Camera camera = looking_at(volume, {1, 2, -1}, 30, 25);
     const PreparedVolume prepared(volume, solid_scene(1), Settings{});

@@ -1,4 +1,4 @@
-// Pass 1: edges of volumes whose edges are known.
+// Pass 1 on volumes with known edges.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 using namespace testing_volumes;
 
-/// A volume with both sides drawn, ready to be estimated.
+/// A volume in which both materials are visible, prepared for edge estimation.
 struct Case {
     Volume volume;
     Scene scene = solid_scene(1);
@@ -34,7 +34,7 @@ struct Case {
     }
 };
 
-/// Root mean square error of D over the voxels within R of the edge and 4 of the border; fails where one has no edge.
+/// Root mean square error of D over voxels within R of the edge and at least 4 from the border; all must have an edge.
 template <typename Distance>
 double rms_error(const Case& c, EdgeEstimator estimator, const Distance& signed_distance) {
     const std::vector<VoxelEdge> edges = c.edges(estimator);
@@ -73,7 +73,7 @@ TEST(EstimateEdges, MarchFindsBlurredSpheres) {
 
 TEST(EstimateEdges, LinearRampIsExact) {
     const glm::dvec3 n = glm::normalize(glm::dvec3(2, -1, 3));
-    // Scaled by its own range, the iso-value keeps its plane.
+    // Scaling by the ramp's range does not move the plane of the iso-value.
     const auto ramp = [&](const glm::dvec3& x) { return 0.5 - 0.02 * glm::dot(n, x - glm::dvec3(7.2)); };
     const Case c(sampled(glm::ivec3(16), ramp));
     for (const auto estimator : {EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic}) {
@@ -106,7 +106,7 @@ TEST(EstimateEdges, NormalsOfBlurredPlanesAreWithinADegree) {
     }
 }
 
-TEST(EstimateEdges, WallsKnowBothFaces) {
+TEST(EstimateEdges, FindsBothFacesOfWalls) {
     const glm::dvec3 n = glm::normalize(glm::dvec3(1, 2, 2));
     const auto wall = [&](const glm::dvec3& x) {
         const double s = glm::dot(n, x - glm::dvec3(9.4));
@@ -119,7 +119,7 @@ TEST(EstimateEdges, WallsKnowBothFaces) {
         const glm::ivec3 i = c.field().voxel(at);
         if (i != glm::clamp(i, glm::ivec3(4), glm::ivec3(15)) || !(c.values[at] >= 0.5F)) continue;
         ASSERT_TRUE(edges[at].has_edge);
-        // One quadric may hold both: along n it turns in the middle.
+        // One quadric may contain both faces: along n its slope is 0 in the middle.
         const double bend = glm::dot(edges[at].n, edges[at].bending * edges[at].n);
         const bool apart = std::isfinite(edges[at].D2);
         EXPECT_NEAR(apart ? edges[at].D + edges[at].D2 : 2 / bend, 2.5, 0.3);
@@ -128,16 +128,16 @@ TEST(EstimateEdges, WallsKnowBothFaces) {
     EXPECT_GT(walls, 100);
 }
 
-TEST(EstimateEdges, FlatDataHasNone) {
+TEST(EstimateEdges, FindsNoEdgeInFlatData) {
     const Case c(sampled(glm::ivec3(5), [](const glm::dvec3&) { return 3.0; }));
     for (const auto estimator :
          {EdgeEstimator::Off, EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic}) {
         for (const VoxelEdge& edge : c.edges(estimator))
-            EXPECT_TRUE(!edge.has_edge || edge.D == 0.5 || edge.D == 1.5) << "nothing but the volume's border";
+            EXPECT_TRUE(!edge.has_edge || edge.D == 0.5 || edge.D == 1.5) << "only the volume's border is an edge";
     }
 }
 
-TEST(EstimateEdges, VolumesOneVoxelThickWork) {
+TEST(EstimateEdges, HandlesVolumesOneVoxelThick) {
     const Case c(sampled(glm::ivec3(9, 7, 1), [](const glm::dvec3& x) { return blurred(x.x - 4.2); }));
     for (const auto estimator : {EdgeEstimator::Taylor, EdgeEstimator::March, EdgeEstimator::Cubic}) {
         const VoxelEdge edge = c.edges(estimator)[3 * 9 + 4];
@@ -147,7 +147,7 @@ TEST(EstimateEdges, VolumesOneVoxelThickWork) {
     }
 }
 
-TEST(EstimateEdges, StoredBitsHoldEnough) {
+TEST(EstimateEdges, StoredBitsKeepPrecision) {
     const Case c(ball(20, 6));
     const auto exact = c.edges(EdgeEstimator::March);
     const auto stored = c.edges(EdgeEstimator::March, true);

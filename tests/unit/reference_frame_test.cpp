@@ -24,7 +24,7 @@ Settings procedural(EdgeEstimator edges = EdgeEstimator::March) {
     return settings;
 }
 
-double largest_difference(const Image& a, const Image& b) {
+double largest_frame_difference(const Image& a, const Image& b) {
     double most = 0;
     for (std::size_t i = 0; i < a.pixels.size(); ++i) {
         most = std::max(most, std::abs(static_cast<double>(a.pixels[i]) - static_cast<double>(b.pixels[i])));
@@ -61,7 +61,7 @@ TEST(SortSheets, IsAStablePermutation) {
     EXPECT_EQ(sort_sheets({}).sheets(), 0U);
 }
 
-TEST(SortSheets, SplatsOfSeveralSheetsAreInEachOfThemOnce) {
+TEST(SortSheets, ListsSplatOnceInEachOfItsSheets) {
     std::mt19937 random(4);
     std::vector<Selected> selected(3000);
     std::size_t places = 0;
@@ -85,7 +85,7 @@ TEST(SortSheets, SplatsOfSeveralSheetsAreInEachOfThemOnce) {
     }
 }
 
-TEST(ScreenBox, HoldsExactlyThePixelsThatSeeTheSphere) {
+TEST(ScreenBox, EnclosesPixelsOfSphereTightly) {
     VolumeGeometry geometry;
     geometry.dims = glm::ivec3(10);
     geometry.index_to_world_axes = glm::dmat3(1.0, 0.2, 0.0, 0.0, 0.7, -0.1, 0.3, 0.0, -2.0);  // oblique, left-handed
@@ -104,7 +104,7 @@ TEST(ScreenBox, HoldsExactlyThePixelsThatSeeTheSphere) {
             }
         }
         const PixelBox box = screen_box(view, support);
-        // A box may hold a row or column that passes between pixel centres, never miss one.
+        // A box may contain an extra row or column at each side, but must not miss one.
         EXPECT_LE(box.x0, seen.x0);
         EXPECT_LE(box.y0, seen.y0);
         EXPECT_GE(box.x1, seen.x1);
@@ -124,10 +124,10 @@ TEST(CompositeSheet, SaturatesWithoutOverflow) {
     const std::vector<glm::dvec4> next(3, glm::dvec4(1));
     composite_sheet(frame, next, closed);
     EXPECT_EQ(frame[0], glm::dvec4(1, 0.5, 0, 1));  // opaque already
-    EXPECT_EQ(frame[1], glm::dvec4(0));             // closed
+    EXPECT_EQ(frame[1], glm::dvec4(0));             // marked as saturated
 }
 
-TEST(Frame, ConstantSlabAbsorbsAsBeerAndLambertSay) {
+TEST(Frame, ConstantSlabObeysBeerLambertLaw) {
     // 0.3 per mm through 12 voxels of 0.5 mm.
     const Volume slab = sampled(
         glm::ivec3(20, 12, 20), [](const glm::dvec3&) { return 5.0; }, glm::dmat3(0.5));
@@ -144,7 +144,7 @@ TEST(Frame, ConstantSlabAbsorbsAsBeerAndLambertSay) {
     }
 }
 
-TEST(Frame, WithoutEdgesIsPlainSplatting) {
+TEST(Frame, EqualsPlainSplattingWithoutEdges) {
     const Volume volume = ball(16, 5);
     const Camera camera = looking_at(volume, {1, 2, -1}, 60, 20);
     Settings isotropic = procedural();
@@ -152,10 +152,10 @@ TEST(Frame, WithoutEdgesIsPlainSplatting) {
     const Image plain = render(volume, solid_scene(1), camera, procedural(EdgeEstimator::Off), 40, 40, Output::Tau);
     EXPECT_EQ(plain.pixels, render(volume, solid_scene(1), camera, isotropic, 40, 40, Output::Tau).pixels);
     const Image warped = render(volume, solid_scene(1), camera, procedural(), 40, 40, Output::Tau);
-    EXPECT_GT(largest_difference(plain, warped), 0.1);
+    EXPECT_GT(largest_frame_difference(plain, warped), 0.1);
 }
 
-TEST(Frame, OrderOfTheAxesDoesNotMatter) {
+TEST(Frame, IsIndependentOfAxisOrder) {
     const auto value = [](const glm::dvec3& x) {
         return blurred(glm::length(x - glm::dvec3(6, 7, 5)) - 4 + 0.3 * x.y);
     };
@@ -173,13 +173,14 @@ TEST(Frame, OrderOfTheAxesDoesNotMatter) {
     const PreparedVolume a(first, solid_scene(2), procedural());
     const PreparedVolume b(second, solid_scene(2), procedural());
     const Image opacity = a.render(camera, 48, 40);
-    EXPECT_LT(largest_difference(opacity, b.render(camera, 48, 40)), 1e-5);
-    EXPECT_LT(largest_difference(a.render(camera, 48, 40, Output::Tau), b.render(camera, 48, 40, Output::Tau)), 1e-5);
+    EXPECT_LT(largest_frame_difference(opacity, b.render(camera, 48, 40)), 1e-5);
+    EXPECT_LT(largest_frame_difference(a.render(camera, 48, 40, Output::Tau), b.render(camera, 48, 40, Output::Tau)),
+              1e-5);
     for (const Output output : {Output::Depth, Output::Normal}) {
         const Image x = a.render(camera, 48, 40, output);
         const Image y = b.render(camera, 48, 40, output);
         for (int i = 0; i < 48 * 40; ++i) {
-            // Where rounding decides whether a support is touched at all, means say nothing.
+            // Means are not comparable where rounding decides whether a ray touches a support.
             if (!(opacity.at(i % 48, i / 48, 3) > 1e-4F)) continue;
             for (int c = 0; c < x.channels; ++c)
                 EXPECT_NEAR(x.at(i % 48, i / 48, c), y.at(i % 48, i / 48, c), 1e-3);
@@ -187,7 +188,7 @@ TEST(Frame, OrderOfTheAxesDoesNotMatter) {
     }
 }
 
-TEST(Frame, TurningVolumeAndCameraTogetherChangesNothing) {
+TEST(Frame, IsInvariantUnderCommonRotation) {
     const Volume volume = ball(14, 4.3);
     const double c = std::cos(0.7);
     const double s = std::sin(0.7);
@@ -200,12 +201,12 @@ TEST(Frame, TurningVolumeAndCameraTogetherChangesNothing) {
     other.eye = turn * camera.eye + glm::dvec3(5, -3, 2);
     other.direction = turn * camera.direction;
     other.up = turn * camera.up;
-    EXPECT_LT(largest_difference(render(volume, solid_scene(1), camera, procedural(), 40, 40),
-                                 render(turned, solid_scene(1), other, procedural(), 40, 40)),
+    EXPECT_LT(largest_frame_difference(render(volume, solid_scene(1), camera, procedural(), 40, 40),
+                                       render(turned, solid_scene(1), other, procedural(), 40, 40)),
               1e-6);
 }
 
-TEST(Frame, AgreesWithTheModelItself) {
+TEST(Frame, AgreesWithDirectEvaluation) {
     const Volume volume = ball(12, 3.6);
     const Camera camera = looking_at(volume, {1, 2, -1}, 40, 20);
     const PreparedVolume prepared(volume, solid_scene(0.2), procedural());
@@ -215,7 +216,7 @@ TEST(Frame, AgreesWithTheModelItself) {
     EXPECT_GT(psnr(color, direct_evaluation(prepared, camera, 48, 48, Output::Color).image), 40);
 }
 
-TEST(Frame, BuriedVoxelsAreNotMissed) {
+TEST(Frame, CullingBuriedVoxelsKeepsPicture) {
     const Volume volume = ball(32, 14);
     Settings all = procedural(EdgeEstimator::Off);
     all.cull_buried = false;
@@ -228,11 +229,11 @@ TEST(Frame, BuriedVoxelsAreNotMissed) {
             .size();
     };
     EXPECT_LT(count(culled, camera.eye, false), count(all, camera.eye, false));
-    EXPECT_EQ(count(culled, glm::dvec3(15.5), false), count(all, camera.eye, false));  // from within
+    EXPECT_EQ(count(culled, glm::dvec3(15.5), false), count(all, camera.eye, false));  // from inside
     EXPECT_EQ(count(culled, camera.eye, true), count(all, camera.eye, false));
     const Image a = prepared.render(camera, 40, 40);
     const Image b = render(volume, solid_scene(4), camera, all, 40, 40);
-    EXPECT_LT(largest_difference(a, b), 1.0 / 255);
+    EXPECT_LT(largest_frame_difference(a, b), 1.0 / 255);
 }
 
 TEST(Frame, EveryOutputIsFiniteFromInsideTheVolume) {
@@ -248,7 +249,7 @@ TEST(Frame, EveryOutputIsFiniteFromInsideTheVolume) {
     }
 }
 
-TEST(Frame, OutputsSayWhatTheyShould) {
+TEST(Frame, OutputsHaveExpectedValues) {
     const Volume volume = ball(24, 8);
     const Camera camera = looking_at(volume, {0, 1, 0}, 80, 10);
     const PreparedVolume prepared(volume, solid_scene(20), procedural());
@@ -262,7 +263,7 @@ TEST(Frame, OutputsSayWhatTheyShould) {
     EXPECT_NEAR(centre(Output::Color, 3), 1, 1e-3);
 }
 
-TEST(Frame, RefusesWhatCannotBeDrawn) {
+TEST(Frame, RefusesInvalidRequests) {
     const Volume volume = ball(8, 2);
     const PreparedVolume prepared(volume, solid_scene(1), procedural());
     EXPECT_THROW(prepared.render({}, 0, 10), Error);

@@ -1,4 +1,4 @@
-// What kernels are in the model besides their faces: the light on walls.
+// Light on walls whose kernels have two faces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace {
 
 using namespace testing_volumes;
 
-/// A plate of so many voxels across y in the middle of the grid.
+/// A plate across y in the middle of the grid, `thickness` voxels thick.
 Volume plate(double thickness) {
     return sampled(glm::ivec3(24, 21, 24),
                    [&](const glm::dvec3& x) { return blurred(std::abs(x.y - 10.2) - thickness / 2); });
@@ -43,8 +43,8 @@ TEST(WallLight, ThinPlatesAreEvenlyLitFromBothSides) {
                 }
                 std::printf("plate of %.1f from %+.0f, %s: luminance %.4f to %.4f\n", thickness, side,
                             std::string(name_of(sheets)).c_str(), low, high);
-                // Face on, a headlight gives the material's own colour; 5 degrees off at the picture's border it gives
-                // .4 % less, and exp(-4 * 2) of what is seen is the background.
+                // Face on, a headlight shows the material's own colour; at the picture's border, 5 degrees off, .4 %
+                // less. The background contributes exp(-4 * 2).
                 EXPECT_GE(low / high, 0.99);
                 EXPECT_NEAR(high, 0.8, 0.01);
             }
@@ -52,7 +52,7 @@ TEST(WallLight, ThinPlatesAreEvenlyLitFromBothSides) {
     }
 }
 
-TEST(WallLight, VoxelsNearerToTheFarFaceShowTheNearOne) {
+TEST(WallLight, VoxelsBehindMiddleShowNearFace) {
     const Settings settings;
     const Volume volume = plate(2);
     const PreparedVolume prepared(volume, solid_scene(4), settings);
@@ -70,7 +70,7 @@ TEST(WallLight, VoxelsNearerToTheFarFaceShowTheNearOne) {
         turned += glm::dot(edge.n, to_eye) < 0 ? 1 : 0;
     }
     EXPECT_GT(walls, 500);
-    EXPECT_GT(turned, walls / 4) << "as they are, these would be dark";
+    EXPECT_GT(turned, walls / 4) << "with their own normals these voxels would be dark";
 }
 
 TEST(WallLight, ThickBodiesKeepTheirNormals) {

@@ -1,4 +1,4 @@
-// The truth of analytic scenes, against closed forms and plain small steps.
+// The renderer `truth` on analytic scenes, compared with closed forms and plain small steps.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@ Scene look_of(const AnalyticScene& scene, double extinction, bool lit = false) {
     return look;
 }
 
-/// From `distance` voxels away, along `direction`, at the middle of the grid. Spacing 1.
+/// Looks along `direction` at the middle of the grid from `distance` voxels away. Spacing 1.
 Camera looking_at(const AnalyticScene& scene, const glm::dvec3& direction, double distance, double fov_y) {
     Camera camera;
     camera.direction = glm::normalize(direction);
@@ -52,7 +52,7 @@ double chord(const glm::dvec3& eye, const glm::dvec3& u, const glm::dvec3& cente
     return 2 * std::sqrt(std::max(radius * radius - rho2, 0.0));
 }
 
-TEST(Truth, SeveralRaysAPixelAreTheMeanOfALargerPicture) {
+TEST(Truth, SeveralRaysPerPixelAverageLargerPicture) {
     const AnalyticScene scene = analytic_scene("sphere");
     const Camera camera = looking_at(scene, {1, 2, -1}, 60, 40);
     Scene look = look_of(scene, 0.5, true);
@@ -71,7 +71,7 @@ TEST(Truth, SeveralRaysAPixelAreTheMeanOfALargerPicture) {
     }
 }
 
-TEST(Truth, ASphereHasItsChords) {
+TEST(Truth, SphereMatchesChordLengths) {
     const AnalyticScene scene = analytic_scene("sphere");
     const Camera camera = looking_at(scene, {1, 2, -1}, 100, 30);
     const View view(camera, geometry_of(scene), 96, 96);
@@ -89,8 +89,8 @@ TEST(Truth, ASphereHasItsChords) {
     }
 }
 
-TEST(Truth, ASpheresSilhouetteIsExact) {
-    // 16 pixels across one edge of the ball, each cut into 1000.
+TEST(Truth, SphereSilhouetteIsExact) {
+    // 16 pixels across one edge of the ball, each divided into 1000.
     const AnalyticScene scene = analytic_scene("sphere");
     constexpr int kPixels = 16;
     constexpr int kParts = 1000;
@@ -108,7 +108,7 @@ TEST(Truth, ASpheresSilhouetteIsExact) {
     EXPECT_NEAR(covered, kPixels * kParts / 2, 1);
 }
 
-TEST(Truth, LightFallsOnTheExactNormal) {
+TEST(Truth, LightUsesExactNormal) {
     const AnalyticScene scene = analytic_scene("sphere");
     Scene look = look_of(scene, 1e6, true);
     look.lights = {directional_light({0.6, -0.8, 0})};
@@ -128,7 +128,7 @@ TEST(Truth, LightFallsOnTheExactNormal) {
     }
 }
 
-TEST(Truth, TheCubeHasAHoleAndSharpSides) {
+TEST(Truth, CubeWithHoleMatchesClosedForm) {
     const AnalyticScene scene = analytic_scene("cube-hole");
     constexpr double kExtinction = 0.1;
     const Scene look = look_of(scene, kExtinction);
@@ -155,7 +155,7 @@ TEST(Truth, TheCubeHasAHoleAndSharpSides) {
     }
 }
 
-TEST(Truth, EverySceneIsTheLimitOfSmallSteps) {
+TEST(Truth, EverySceneEqualsLimitOfSmallSteps) {
     constexpr int kSize = 10;
     for (const std::string_view name : analytic_scene_names()) {
         const AnalyticScene scene = analytic_scene(name);
@@ -189,8 +189,8 @@ TEST(Truth, EverySceneIsTheLimitOfSmallSteps) {
     }
 }
 
-TEST(Truth, ATransferFunctionIsIntegratedOverValues) {
-    // Values rise linearly along z; extinction is a tent over them: what a ray absorbs is the tent's area, and colours
+TEST(Truth, IntegratesTransferFunctionOverValues) {
+    // Values rise linearly along z and extinction is a tent over them, so tau of a ray is the tent's area. The colours
     // of its two sides appear in the order in which the ray meets them.
     AnalyticScene scene = analytic_scene("plane");
     scene.value = [](const glm::dvec3& x) { return x.z / 10; };
@@ -211,7 +211,7 @@ TEST(Truth, ATransferFunctionIsIntegratedOverValues) {
         const double per_value = 10 / std::abs(view.ray(p.x, p.y).z);
         const double first = 0.15 * per_value, second = 0.075 * per_value;
         EXPECT_NEAR(static_cast<double>(image.at(p.x, p.y, 3)), -std::expm1(-first - second), 1e-5);
-        // By small steps through the second side, which begins red and ends green.
+        // Small steps through the second side, whose colour changes from red to green.
         double red = -std::expm1(-first), transmittance = std::exp(-first);
         constexpr int kSteps = 100000;
         for (int i = 0; i < kSteps; ++i) {
@@ -221,7 +221,7 @@ TEST(Truth, ATransferFunctionIsIntegratedOverValues) {
         }
         EXPECT_NEAR(static_cast<double>(image.at(p.x, p.y, 0)), red, 1e-5);
     }
-    // Without iso-values no edge is known, and only what is at the volume's border is lit by it.
+    // Without iso-values there are no edges; light uses only the normal of the volume's border.
     look.lights = {directional_light({0, 0, -1})};
     look.lights[0].intensity = 1;
     look.ambient = 0;
@@ -231,7 +231,7 @@ TEST(Truth, ATransferFunctionIsIntegratedOverValues) {
     EXPECT_NEAR(static_cast<double>(seen(scene, look, camera, 1, 1).image.at(0, 0, 1)), 1, 1e-4);
 }
 
-TEST(Truth, TightenedTolerancesAgreeUnderLight) {
+TEST(Truth, TighterTolerancesAgreeUnderLight) {
     for (const char* name : {"cube-hole", "orbital", "torus"}) {
         const AnalyticScene scene = analytic_scene(name);
         const Scene look = look_of(scene, 0.1, true);
@@ -244,10 +244,10 @@ TEST(Truth, TightenedTolerancesAgreeUnderLight) {
     }
 }
 
-TEST(Truth, FiniteFromWithinAndRefusesOtherGrids) {
+TEST(Truth, IsFiniteFromInsideAndRefusesOtherGrids) {
     const AnalyticScene scene = analytic_scene("sphere");
     Camera camera;
-    camera.eye = {31.7, 31.4, 31.2};  // the centre, where no direction is nearest to the edge
+    camera.eye = {31.7, 31.4, 31.2};  // the centre: all surface points are equally near
     camera.fov_y = 120;
     for (const float v : seen(scene, look_of(scene, 0.1, true), camera, 16, 16).image.pixels)
         ASSERT_TRUE(std::isfinite(v));

@@ -35,7 +35,7 @@ inline Volume ball(int size, double radius) {
     return sampled(glm::ivec3(size), [&](const glm::dvec3& x) { return blurred(glm::length(x - center) - radius); });
 }
 
-/// Nothing below 0.5, `extinction` per mm above.
+/// Transparent below 0.5, `extinction` per mm above.
 inline Scene solid_scene(double extinction) {
     Scene scene;
     scene.iso_values = {0.5};

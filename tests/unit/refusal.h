@@ -1,4 +1,4 @@
-// What an Error says.
+// A helper that returns the message of a thrown Error.
 #pragma once
 
 #include <string>

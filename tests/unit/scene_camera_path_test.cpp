@@ -1,4 +1,4 @@
-// Camera paths go through their keys, smoothly, never flip, and turn with what they are made of.
+// Camera paths: they pass through their keys, are smooth, never flip, and rotate with their keys.
 #include "engine/scene/camera_path.h"
 
 #include <gmock/gmock.h>
@@ -32,12 +32,12 @@ const CameraPath kPaths[] = {
       {3, {0, -100, 30}, {0, 0, 0}, {0, 0, 1}, 45},
       {4, {100, 0, 30}, {0, 0, 0}, {0, 0, 1}, 45}},
      true},
-    // Over the top, where `up` is passed: the view goes on beyond it, head down.
+    // Over the top, past the direction of `up`: the view continues upside down.
     {{{0, {0, -100, 0}, {0, 0, 0}, {0, 0, 1}, 45},
       {1, {0, -70, 70}, {0, 0, 0}, {0, 0, 1}, 45},
       {2, {0, 70, 70}, {0, 0, 0}, {0, 0, -1}, 45}},
      false},
-    // The eye and its target change places: it has to turn round.
+    // The eye and its target swap places: the view has to turn round.
     {{{0, {0, 0, 0}, {0, 50, 0}, {0, 0, 1}, 45}, {3, {0, 50, 0}, {0, 0, 0}, {0, 0, 1}, 45}}, false},
 };
 
@@ -59,12 +59,12 @@ TEST(CameraPath, PassesExactlyThroughItsKeys) {
         }
 }
 
-TEST(CameraPath, EverythingAndItsRateIsContinuous) {
+TEST(CameraPath, HasContinuousFrameAndRate) {
     constexpr double kStep = 1e-4;
     for (const CameraPath& path : kPaths) {
         const double start = path.keys.front().time;
         const auto frame = [&](double time) { return camera_frame(camera_at(path, time)); };
-        // At the inner keys, where the pieces meet, and across the steps in which `up` is carried.
+        // At the inner keys, where pieces meet, and at the steps in which `up` is transported.
         std::vector<double> joints;
         for (std::size_t i = 0; i + 1 < path.keys.size(); ++i)
             for (int k = i == 0 && !path.loop ? 1 : 0; k < 16; ++k)
@@ -83,14 +83,14 @@ TEST(CameraPath, EverythingAndItsRateIsContinuous) {
     }
 }
 
-TEST(CameraPath, NothingFlips) {
+TEST(CameraPath, NeverFlips) {
     for (const CameraPath& path : kPaths) {
         const int steps = 4000;
         CameraFrame last = camera_frame(camera_at(path, path.keys.front().time));
         for (int k = 1; k <= steps; ++k) {
             const double t = path.keys.front().time + duration(path) * k / steps;
             const CameraFrame frame = camera_frame(camera_at(path, t));
-            // The quickest turn in these paths is about 400 degrees a second; a flip would be 180 in one step.
+            // The fastest turn in these paths is about 400 degrees per second; a flip would be 180 degrees in one step.
             EXPECT_GT(glm::dot(frame.forward, last.forward), std::cos(0.03)) << t;
             EXPECT_GT(glm::dot(frame.up, last.up), std::cos(0.03)) << t;
             EXPECT_NEAR(glm::dot(frame.up, frame.forward), 0, 1e-12);
@@ -99,11 +99,11 @@ TEST(CameraPath, NothingFlips) {
     }
 }
 
-TEST(CameraPath, EqualKeysStandStillAndNothingOvershoots) {
+TEST(CameraPath, StandsStillAtEqualKeysWithoutOvershoot) {
     const CameraPath& path = kPaths[2];
     for (double t = 6; t <= 7; t += 0.05)
         expect_near(camera_at(path, t).eye, path.keys[3].eye, 1e-12, "standing still");
-    // Along a line there and back, with a stop: never beyond the farthest key, never backwards in between.
+    // Back and forth along a line, with a stop: the eye never passes a turning point and never reverses between keys.
     CameraPath line;
     const double places[] = {0, 1, 1, 50, 100, 100, 20};
     for (int k = 0; k < 7; ++k)
@@ -117,7 +117,7 @@ TEST(CameraPath, EqualKeysStandStillAndNothingOvershoots) {
         }
 }
 
-TEST(CameraPath, TurnsWithItsKeys) {
+TEST(CameraPath, RotatesWithItsKeys) {
     std::mt19937 random(7);
     std::normal_distribution<double> normal;
     for (const CameraPath& path : kPaths) {
@@ -145,13 +145,13 @@ TEST(CameraPath, TurnsWithItsKeys) {
     }
 }
 
-TEST(CameraPath, LoopGoesOn) {
+TEST(CameraPath, LoopRepeats) {
     const CameraPath& loop = kPaths[3];
     for (const double t : {0.3, 1.7, 3.9}) {
         expect_near(camera_at(loop, t).eye, camera_at(loop, t + 4).eye, 1e-9, "next round");
         expect_near(camera_at(loop, t).eye, camera_at(loop, t - 8).eye, 1e-9, "two rounds before");
     }
-    // A tour around a thing that stands upright keeps it upright.
+    // A loop around an upright object keeps it upright.
     for (double t = 0; t < 4; t += 0.01)
         EXPECT_NEAR(camera_frame(camera_at(loop, t)).right.z, 0, 1e-12) << t;
 }
@@ -200,7 +200,7 @@ TEST(CameraPath, FlightHasConstantSpeedThroughItsPoints) {
     EXPECT_THROW(fly_through({{{1, 2, 3}, {1, 2, 3}}}), Error);
 }
 
-TEST(CameraPath, RefusesWhatIsNoPath) {
+TEST(CameraPath, RefusesInvalidPaths) {
     const CameraKey key{0, {0, -10, 0}, {0, 0, 0}};
     const auto refuses = [](const CameraPath& path, const std::string& what) {
         EXPECT_THAT([&] { camera_at(path, 0); }, ThrowsMessage<Error>(HasSubstr(what)));
@@ -208,7 +208,7 @@ TEST(CameraPath, RefusesWhatIsNoPath) {
     refuses({}, "no keys");
     refuses({{key, key}}, "key 1 time: 0 s is not after");
     refuses({{key, {NAN, {1, 0, 0}, {0, 0, 0}}}}, "time: nan");
-    refuses({{{0, {1, 2, 3}, {1, 2, 3}}}}, "key 0 target: (1, 2, 3) is where the eye is");
+    refuses({{{0, {1, 2, 3}, {1, 2, 3}}}}, "key 0 target: (1, 2, 3) equals the eye");
     refuses({{{0, {1, 2, 3}, {0, 0, 0}, {0, 0, 0}}}}, "key 0 up");
     refuses({{{0, {1, 2, 3}, {0, 0, 0}, {0, 0, 1}, 180}}}, "180 is not between");
     refuses({{key, {1, {5, 0, 0}, {0, 0, 0}}}, true}, "loop");

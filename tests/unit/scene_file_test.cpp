@@ -1,4 +1,4 @@
-// Scene files: what is read is what was written, every key of the table does its work, every problem has its line.
+// Scene files: documents round-trip, every key of the table works, and every problem names its line.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -41,7 +41,7 @@ std::vector<std::string> problems(const std::string& text) {
     return {};
 }
 
-/// A value of the key's type and range, different each time.
+/// A random value of the key's type and range.
 KeyValue random_value(const SceneKey& key, std::mt19937& random) {
     std::uniform_real_distribution<double> share(0.001, 0.999);
     const auto number = [&] {
@@ -76,7 +76,7 @@ KeyValue random_value(const SceneKey& key, std::mt19937& random) {
     }
 }
 
-/// A document in which every key of the table has a value by chance. Not one that makes sense as a whole.
+/// A document with a random value for every key of the table. It need not be consistent.
 SceneDocument random_document(std::mt19937& random) {
     SceneDocument document;
     for (const SceneTable& table : scene_tables())
@@ -90,7 +90,7 @@ SceneDocument random_document(std::mt19937& random) {
     return document;
 }
 
-TEST(SceneFile, EveryKeyGoesThroughTextUnchanged) {
+TEST(SceneFile, EveryKeyRoundTripsThroughText) {
     std::mt19937 random(1);
     for (int round = 0; round < 50; ++round) {
         const SceneDocument document = random_document(random);
@@ -99,7 +99,7 @@ TEST(SceneFile, EveryKeyGoesThroughTextUnchanged) {
     }
 }
 
-TEST(SceneFile, EveryKeyGoesThroughSetUnchanged) {
+TEST(SceneFile, EveryKeyRoundTripsThroughSet) {
     std::mt19937 random(2);
     SceneDocument document;
     for (const SceneTable& table : scene_tables())
@@ -133,7 +133,7 @@ TEST(SceneFile, NumbersKeepTheirBits) {
     }
 }
 
-TEST(SceneFile, EveryGoodSceneGoesThroughTextUnchanged) {
+TEST(SceneFile, EveryGoodSceneRoundTripsThroughText) {
     std::size_t count = 0;
     for (const auto& entry : std::filesystem::directory_iterator(EDGESPLAT_SOURCE_DIR "/tests/scenes/good")) {
         const SceneDocument document = read_scene_file(entry.path());
@@ -144,7 +144,7 @@ TEST(SceneFile, EveryGoodSceneGoesThroughTextUnchanged) {
         const Camera camera = resolve_camera(document, volume, scene);
         SceneDocument all = resolved(document, volume, scene, camera, document.quality.settings);
         EXPECT_TRUE(parse(scene_text(all)) == all) << entry.path();
-        // What is resolved resolves to itself.
+        // Resolving a resolved document changes nothing.
         const Scene again = resolve_scene(all, volume);
         EXPECT_EQ(again.iso_values, scene.iso_values);
         EXPECT_EQ(again.materials, scene.materials);
@@ -161,8 +161,8 @@ TEST(SceneFile, EveryGoodSceneGoesThroughTextUnchanged) {
     EXPECT_GE(count, 7U);
 }
 
-TEST(SceneFile, RangesAreThoseOfTheEngine) {
-    // A number at the ends of its range is what validate() takes; beyond them it is not.
+TEST(SceneFile, RangesMatchEngineValidation) {
+    // validate() accepts a number at the ends of its range and refuses it beyond them.
     SceneDocument document;
     for (const SceneTable& table : scene_tables())
         table.resize(document, 1);
@@ -187,7 +187,7 @@ TEST(SceneFile, RangesAreThoseOfTheEngine) {
         if (top == "volume" || top == "movie" || top == "output" || top == "camera" || key.path == "iso_values" ||
             key.path == "iso_sigmas")
             continue;
-        // Not in a scene, checked by its order, and of lights of one kind only.
+        // Skipped keys: not part of a scene, checked by their order, or used by one kind of light only.
         if (key.path == "quality.max_error" || key.path == "transfer[].value" || key.direction ||
             key.path == "lights[].position")
             continue;
@@ -221,7 +221,7 @@ TEST(SceneFile, RangesAreThoseOfTheEngine) {
     EXPECT_GT(count, 30U);
 }
 
-TEST(SceneFile, EveryProblemIsReportedWithItsLine) {
+TEST(SceneFile, ReportsEveryProblemWithItsLine) {
     EXPECT_THAT(problems("fram = 1\n"
                          "[volume]\n"
                          "path = \"builtin:sphere\"\n"
@@ -235,7 +235,7 @@ TEST(SceneFile, EveryProblemIsReportedWithItsLine) {
                             StartsWith("a.toml:8: output.size: [0, 2]: expected")));
 }
 
-TEST(SceneFile, KnobsChangeARowWhereverTheyStand) {
+TEST(SceneFile, SettingsOverridePresetInAnyOrder) {
     const SceneDocument d =
         parse("[volume]\npath = \"builtin:sphere\"\n[quality]\nedges = \"off\"\npreset = \"accurate\"\n");
     EXPECT_EQ(d.quality.settings.edges, EdgeEstimator::Off);
@@ -243,7 +243,7 @@ TEST(SceneFile, KnobsChangeARowWhereverTheyStand) {
     EXPECT_EQ(d.quality.preset, "accurate");
 }
 
-TEST(SceneFile, SetTakesWhatPeopleType) {
+TEST(SceneFile, SetAcceptsTypedValues) {
     SceneDocument d;
     set_key(d, "camera.view=back");
     set_key(d, "background=0,0.5,1");
@@ -277,10 +277,10 @@ TEST(SceneFile, SetTakesWhatPeopleType) {
     EXPECT_THAT(refusal([&] { set_key(d, "lights[x].kind=point"); }), HasSubstr("whole number"));
     EXPECT_THAT(refusal([&] { set_key(d, "background[3]=1"); }), HasSubstr("3 numbers"));
     EXPECT_THAT(refusal([&] { set_key(d, "background[0]=2"); }), HasSubstr("from 0 to 1"));
-    EXPECT_TRUE(d == before) << "what is refused changes nothing";
+    EXPECT_TRUE(d == before) << "a refused value changes nothing";
 }
 
-TEST(SceneFile, NumbersByKey) {
+TEST(SceneFile, SetsAndReadsNumbersByKey) {
     SceneDocument d;
     d.effects.fog.emplace();
     d.effects.clip.keep.resize(1);
@@ -297,7 +297,7 @@ TEST(SceneFile, NumbersByKey) {
     EXPECT_THAT(refusal([&] { set_number(d, "effects.samples", 1.5); }), HasSubstr("whole number"));
 }
 
-TEST(ScenePresets, ShippedOnesAreGood) {
+TEST(ScenePresets, EmbeddedPresetsAreValid) {
     const auto names = scene_preset_names();
     for (const char* name : {"ct-skin", "ct-bone", "ct-airway", "ct-lung", "ct-vessels", "ct-soft-tissue",
                              "mri-gray-matter", "mri-white-matter", "mri-skin"})
@@ -314,7 +314,7 @@ TEST(ScenePresets, ShippedOnesAreGood) {
     }
 }
 
-TEST(ScenePresets, UsersOwnWin) {
+TEST(ScenePresets, UserPresetsOverrideEmbeddedOnes) {
     const std::filesystem::path folder = std::filesystem::temp_directory_path() / "edgesplat_presets_test";
     std::filesystem::create_directories(folder / "edgesplat" / "presets");
     const auto write = [](const std::filesystem::path& path, const char* text) { std::ofstream(path) << text; };
@@ -330,7 +330,7 @@ TEST(ScenePresets, UsersOwnWin) {
     EXPECT_EQ(scene_preset("ct-bone").file, (folder / "ct-bone.toml").string());
     EXPECT_EQ(scene_preset("other").content.materials[0].name, "other");
     EXPECT_EQ(scene_preset("ct-skin").file, "built in");
-    EXPECT_THAT(refusal([] { scene_preset("cycle"); }), HasSubstr("cannot stand on another"));
+    EXPECT_THAT(refusal([] { scene_preset("cycle"); }), HasSubstr("cannot use another preset"));
     EXPECT_THAT(refusal([] { scene_preset("both"); }), HasSubstr("expected one [[materials]]"));
     EXPECT_THAT(refusal([] { scene_preset("scene"); }), AllOf(HasSubstr("scene.toml:2"), HasSubstr("not for presets")));
     EXPECT_THAT(refusal([] { scene_preset("../ct-bone"); }), HasSubstr("no preset has this name"));
@@ -340,7 +340,7 @@ TEST(ScenePresets, UsersOwnWin) {
     std::filesystem::remove_all(folder);
 }
 
-TEST(SceneDocuments, PresetsBringIsoValuesAndColours) {
+TEST(SceneDocuments, PresetsSetIsoValuesAndColours) {
     const Volume volume = builtin_volume("builtin:phantom:24");
     SceneDocument d;
     d.volume.path = "builtin:phantom:24";
@@ -348,7 +348,7 @@ TEST(SceneDocuments, PresetsBringIsoValuesAndColours) {
     d.materials[0] = {.preset = "ct-bone", .extinction = 2.5};
     d.materials[1].preset = "ct-soft-tissue";
     const Scene scene = resolve_scene(d, volume);
-    EXPECT_THAT(scene.iso_values, ElementsAre(-150, 300)) << "sorted, whatever the order in the file";
+    EXPECT_THAT(scene.iso_values, ElementsAre(-150, 300)) << "sorted, independent of the order in the file";
     EXPECT_EQ(scene.materials[1].name, "soft tissue");
     EXPECT_EQ(scene.materials[2].name, "bone");
     EXPECT_EQ(scene.materials[2].extinction, 2.5);
@@ -356,14 +356,15 @@ TEST(SceneDocuments, PresetsBringIsoValuesAndColours) {
     EXPECT_EQ(scene.materials[0].extinction, 0);
 }
 
-TEST(SceneKeys, TheDocumentHasTheTable) {
+TEST(SceneKeys, DocumentContainsKeyTable) {
     std::ifstream in(EDGESPLAT_SOURCE_DIR "/docs/scene_files.md");
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     const std::string begin = "<!-- keys: made by `edgesplat scene keys --markdown` -->\n",
                       end = "<!-- end of keys -->";
     const std::size_t from = text.find(begin) + begin.size(), to = text.find(end);
     ASSERT_NE(to, std::string::npos);
-    EXPECT_EQ(text.substr(from, to - from), scene_keys_markdown()) << "write `edgesplat scene keys --markdown` there";
+    EXPECT_EQ(text.substr(from, to - from), scene_keys_markdown())
+        << "paste the output of `edgesplat scene keys --markdown`";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The ladder: every knob's every step, what is refused and in which words, presets, and what settings come down to.
+// The ladder of settings: every step of every knob, messages of refusals, presets and canonical settings.
 #include "engine/scene/ladder.h"
 
 #include <gmock/gmock.h>
@@ -21,14 +21,14 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// Steps and others.
+/// All values of a knob: its steps and others.
 std::vector<std::string_view> values_of(const Knob& knob) {
     std::vector<std::string_view> values = knob.steps;
     values.insert(values.end(), knob.others.begin(), knob.others.end());
     return values;
 }
 
-/// Settings with every knob at any of its values.
+/// Settings with a random value of every knob.
 Settings random_settings(std::mt19937& random) {
     Settings settings;
     for (const Knob& knob : ladder()) {
@@ -39,7 +39,7 @@ Settings random_settings(std::mt19937& random) {
     return settings;
 }
 
-TEST(Ladder, EveryValueIsSetAndReadBackAndValid) {
+TEST(Ladder, EveryValueRoundTripsAndIsValid) {
     for (const Knob& knob : ladder()) {
         EXPECT_GE(knob.steps.size() + knob.others.size(), 2U) << knob.name;
         EXPECT_FALSE(knob.help.empty()) << knob.name;
@@ -50,7 +50,7 @@ TEST(Ladder, EveryValueIsSetAndReadBackAndValid) {
             knob.set(settings, value);
             EXPECT_EQ(knob.get(settings), value) << knob.name;
             EXPECT_NO_THROW(validate(settings)) << knob.name << " " << value;
-            // Nothing else is touched: what differs from the defaults is this knob.
+            // Only this knob differs from the defaults.
             const Settings usual;
             EXPECT_EQ(difference(settings),
                       value == knob.get(usual) ? "" : std::string(knob.name) + "=" + std::string(value));
@@ -58,7 +58,7 @@ TEST(Ladder, EveryValueIsSetAndReadBackAndValid) {
     }
 }
 
-TEST(Ladder, EnumsHaveAllTheirNames) {
+TEST(Ladder, EveryEnumValueHasName) {
     const auto expect_names = [](std::string_view knob, std::span<const std::string_view> names) {
         const auto values = values_of(knob_named(knob));
         EXPECT_EQ(std::set<std::string_view>(values.begin(), values.end()),
@@ -72,7 +72,7 @@ TEST(Ladder, EnumsHaveAllTheirNames) {
     expect_names("sheet-format", sheet_format_names());
 }
 
-TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
+TEST(Ladder, RefusalsNameGivenAndExpectedValues) {
     for (const Knob& knob : ladder()) {
         Settings settings;
         const std::string message = refusal([&] { knob.set(settings, "sideways"); });
@@ -89,7 +89,7 @@ TEST(Ladder, RefusalsSayWhatWasGivenAndWhatIsExpected) {
     }
 }
 
-TEST(Ladder, StepsThatAreNoMoreSayWhatToWrite) {
+TEST(Ladder, SuggestsReplacementsForRemovedSteps) {
     for (const auto& [knob, step, instead] : {std::tuple{"warp", "edge", "write face"},
                                               {"edges", "quadratic", "write march"},
                                               {"sheet-format", "half", "write layers"},
@@ -97,7 +97,7 @@ TEST(Ladder, StepsThatAreNoMoreSayWhatToWrite) {
                                               {"footprints", "table-lerp", "write table"}}) {
         Settings settings;
         EXPECT_THAT(refusal([&] { knob_named(knob).set(settings, step); }),
-                    AllOf(HasSubstr(step), HasSubstr("is no more"), HasSubstr(instead)));
+                    AllOf(HasSubstr(step), HasSubstr("was removed"), HasSubstr(instead)));
     }
     for (const Knob& knob : ladder()) {
         EXPECT_EQ(removed_knob(knob.name), "") << knob.name;
@@ -106,7 +106,7 @@ TEST(Ladder, StepsThatAreNoMoreSayWhatToWrite) {
     }
 }
 
-TEST(Ladder, NumbersAreWholeAndInRange) {
+TEST(Ladder, RefusesMalformedAndOutOfRangeNumbers) {
     for (const Knob& knob : ladder()) {
         if (!knob.number) continue;
         Settings settings;
@@ -122,7 +122,7 @@ TEST(Ladder, NumbersAreWholeAndInRange) {
         EXPECT_EQ(refused("+1"), "") << knob.name;
         EXPECT_EQ(knob.get(settings), "1");
         EXPECT_NO_THROW(validate(settings));
-        // The knob's range is the one that settings are checked against.
+        // The knob's range equals the range that validate() checks.
         knob.set(settings, text(knob.high));
         EXPECT_NO_THROW(validate(settings)) << knob.name;
         if (!knob.above_low) {
@@ -132,13 +132,13 @@ TEST(Ladder, NumbersAreWholeAndInRange) {
     }
 }
 
-TEST(Ladder, StepsGoUpAndNamesAreUnique) {
+TEST(Ladder, StepsAreMonotoneAndNamesUnique) {
     std::set<std::string_view> names;
     for (const Knob& knob : ladder()) {
         EXPECT_TRUE(names.insert(knob.name).second) << knob.name;
         EXPECT_EQ(&knob_named(knob.name), &knob);
         if (!knob.number) continue;
-        // Numbers rise or fall from step to step; which way is the better one differs.
+        // Numbers rise or fall from step to step; the better direction depends on the knob.
         std::vector<double> steps;
         for (const std::string_view step : knob.steps)
             steps.push_back(std::stod(std::string(step)));
@@ -155,7 +155,7 @@ TEST(Ladder, EveryCombinationOfStepsIsValid) {
     for (int i = 0; i < 2000; ++i) {
         const Settings settings = random_settings(random);
         ASSERT_NO_THROW(validate(settings)) << difference(settings);
-        ASSERT_NO_THROW(validate(drawn_as(settings))) << difference(settings);
+        ASSERT_NO_THROW(validate(canonical_settings(settings))) << difference(settings);
     }
 }
 
@@ -170,11 +170,11 @@ TEST(Presets, AreValidOrderedAndFoundByName) {
     }
     EXPECT_THAT(names, testing::ElementsAre("draft", "accurate"));
     EXPECT_THAT(refusal([] { preset_named("best"); }), AllOf(HasSubstr("'best'"), HasSubstr("accurate")));
-    // Cheapest first: no knob of a later preset stands on a cheaper step than that of an earlier one.
+    // Cheapest first: no knob of a later preset has a cheaper step than in an earlier preset.
     for (std::size_t i = 1; i < presets().size(); ++i) {
         EXPECT_NE(difference(presets()[i].settings, presets()[i - 1].settings), "");
         for (const Knob& knob : ladder()) {
-            // Sheets of whole kernels and of slices are no steps of one stair.
+            // Spacings of whole and of sliced sheets are not comparable.
             if (knob.name == "sheet-spacing" && presets()[i - 1].settings.sheets != presets()[i].settings.sheets)
                 continue;
             const auto rank = [&](const Preset& preset) {
@@ -189,7 +189,7 @@ TEST(Presets, AreValidOrderedAndFoundByName) {
     }
 }
 
-TEST(Difference, NamesWhatDiffersAndNothingElse) {
+TEST(Difference, NamesOnlyChangedSettings) {
     EXPECT_EQ(difference({}), "");
     Settings settings;
     settings.edges = EdgeEstimator::March;
@@ -197,7 +197,7 @@ TEST(Difference, NamesWhatDiffersAndNothingElse) {
     EXPECT_EQ(difference(settings), "edges=march sheet-spacing=0.5");
     EXPECT_EQ(difference(settings, settings), "");
     EXPECT_EQ(difference({}, settings), "edges=cubic sheet-spacing=0.25");
-    // What it says is enough to set it.
+    // The text is sufficient to restore the settings.
     std::mt19937 random(2);
     for (int i = 0; i < 200; ++i) {
         const Settings wanted = random_settings(random);
@@ -212,39 +212,39 @@ TEST(Difference, NamesWhatDiffersAndNothingElse) {
     }
 }
 
-TEST(DrawnAs, OnceIsEnough) {
+TEST(CanonicalSettings, AreIdempotent) {
     std::mt19937 random(3);
     for (int i = 0; i < 5000; ++i) {
-        const Settings settings = random_settings(random), drawn = drawn_as(settings);
-        ASSERT_EQ(drawn_as(drawn), drawn) << difference(settings) << " -> " << difference(drawn);
+        const Settings settings = random_settings(random), drawn = canonical_settings(settings);
+        ASSERT_EQ(canonical_settings(drawn), drawn) << difference(settings) << " -> " << difference(drawn);
     }
-    EXPECT_EQ(drawn_as({}), Settings{});
+    EXPECT_EQ(canonical_settings({}), Settings{});
 }
 
-TEST(DrawnAs, TheShortCutIsThePapersAlone) {
-    Settings settings = papers_own();
+TEST(CanonicalSettings, Warp2dRequiresPaperWarp) {
+    Settings settings = paper_settings();
     settings.sheets = SheetCut::Sliced;
-    EXPECT_EQ(drawn_as(settings), settings) << "and it is sliced as it is";
+    EXPECT_EQ(canonical_settings(settings), settings) << "warp2d also works with sliced sheets";
     settings.warp = WarpFamily::Face;
-    EXPECT_EQ(drawn_as(settings).footprints, FootprintMode::Procedural);
+    EXPECT_EQ(canonical_settings(settings).footprints, FootprintMode::Procedural);
 }
 
-TEST(DrawnAs, TheTableHasWholeKernelsAtFaces) {
+TEST(CanonicalSettings, TableRequiresFaceWarpAndWholeSheets) {
     Settings settings;
     settings.footprints = FootprintMode::Table;
     EXPECT_TRUE(draws_table(settings));
-    EXPECT_EQ(drawn_as(settings), settings);
+    EXPECT_EQ(canonical_settings(settings), settings);
     Settings sliced = settings;
     sliced.sheets = SheetCut::Sliced;
     Settings paper = settings;
     paper.warp = WarpFamily::Paper;
     for (const Settings& other : {sliced, paper}) {
         EXPECT_FALSE(draws_table(other));
-        EXPECT_EQ(drawn_as(other).footprints, FootprintMode::Procedural);
+        EXPECT_EQ(canonical_settings(other).footprints, FootprintMode::Procedural);
     }
 }
 
-TEST(DrawnAs, KnobsWithoutASayAreDropped) {
+TEST(CanonicalSettings, ResetUnusedSettings) {
     Settings settings;
     settings.edges = EdgeEstimator::Off;
     settings.footprints = FootprintMode::Warp2d;
@@ -256,14 +256,14 @@ TEST(DrawnAs, KnobsWithoutASayAreDropped) {
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
     plain.sheet_spacing = 2;
-    EXPECT_EQ(drawn_as(settings), plain) << difference(drawn_as(settings));
-    // Isotropic footprints of whatever edges are the same picture.
+    EXPECT_EQ(canonical_settings(settings), plain) << difference(canonical_settings(settings));
+    // Isotropic footprints give the same picture with every edge estimator.
     settings.edges = EdgeEstimator::Cubic;
     settings.footprints = FootprintMode::Isotropic;
-    EXPECT_EQ(drawn_as(settings), plain);
+    EXPECT_EQ(canonical_settings(settings), plain);
 }
 
-TEST(DrawnAs, AKnobThatMattersNotChangesNothing) {
+TEST(CanonicalSettings, UnusedSettingsChangeNothing) {
     std::mt19937 random(4);
     for (int i = 0; i < 2000; ++i) {
         const Settings settings = random_settings(random);
@@ -272,7 +272,8 @@ TEST(DrawnAs, AKnobThatMattersNotChangesNothing) {
             for (const std::string_view value : values_of(knob)) {
                 Settings other = settings;
                 knob.set(other, value);
-                ASSERT_EQ(drawn_as(other), drawn_as(settings)) << knob.name << " of " << difference(settings);
+                ASSERT_EQ(canonical_settings(other), canonical_settings(settings))
+                    << knob.name << " of " << difference(settings);
             }
         }
     }

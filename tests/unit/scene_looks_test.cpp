@@ -1,4 +1,4 @@
-// Looks by name, surfaces by standard deviations, and segmentations that are recognised.
+// Looks by name, surfaces by standard deviations, and recognition of segmentations.
 #include <gmock/gmock.h>
 
 #include <functional>
@@ -32,46 +32,46 @@ Volume segmentation() {
     return volume;
 }
 
-TEST(SceneLooks, EveryKindHasOne) {
+TEST(SceneLooks, EveryKindOfDataHasLook) {
     for (const char* name :
          {"ct-skin-bone", "ct-skull", "mri-head", "angiography", "micro-ct", "segmentation", "electron-density"}) {
         EXPECT_EQ(scene_preset(name).kind, PresetKind::Look) << name;
         SceneDocument d;
         d.volume.path = "builtin:phantom:16";
-        use_look(d, name);
+        apply_look(d, name);
         EXPECT_THAT(problems_of(d, {}), IsEmpty()) << name;
         EXPECT_FALSE(d.lights.empty()) << name;
-        // A builtin volume would bring surfaces of its own.
+        // A builtin volume would set its own surfaces.
         Volume head = builtin_volume("builtin:phantom:16");
         head.name = "head";
-        // Nor are densities and labels heads.
+        // Looks for densities and labels do not fit a head.
         if (!d.volume.labels && d.iso_sigmas.empty()) {
             EXPECT_EQ(resolve_scene(d, head).lights, d.lights) << name;
         }
     }
 }
 
-TEST(SceneLooks, TakeWhatWasSaidBefore) {
+TEST(SceneLooks, ReplacePreviousSettings) {
     SceneDocument d;
     d.iso_values = {5};
     d.materials.resize(1);
     d.transfer_preset = "ct-soft-tissue-and-bone";
     d.lights.clear();
-    use_look(d, "ct-skin-bone");
+    apply_look(d, "ct-skin-bone");
     EXPECT_THAT(d.iso_values, ElementsAre(-300, 280));
     EXPECT_TRUE(d.transfer_preset.empty());
     EXPECT_EQ(d.lights.size(), 2U);
     const Scene scene = resolve_scene(d, builtin_volume("builtin:phantom:16"));
-    EXPECT_EQ(scene.materials[1].extinction, 0.03) << "skin is a veil";
-    EXPECT_EQ(scene.materials[2].extinction, 8) << "bone is not";
-    // Any kind of preset is a look.
-    use_look(d, "ct-bone");
+    EXPECT_EQ(scene.materials[1].extinction, 0.03) << "skin is translucent";
+    EXPECT_EQ(scene.materials[2].extinction, 8) << "bone is opaque";
+    // apply_look accepts presets of every kind.
+    apply_look(d, "ct-bone");
     EXPECT_EQ(d.materials.size(), 1U);
     EXPECT_EQ(d.lights, std::vector<Light>{Light{}});
-    EXPECT_THROW(use_look(d, "ct-skin-bones"), Error);
+    EXPECT_THROW(apply_look(d, "ct-skin-bones"), Error);
 }
 
-TEST(SceneLooks, SurfacesByStandardDeviations) {
+TEST(SceneLooks, PlaceSurfacesByStandardDeviations) {
     Volume volume;
     volume.geometry.dims = {10, 10, 1};
     volume.name = "two values";
@@ -88,7 +88,7 @@ TEST(SceneLooks, SurfacesByStandardDeviations) {
     EXPECT_EQ(problems_of(d, {}).back().path, "iso_sigmas");
 }
 
-TEST(SceneLooks, SegmentationsAreRecognised) {
+TEST(SceneLooks, RecogniseSegmentations) {
     const Volume raw = segmentation();
     SceneDocument d;
     Volume volume = raw;
@@ -102,13 +102,13 @@ TEST(SceneLooks, SegmentationsAreRecognised) {
         EXPECT_GT(drawn.extinction, 1) << label;
     }
     EXPECT_EQ(transfer_at(scene.transfer, 0).extinction, 0);
-    // Read again as the picture remembers it, it is the same.
+    // Loading with the source that the picture records gives the same volume.
     VolumeSource source;
     source.labels = true;
     EXPECT_EQ(preprocessed(raw, source).checksum, volume.checksum);
 }
 
-TEST(SceneLooks, WhatIsAskedForIsNotRecognisedAway) {
+TEST(SceneLooks, ExplicitSettingsDisableRecognition) {
     const auto left = [](const std::function<void(SceneDocument&)>& said) {
         SceneDocument d;
         said(d);
@@ -122,10 +122,10 @@ TEST(SceneLooks, WhatIsAskedForIsNotRecognisedAway) {
     EXPECT_TRUE(left([](SceneDocument& d) { d.volume.labels = false; }));
     EXPECT_TRUE(left([](SceneDocument& d) { d.volume.threshold = 3; }));
     EXPECT_TRUE(left([](SceneDocument& d) { d.output.compare_raycast = true; }));
-    EXPECT_TRUE(left([](SceneDocument& d) { use_look(d, "ct-bone"); }));
+    EXPECT_TRUE(left([](SceneDocument& d) { apply_look(d, "ct-bone"); }));
 }
 
-TEST(SceneLooks, ColoursOfNeighbouringLabelsAreToldApart) {
+TEST(SceneLooks, NeighbouringLabelsHaveDistinctColours) {
     for (std::size_t label = 1; label < 60; ++label)
         for (std::size_t other = label + 1; other < label + 5; ++other)
             EXPECT_GT(glm::length(default_label_color(label) - default_label_color(other)), 0.1)

@@ -1,4 +1,4 @@
-// Cameras, scenes and settings: what is refused, and in which words.
+// Validation of cameras, scenes and settings, and its messages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -28,11 +28,11 @@ Scene good_scene() {
     return scene;
 }
 
-TEST(Scene, AcceptsWhatItShould) {
+TEST(Scene, AcceptsValidScene) {
     EXPECT_NO_THROW(validate(good_scene()));
 }
 
-TEST(Scene, NamesTheWrongField) {
+TEST(Scene, NamesInvalidField) {
     const auto with = [](const std::function<void(Scene&)>& change) {
         return refusal([&] {
             Scene scene = good_scene();
@@ -53,7 +53,7 @@ TEST(Scene, NamesTheWrongField) {
     EXPECT_THAT(with([](Scene& s) { s.lights = {directional_light(glm::dvec3(0))}; }), HasSubstr("direction"));
 }
 
-TEST(Settings, NamesTheWrongField) {
+TEST(Settings, NamesInvalidField) {
     const auto with = [](const std::function<void(Settings&)>& change) {
         return refusal([&] {
             Settings settings;
@@ -70,7 +70,7 @@ TEST(Settings, NamesTheWrongField) {
     EXPECT_THAT(with([](Settings& s) { s.saturation = kNan; }), HasSubstr("saturation"));
 }
 
-TEST(Settings, NamesGoThereAndBack) {
+TEST(Settings, NamesRoundTrip) {
     for (const auto name : edge_estimator_names())
         EXPECT_EQ(name_of(edge_estimator_named(name)), name);
     for (const auto name : footprint_mode_names())
@@ -96,14 +96,14 @@ TEST(Camera, FrameIsOrthonormalAndRightHanded) {
     }
 }
 
-TEST(Camera, LooksWhereItIsTold) {
+TEST(Camera, LooksAlongYByDefault) {
     const CameraFrame f = camera_frame({});
     EXPECT_NEAR(glm::length(f.right - glm::dvec3(1, 0, 0)), 0, 1e-12);
     EXPECT_NEAR(glm::length(f.up - glm::dvec3(0, 0, 1)), 0, 1e-12);
     EXPECT_NEAR(f.tan_half_y, std::tan(glm::radians(22.5)), 1e-12);
 }
 
-TEST(Camera, RefusesWhatHasNoFrame) {
+TEST(Camera, RefusesDegenerateCameras) {
     Camera camera;
     camera.direction = {0, 0, 0};
     EXPECT_THAT(refusal([&] { camera_frame(camera); }), HasSubstr("direction"));

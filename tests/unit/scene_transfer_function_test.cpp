@@ -18,7 +18,7 @@ TEST(TransferFunction, IsLinearBetweenItsPointsAndConstantBeyond) {
     EXPECT_EQ(transfer_at({kPoints.data() + 1, 1}, -7), (TransferPoint{-7, {0, 1, 0}, 3}));
 }
 
-TEST(TransferFunction, KnowsTheExtinctionsOfEveryInterval) {
+TEST(TransferFunction, BoundsExtinctionsOfEveryInterval) {
     Scene scene;
     scene.transfer = kPoints;
     scene.materials.resize(1);

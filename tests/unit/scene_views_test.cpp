@@ -1,4 +1,4 @@
-// Named views: everything is in the picture, the right way up, and `close` is close.
+// Named views: they show the whole volume upright, and `close` is near a surface.
 #include "engine/scene/views.h"
 
 #include <gmock/gmock.h>
@@ -63,7 +63,7 @@ TEST(SceneViews, EveryViewShowsTheWholeVolume) {
     }
 }
 
-TEST(SceneViews, DirectionsAreThoseOfThePatient) {
+TEST(SceneViews, DirectionsFollowPatientAxes) {
     const Volume volume = oblique_volume();
     const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);
     const auto view = [&](std::string_view name) { return named_view(name, {&volume, &surface_scene(), 45, 64, 64}); };
@@ -79,7 +79,7 @@ TEST(SceneViews, CloseShowsAVoxelAtTwentyPixelsOrMore) {
     const Volume volume = oblique_volume();
     const int height = 300;
     const Camera camera = named_view("close", {&volume, &surface_scene(), 50, 300, height});
-    // Where does the central ray enter the box? Walk, and measure the size of a voxel (1 mm) there.
+    // Marches along the central ray to the box and computes the size of a voxel (1 mm) there, in pixels.
     for (double t = 0;; t += 0.05) {
         ASSERT_LT(t, 200) << "the central ray misses the box";
         const glm::ivec3 i(glm::round(volume.geometry.to_index(camera.eye + t * glm::normalize(camera.direction))));
@@ -92,7 +92,7 @@ TEST(SceneViews, CloseShowsAVoxelAtTwentyPixelsOrMore) {
     }
 }
 
-/// A small box in a corner of much empty space, a noisy voxel in the other.
+/// A small box in one corner of an empty volume, and one noise voxel in another corner.
 Volume corner_volume() {
     Volume volume;
     volume.geometry.dims = {60, 50, 40};
@@ -107,7 +107,7 @@ Volume corner_volume() {
     return volume;
 }
 
-TEST(SceneViews, WhatIsSeenFillsThePicture) {
+TEST(SceneViews, VisibleMatterFillsPicture) {
     const Volume volume = corner_volume();
     for (const glm::ivec2 size : {glm::ivec2(512, 512), glm::ivec2(640, 200), glm::ivec2(100, 400)}) {
         for (const std::string_view name : view_names()) {
@@ -127,7 +127,7 @@ TEST(SceneViews, WhatIsSeenFillsThePicture) {
             EXPECT_GE(std::max(high.x - low.x, high.y - low.y), 1.7) << name << " should fill the picture";
             EXPECT_NEAR(low.x, -high.x, 0.2) << name << " should be in the middle";
             EXPECT_NEAR(low.y, -high.y, 0.2) << name;
-            // What is not seen counts no more than what is not asked for.
+            // Without `fill` the view frames the whole volume, so the eye is farther away.
             request.fill = false;
             EXPECT_GT(glm::length(named_view(name, request).eye - volume.geometry.center()),
                       glm::length(camera.eye - volume.geometry.to_world({47.5, 7, 5.5})));
@@ -135,8 +135,8 @@ TEST(SceneViews, WhatIsSeenFillsThePicture) {
     }
 }
 
-TEST(SceneViews, CloseLooksAtASurfaceWhereTheMiddleHasNone) {
-    // A tube along the line of sight: the central ray meets nothing.
+TEST(SceneViews, CloseFindsSurfaceBesideCentralRay) {
+    // A tube along the line of sight: the central ray passes through it without a hit.
     Volume volume;
     volume.geometry.dims = glm::ivec3(40);
     volume.name = "tube";
@@ -156,12 +156,12 @@ TEST(SceneViews, CloseLooksAtASurfaceWhereTheMiddleHasNone) {
         if (glm::any(glm::lessThan(i, glm::ivec3(0))) || glm::any(glm::greaterThan(i, glm::ivec3(39)))) continue;
         if (volume.at(i.x, i.y, i.z) == 0) continue;
         EXPECT_NEAR(t, near, 1);
-        EXPECT_EQ(i.y, 5) << "met head on, not at the wall inside";
+        EXPECT_EQ(i.y, 5) << "the end face of the tube, not its inner wall";
         break;
     }
 }
 
-/// 40 x 70 x 40 voxels of `inside`, a distance in voxels, > 0 within.
+/// 40 x 70 x 40 voxels; `inside` is a distance in voxels, > 0 in matter.
 template <typename Inside>
 Volume volume_of(const Inside& inside) {
     Volume volume;
@@ -174,25 +174,25 @@ Volume volume_of(const Inside& inside) {
     return volume;
 }
 
-std::string_view told_best(const Volume& volume) {
-    return telling_view({&volume, &surface_scene(), 45, 300, 300, true});
+std::string_view best_view(const Volume& volume) {
+    return most_informative_view({&volume, &surface_scene(), 45, 300, 300, true});
 }
 
-TEST(SceneViews, ThingsInARowAreSeenFromTheSideThoughOneFillsThePictureFromTheEnd) {
+TEST(SceneViews, BestViewShowsObjectsSideBySide) {
     const auto ball = [](const glm::dvec3& p, double y) { return 13 - glm::length(p - glm::dvec3(19.5, y, 19.5)); };
-    EXPECT_EQ(told_best(volume_of([&](const glm::dvec3& p) { return ball(p, 20); })), "front");
-    EXPECT_NE(told_best(volume_of([&](const glm::dvec3& p) { return std::max(ball(p, 15), ball(p, 50)); })), "front");
+    EXPECT_EQ(best_view(volume_of([&](const glm::dvec3& p) { return ball(p, 20); })), "front");
+    EXPECT_NE(best_view(volume_of([&](const glm::dvec3& p) { return std::max(ball(p, 15), ball(p, 50)); })), "front");
 }
 
-TEST(SceneViews, ACutThroughMatterTellsNothingHoweverRoughTheMatterIs) {
-    // Half a ball whose cut faces front, of matter that is nowhere smooth.
+TEST(SceneViews, BestViewIgnoresCutFaces) {
+    // Half a ball of rough matter, with its cut towards the front.
     Volume half = volume_of([](const glm::dvec3& p) { return 18 - glm::length(p - glm::dvec3(19.5, 0, 19.5)); });
     for (std::size_t i = 0; i < half.values.size(); ++i)
         if (half.values[i] >= 1) half.values[i] = 0.7F + 0.3F * static_cast<float>(i * 7919 % 101) / 101;
-    EXPECT_NE(told_best(half), "front");
+    EXPECT_NE(best_view(half), "front");
 }
 
-TEST(SceneViews, UnknownNameListsTheNames) {
+TEST(SceneViews, UnknownNameListsKnownNames) {
     const Volume volume = oblique_volume();
     EXPECT_THAT(
         [&] {

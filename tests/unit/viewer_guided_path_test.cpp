@@ -1,4 +1,4 @@
-// Ways through cavities, against their centre lines.
+// Guided paths through cavities, compared with centre lines.
 #include "engine/viewer/guided_path.h"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 
 using namespace viewer_test;
 
-/// On the centre line of the bent tube.
+/// A point on the centre line of the bent tube.
 glm::dvec3 bend_at(double angle) {
     return {6 + kBend * std::cos(angle), 6 + kBend * std::sin(angle), 24};
 }
@@ -37,7 +37,7 @@ void expect_even(const GuidedPath& path, double voxel) {
         EXPECT_NEAR(glm::length(path.points[i] - path.points[i - 1]), step, 0.1 * step);
 }
 
-TEST(ViewerGuidedPath, KeepsToTheMiddleOfABentTube) {
+TEST(ViewerGuidedPath, FollowsCentreLineOfBentTube) {
     for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(1, 1, 3)}) {
         const Cavity tube = bent_tube(spacing);
         const Walls walls(sampled(tube), solid_scene());
@@ -57,7 +57,7 @@ TEST(ViewerGuidedPath, KeepsToTheMiddleOfABentTube) {
     }
 }
 
-TEST(ViewerGuidedPath, ComesToTheMiddleFromTheSide) {
+TEST(ViewerGuidedPath, ReachesCentreLineFromSide) {
     const Cavity tube = bent_tube();
     const Walls walls(sampled(tube), solid_scene());
     const glm::dvec3 from = bend_at(0.15) + glm::dvec3(3, 0, 3);
@@ -68,7 +68,7 @@ TEST(ViewerGuidedPath, ComesToTheMiddleFromTheSide) {
         EXPECT_LT(off_the_bend(path->points[i]), 1.2) << i;
 }
 
-TEST(ViewerGuidedPath, ObliqueVolumes) {
+TEST(ViewerGuidedPath, HandlesObliqueVolumes) {
     const Cavity tube = straight_tube();
     const Walls walls(sampled(tube), solid_scene());
     const auto path = guided_path(walls, tube.to_world({22, 25, 8}), tube.to_world({24, 23, 55}));
@@ -79,7 +79,7 @@ TEST(ViewerGuidedPath, ObliqueVolumes) {
     }
 }
 
-TEST(ViewerGuidedPath, ThroughAMazeWithoutTouchingIt) {
+TEST(ViewerGuidedPath, CrossesMazeWithoutTouchingWalls) {
     for (const glm::dvec3& spacing : {glm::dvec3(1), glm::dvec3(3, 1, 1)}) {
         const Cavity cavity = maze(spacing);
         const auto volume = sampled(cavity);
@@ -95,7 +95,7 @@ TEST(ViewerGuidedPath, ThroughAMazeWithoutTouchingIt) {
     }
 }
 
-TEST(ViewerGuidedPath, NoneWhereNothingConnects) {
+TEST(ViewerGuidedPath, FindsNoPathBetweenSeparateCavities) {
     const Cavity cavity = shell();
     Cavity two = cavity;
     two.room = [=](const glm::dvec3& x) { return std::max(cavity.room(x), 8 - glm::length(x - glm::dvec3(23.5))); };
@@ -107,12 +107,12 @@ TEST(ViewerGuidedPath, NoneWhereNothingConnects) {
     EXPECT_FALSE(guided_path(walls, middle, middle));
     EXPECT_FALSE(guided_path(walls, {NAN, 0, 0}, middle));
     EXPECT_FALSE(guided_path(walls, {INFINITY, 0, 0}, middle));
-    // Through the corner of the volume there is no way in.
+    // There is no path in from the corner of the volume.
     EXPECT_FALSE(guided_path(walls, {0, 0, 0}, middle));
 }
 
-// Sheets that no voxel lies in are walls too.
-TEST(ViewerGuidedPath, DoesNotSlipThroughThinSheets) {
+// Sheets between voxels are walls, too.
+TEST(ViewerGuidedPath, DoesNotCrossThinSheets) {
     Cavity step = hollow_ball(32, 5);
     step.blur = 0;
     step.room = [](const glm::dvec3& x) { return glm::dot(x, glm::normalize(glm::dvec3(1, 0.4, 0.3))) - 20.3; };
@@ -123,7 +123,7 @@ TEST(ViewerGuidedPath, DoesNotSlipThroughThinSheets) {
     EXPECT_FALSE(guided_path(walls, {4, 4, 4}, {28, 28, 28}));
 }
 
-TEST(ViewerGuidedPath, EndsInWallsArePulledOut) {
+TEST(ViewerGuidedPath, MovesEndsOutOfWalls) {
     const Cavity tube = bent_tube();
     const Walls walls(sampled(tube), solid_scene());
     const glm::dvec3 from = bend_at(0.3) + glm::dvec3(0, 0, 8);
@@ -135,7 +135,7 @@ TEST(ViewerGuidedPath, EndsInWallsArePulledOut) {
     EXPECT_FALSE(guided_path(walls, bend_at(0.3) + glm::dvec3(0, 0, 14), bend_at(1.2)));
 }
 
-TEST(ViewerGuidedPath, FromOutsideTheVolume) {
+TEST(ViewerGuidedPath, StartsOutsideVolume) {
     Cavity open = straight_tube();
     open.room = [](const glm::dvec3& x) { return 6.3 - glm::length(glm::dvec2(x) - glm::dvec2(23.2, 24.1)); };
     const Walls walls(sampled(open), solid_scene());
@@ -148,12 +148,12 @@ TEST(ViewerGuidedPath, FromOutsideTheVolume) {
         EXPECT_FALSE(walls.solid(p));
 }
 
-TEST(ViewerGuidedPath, CamerasAlongThePath) {
+TEST(ViewerGuidedPath, CamerasFollowPath) {
     const Cavity tube = bent_tube();
     const Walls walls(sampled(tube), solid_scene());
     const auto path = guided_path(walls, bend_at(0.1), bend_at(1.45));
     ASSERT_TRUE(path);
-    // Also where the view goes along `up`: the tube begins along y and ends against x.
+    // Including views along `up`: the tube begins along +y and ends along -x.
     for (const glm::dvec3& up : {glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0), glm::dvec3(0, 1, 0)}) {
         const CameraPath keys = camera_path_along(*path, 12, 70, up);
         EXPECT_NEAR(duration(keys), 12, 1e-12);
@@ -179,7 +179,7 @@ TEST(ViewerGuidedPath, CamerasAlongThePath) {
     EXPECT_NE(refusal([&] { camera_path_along({}, 1, 70, {0, 0, 1}); }).find("no length"), std::string::npos);
 }
 
-TEST(ViewerGuidedPath, ThroughANose) {
+TEST(ViewerGuidedPath, CrossesRealNose) {
     const char* folder = std::getenv("EDGESPLAT_DATA");
     if (folder == nullptr || *folder == '\0') GTEST_SKIP() << "EDGESPLAT_DATA is not set: no folder of real volumes";
     const auto volume = std::make_shared<const Volume>(load_volume(std::string(folder) + "/cranium_ct/cranium.nhdr"));
@@ -188,7 +188,7 @@ TEST(ViewerGuidedPath, ThroughANose) {
     const Walls walls(volume, scene);
     const glm::dvec3 nose = volume->geometry.to_world({128, 148, 14});
     ASSERT_FALSE(walls.solid(nose));
-    // Places behind it, which in matter move to the air nearby; the last from outside of the head.
+    // Targets behind the nose; a target in matter moves to nearby air. The last path begins outside the head.
     for (const auto& [from, back] : {std::pair{nose, 70}, {nose, 64}, {nose, 20}, {nose - glm::dvec3(0, 300, 0), 64}}) {
         const auto start = std::chrono::steady_clock::now();
         const auto path = guided_path(walls, from, volume->geometry.to_world({128, 148 + back, 14}));

@@ -1,4 +1,4 @@
-// Clip planes and boxes under a hand.
+// Dragging clip planes and boxes by their handles.
 #include "engine/viewer/handles.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ VolumeGeometry geometry() {
     return sampled(straight_tube())->geometry;  // turned about all axes
 }
 
-TEST(Handles, ALinesPlaceIsWhereTheRayComesNearest) {
+TEST(Handles, FindPointOnLineNearestToRay) {
     Random random(11);
     for (int i = 0; i < 2000; ++i) {
         const Ray ray{100.0 * random.direction(), random.direction()};
@@ -43,7 +43,7 @@ TEST(Handles, ALinesPlaceIsWhereTheRayComesNearest) {
     }
 }
 
-TEST(Handles, DraggingAlongTheProjectedNormalMovesExactlyToTheRay) {
+TEST(Handles, DragMovesExactlyToRay) {
     Random random(11);
     for (int i = 0; i < 500; ++i) {
         const Camera camera = looking(200.0 * random.direction(), 20.0 * random.direction());
@@ -59,7 +59,7 @@ TEST(Handles, DraggingAlongTheProjectedNormalMovesExactlyToTheRay) {
     }
 }
 
-TEST(Handles, ParallelAndTurnedAwayRaysAreRefused) {
+TEST(Handles, RefuseParallelRaysAndPointsBehindEye) {
     const Ray ray{{0, 0, 0}, {0, 1, 0}};
     EXPECT_FALSE(along_line(ray, {5, 5, 5}, {0, 1, 0}));
     EXPECT_FALSE(along_line(ray, {5, 5, 5}, {0, -1, 0}));
@@ -69,7 +69,7 @@ TEST(Handles, ParallelAndTurnedAwayRaysAreRefused) {
     EXPECT_EQ(along_line(ray, {5, 5, 5}, {1, 0, 0}), -5);
 }
 
-TEST(Handles, ADragIsAlwaysFinite) {
+TEST(Handles, DragIsAlwaysFinite) {
     Random random(11);
     const VolumeGeometry g = geometry();
     SceneDocument d;
@@ -117,7 +117,7 @@ TEST(Handles, LieOnTheirPlanes) {
     EXPECT_EQ(handles[13].index, 5U);
 }
 
-TEST(Handles, APlaneMovesByTheDistanceAndStopsAtTheVolume) {
+TEST(Handles, PlaneMovesByDistanceAndStopsAtVolume) {
     const VolumeGeometry g = geometry();
     SceneDocument d;
     d.effects.clip.keep = {{g.to_world({20, 20, 20}), {0.3, 0.2, -1}}};
@@ -125,7 +125,7 @@ TEST(Handles, APlaneMovesByTheDistanceAndStopsAtTheVolume) {
     move_handle(d, g, handle, 4.25);
     EXPECT_NEAR(glm::dot(clip_handles(d, g)[0].place - handle.place, handle.normal), 4.25, 1e-9);
     EXPECT_EQ(d.effects.clip.keep[0].normal, glm::dvec3(0.3, 0.2, -1));
-    // At its furthest nothing is cut, or nothing is left: a corner touches the plane.
+    // At its limits the plane cuts nothing or everything: a corner of the volume touches it.
     for (const double far : {-1e6, 1e6}) {
         move_handle(d, g, handle, far);
         double least = 1e9, most = -1e9;
@@ -140,7 +140,7 @@ TEST(Handles, APlaneMovesByTheDistanceAndStopsAtTheVolume) {
     }
 }
 
-TEST(Handles, ABoxesSidesMoveAloneAndNeverMeet) {
+TEST(Handles, BoxSidesMoveIndependentlyAndNeverMeet) {
     const VolumeGeometry g = geometry();
     const ClipBox bounds = volume_box(g);
     SceneDocument d;
@@ -164,7 +164,7 @@ TEST(Handles, ABoxesSidesMoveAloneAndNeverMeet) {
     EXPECT_EQ(d.keep_box, bounds);
 }
 
-TEST(Handles, TheVolumesBoxHoldsEveryCorner) {
+TEST(Handles, VolumeBoxContainsEveryCorner) {
     VolumeGeometry g;
     g.dims = {4, 6, 8};
     g.index_to_world_axes = glm::dmat3(0.5);
@@ -172,7 +172,7 @@ TEST(Handles, TheVolumesBoxHoldsEveryCorner) {
     EXPECT_EQ(volume_box(g), (ClipBox{{0.75, 1.75, 2.75}, {2.75, 4.75, 6.75}}));
 }
 
-TEST(Handles, TheNearestInThePictureIsTaken) {
+TEST(Handles, NearestHandleInPictureIsPicked) {
     const Camera camera = looking({0, -100, 0}, {0, 0, 0});
     std::vector<Handle> handles(3);
     handles[0].place = {0, 0, 0};
@@ -182,19 +182,19 @@ TEST(Handles, TheNearestInThePictureIsTaken) {
     EXPECT_EQ(handle_at(handles, camera, kSize, middle, 8, 0), 0U);
     EXPECT_EQ(handle_at(handles, camera, kSize, *project(camera, kSize, {0.9, 0, 0}), 8, 0), 1U);
     EXPECT_FALSE(handle_at(handles, camera, kSize, middle + glm::dvec2(0, 9), 8, 0));
-    // What lies beside the picture is taken at its rim; what lies behind the eye nowhere.
+    // A handle beside the picture appears at its rim; a handle behind the eye does not appear.
     Camera aside = camera;
     aside.direction = glm::normalize(glm::normalize(camera.direction) + 3.0 * camera_frame(camera).right);
-    const auto seen = seen_at(handles[0], aside, kSize, 12);
+    const auto seen = handle_pixel(handles[0], aside, kSize, 12);
     ASSERT_TRUE(seen);
     EXPECT_EQ(seen->x, 12);
     EXPECT_EQ(handle_at({handles.data(), 1}, aside, kSize, *seen + glm::dvec2(3, 0), 8, 12), 0U);
     aside.direction = -camera.direction;
-    EXPECT_FALSE(seen_at(handles[0], aside, kSize, 12));
+    EXPECT_FALSE(handle_pixel(handles[0], aside, kSize, 12));
     EXPECT_FALSE(handle_at({}, camera, kSize, middle, 8, 0));
 }
 
-TEST(Handles, DirectionsOnADiscHaveAnInverse) {
+TEST(Handles, DiscMappingIsInvertible) {
     Random random(11);
     EXPECT_EQ(disc_of({0, 0, 3}), glm::dvec2(0));
     EXPECT_NEAR(glm::length(disc_of({0, 0, -1})), 1, 1e-12);

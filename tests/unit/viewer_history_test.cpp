@@ -5,7 +5,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-TEST(History, GoesBackAndForth) {
+TEST(History, UndoesAndRedoes) {
     History<int> history(1);
     history.change(2, true);
     history.change(3, true);
@@ -23,7 +23,7 @@ TEST(History, GoesBackAndForth) {
     EXPECT_FALSE(history.can_redo());
 }
 
-TEST(History, ADragIsOneStep) {
+TEST(History, DragIsOneStep) {
     History<int> history(1);
     for (int i = 2; i < 50; ++i)
         history.change(i, false);
@@ -35,7 +35,7 @@ TEST(History, ADragIsOneStep) {
     EXPECT_EQ(history.now(), 50);
 }
 
-TEST(History, UndoDuringADragTakesItBack) {
+TEST(History, UndoCancelsDrag) {
     History<int> history(1);
     history.change(2, true);
     history.change(7, false);
@@ -43,7 +43,7 @@ TEST(History, UndoDuringADragTakesItBack) {
     EXPECT_EQ(history.now(), 2);
 }
 
-TEST(History, ANewChangeForgetsWhatWasUndone) {
+TEST(History, NewChangeClearsRedo) {
     History<int> history(1);
     history.change(2, true);
     history.undo();
@@ -53,13 +53,13 @@ TEST(History, ANewChangeForgetsWhatWasUndone) {
     EXPECT_EQ(history.now(), 1);
 }
 
-TEST(History, AnEqualStateIsNoStep) {
+TEST(History, EqualStateAddsNoStep) {
     History<int> history(1);
     history.change(1, true);
     EXPECT_FALSE(history.can_undo());
 }
 
-TEST(History, ForgetsTheOldestAndKeepsTheRest) {
+TEST(History, DropsOldestStepsFirst) {
     History<int> history(0);
     for (int i = 1; i <= 1000; ++i)
         history.change(i, true);

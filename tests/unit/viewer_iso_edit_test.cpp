@@ -1,4 +1,4 @@
-// Iso-values under a hand: order, limits, and that each keeps its material.
+// Editing iso-values: order, limits, and each value keeps its material.
 #include "engine/viewer/iso_edit.h"
 
 #include <gtest/gtest.h>
@@ -45,7 +45,7 @@ std::string names(const SceneDocument& d) {
     return all;
 }
 
-TEST(IsoEdit, AddedValuesComeInOrderWithAMaterialOfTheirOwn) {
+TEST(IsoEdit, InsertsValuesInOrderWithOwnMaterial) {
     const Volume v = volume();
     SceneDocument d = document({0.3, 0.6});
     d.materials[0].color = default_color(0);
@@ -60,7 +60,7 @@ TEST(IsoEdit, AddedValuesComeInOrderWithAMaterialOfTheirOwn) {
     EXPECT_NO_THROW(resolve_scene(d, v));
 }
 
-TEST(IsoEdit, AddedValuesStayInTheRangeAndOffOneAnother) {
+TEST(IsoEdit, AddedValuesStayInRangeAndApart) {
     const Volume v = volume();
     SceneDocument d = document({0.5});
     ASSERT_TRUE(add_iso_value(d, v, 0.5));
@@ -79,7 +79,7 @@ TEST(IsoEdit, AddedValuesStayInTheRangeAndOffOneAnother) {
     EXPECT_NO_THROW(resolve_scene(d, v));
 }
 
-TEST(IsoEdit, NothingCanBeAddedToAConstantVolume) {
+TEST(IsoEdit, RefusesValuesInConstantVolume) {
     Volume v = volume();
     v.min_value = v.max_value = 3;
     SceneDocument d;
@@ -87,7 +87,7 @@ TEST(IsoEdit, NothingCanBeAddedToAConstantVolume) {
     EXPECT_FALSE(add_iso_value(d, v, 3));
 }
 
-TEST(IsoEdit, AMovedValueTakesItsMaterialPastTheOthers) {
+TEST(IsoEdit, MovedValueKeepsItsMaterial) {
     const Volume v = volume();
     SceneDocument d = document({0.2, 0.4, 0.6});
     EXPECT_EQ(move_iso_value(d, v, 0, 0.3), 0U);
@@ -105,7 +105,7 @@ TEST(IsoEdit, AMovedValueTakesItsMaterialPastTheOthers) {
     EXPECT_EQ(d, before);
 }
 
-TEST(IsoEdit, AValueOntoAnotherStopsBesideIt) {
+TEST(IsoEdit, MovedValueStopsBesideEqualOne) {
     const Volume v = volume();
     SceneDocument d = document({0.2, 0.4});
     const std::size_t at = move_iso_value(d, v, 0, 0.4);
@@ -113,7 +113,7 @@ TEST(IsoEdit, AValueOntoAnotherStopsBesideIt) {
     EXPECT_EQ(d.materials[at].name, "a");
 }
 
-TEST(IsoEdit, TheLastValueStaysUnlessATransferFunctionSaysWhatIsSeen) {
+TEST(IsoEdit, KeepsLastValueWithoutTransferFunction) {
     SceneDocument d = document({0.2, 0.4, 0.6});
     EXPECT_TRUE(remove_iso_value(d, 1));
     EXPECT_EQ(names(d), "ac");
@@ -126,7 +126,7 @@ TEST(IsoEdit, TheLastValueStaysUnlessATransferFunctionSaysWhatIsSeen) {
     EXPECT_NO_THROW(resolve_scene(d, volume()));
 }
 
-TEST(IsoEdit, WhateverIsDoneTheSceneCanBeDrawn) {
+TEST(IsoEdit, RandomEditsKeepSceneValid) {
     const Volume v = volume();
     Random random(5);
     const auto uniform = [&] { return random(0, 1); };
@@ -147,26 +147,26 @@ TEST(IsoEdit, WhateverIsDoneTheSceneCanBeDrawn) {
     }
 }
 
-TEST(IsoEdit, APresetsLookComesWithItsValueWhereThatOccurs) {
+TEST(IsoEdit, PresetSetsIsoValueIfInRange) {
     Volume v = volume();
     SceneDocument d = document({0.2, 0.4});
     ScenePreset bone{"ct-bone", "built in", {}};
     bone.content.iso_values = {300};
     bone.content.materials = {{.color = glm::dvec3(0.9, 0.8, 0.7), .extinction = 8.0, .specular = 0.25}};
-    EXPECT_EQ(take_material(d, v, 1, bone), 1U);
+    EXPECT_EQ(apply_material_preset(d, v, 1, bone), 1U);
     EXPECT_EQ(d.iso_values, (std::vector{0.2, 0.4}));
     EXPECT_EQ(d.materials[0].name, "ct-bone");
     EXPECT_EQ(d.materials[0].specular, 0.25);
     EXPECT_EQ(d.materials[0].diffuse, 1.0);
     bone.content.iso_values = {0.5};
-    EXPECT_EQ(take_material(d, v, 1, bone), 2U);
+    EXPECT_EQ(apply_material_preset(d, v, 1, bone), 2U);
     EXPECT_EQ(d.iso_values, (std::vector{0.4, 0.5}));
     EXPECT_EQ(names(d), "bct-bone");
-    EXPECT_EQ(take_material(d, v, 0, bone), 0U);
+    EXPECT_EQ(apply_material_preset(d, v, 0, bone), 0U);
     EXPECT_EQ(d.below.extinction, 8.0);
     bone.content.materials.clear();
     const SceneDocument before = d;
-    EXPECT_EQ(take_material(d, v, 1, bone), 1U);
+    EXPECT_EQ(apply_material_preset(d, v, 1, bone), 1U);
     EXPECT_EQ(d, before);
 }
 

@@ -29,7 +29,7 @@ class Kept : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(Kept, PreferencesComeBack) {
+TEST_F(Kept, PreferencesRoundTrip) {
     Preferences p;
     p.width = 900;
     p.height = 700;
@@ -45,7 +45,7 @@ TEST_F(Kept, PreferencesComeBack) {
     EXPECT_EQ(read_preferences(path), p);
 }
 
-TEST_F(Kept, PreferencesOfNoUseAreLeftOut) {
+TEST_F(Kept, IgnoresInvalidPreferences) {
     const fs::path path = folder_ / "fly.toml";
     std::ofstream(path) << "width = -4\nspeed = nan\nheight = \"tall\"\nturn = 2.0\nrecent = [3, \"a\"]\n";
     Preferences expected;
@@ -57,7 +57,7 @@ TEST_F(Kept, PreferencesOfNoUseAreLeftOut) {
     EXPECT_EQ(read_preferences(folder_ / "missing.toml"), Preferences{});
 }
 
-TEST_F(Kept, OnlySoManyRecentFiles) {
+TEST_F(Kept, LimitsRecentFiles) {
     Preferences p;
     for (int i = 0; i < 40; ++i)
         remember(p, "builtin:sphere:" + std::to_string(8 + i));
@@ -65,7 +65,7 @@ TEST_F(Kept, OnlySoManyRecentFiles) {
     EXPECT_EQ(p.recent.front(), "builtin:sphere:47");
 }
 
-TEST_F(Kept, FreePathsAreFree) {
+TEST_F(Kept, FreePathSkipsExistingFiles) {
     EXPECT_EQ(free_path(folder_, "picture", ".png"), folder_ / "picture-1.png");
     std::ofstream(folder_ / "picture-1.png") << "x";
     EXPECT_EQ(free_path(folder_, "picture", ".png"), folder_ / "picture-2.png");
@@ -73,17 +73,17 @@ TEST_F(Kept, FreePathsAreFree) {
     EXPECT_EQ(free_path(folder_, "picture", ".png", being_written), folder_ / "picture-3.png");
 }
 
-TEST_F(Kept, FilesThatAreGoneAreForgotten) {
+TEST_F(Kept, ForgetsMissingFiles) {
     Preferences p;
     const auto there = (folder_ / "there.nrrd").string(), gone = (folder_ / "gone.nrrd").string();
     std::ofstream(there) << "x";
     for (const std::string& path : {there, gone, std::string("builtin:sphere")})
         remember(p, path);
-    forget_lost(p);
+    remove_missing(p);
     EXPECT_EQ(p.recent, (std::vector<std::string>{"builtin:sphere", there}));
 }
 
-TEST_F(Kept, ASceneFindsItsVolumeFromItsOwnFolder) {
+TEST_F(Kept, SavedSceneFindsVolumeFromItsFolder) {
     std::ofstream(folder_ / "v.nrrd") << "x";
     fs::create_directories(folder_ / "scenes");
     Volume volume;
@@ -103,7 +103,7 @@ Camera flown(double t) {
     return {{20 * t, 5 * std::sin(t), std::cos(0.7 * t)}, {std::cos(angle), std::sin(angle), 0.1}, {0, 0, 1}, 60};
 }
 
-TEST(FlightRecorder, ItsCurveIsTheFlight) {
+TEST(FlightRecorder, PathFollowsFlight) {
     FlightRecorder recorder;
     recorder.step(flown(0), 0.02);  // not yet recording
     recorder.start();
@@ -121,12 +121,12 @@ TEST(FlightRecorder, ItsCurveIsTheFlight) {
         most = std::max(most, glm::length(was.eye - is.eye));
         turned = std::max(turned, glm::length(glm::normalize(was.direction) - glm::normalize(is.direction)));
     }
-    // Pieces are fitted one by one; the curve through all of them bends a little beyond what each was allowed.
+    // Pieces are fitted one by one; the curve through all of them exceeds the tolerance of each slightly.
     EXPECT_LT(most, 0.8);
     EXPECT_LT(turned, 0.03);
 }
 
-TEST(FlightRecorder, NothingIsRefused) {
+TEST(FlightRecorder, RefusesEmptyFlight) {
     FlightRecorder recorder;
     EXPECT_THROW(recorder.path(1), Error);
     recorder.start();
@@ -135,7 +135,7 @@ TEST(FlightRecorder, NothingIsRefused) {
     EXPECT_THROW(recorder.path(1), Error);
 }
 
-TEST(Display, EncodesAsPngsAre) {
+TEST(Display, EncodesLikePng) {
     Image image(3, 1, 4);
     const float values[3] = {0.0F, 0.2140411F, 1.0F};
     for (int x = 0; x < 3; ++x)
@@ -145,7 +145,7 @@ TEST(Display, EncodesAsPngsAre) {
     image.at(2, 0, 2) = 7;
     const ScreenPicture shown = screen_picture(image);
     EXPECT_EQ(shown.pixels, (std::vector<std::uint8_t>{0, 0, 0, 255, 128, 128, 128, 255, 255, 255, 255, 255}));
-    // Every level that 8 bits have comes back.
+    // All 256 levels round-trip.
     for (int level = 0; level < 256; ++level) {
         const double s = level / 255.0;
         const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
@@ -155,25 +155,25 @@ TEST(Display, EncodesAsPngsAre) {
     }
 }
 
-TEST(Display, SharpeningIsWhereThePicturesDiffer) {
+TEST(Display, SharpeningMarksDifferences) {
     Image edges(4, 1, 3), plain(4, 1, 3);
     edges.at(2, 0, 0) = 1;
     const ScreenPicture shown = sharpening_picture(edges, plain);
     EXPECT_EQ(shown.pixels[0], 0);
-    EXPECT_GT(shown.pixels[8], 200);  // the red of a strong difference, over a little of the picture's grey
+    EXPECT_GT(shown.pixels[8], 200);  // red marks a strong difference, over faint grey of the picture
     EXPECT_LT(shown.pixels[10], 16);
     EXPECT_THROW(sharpening_picture(edges, Image(3, 1, 3)), Error);
 }
 
-TEST(Display, WhatIsSpreadIsComparedAtTheFullSize) {
+TEST(Display, ComparesUpscaledPictureAtFullSize) {
     Image small(2, 2, 3), large(8, 8, 3);
-    EXPECT_EQ(rms_when_spread(small, large), 0);
+    EXPECT_EQ(rms_after_upscaling(small, large), 0);
     for (float& v : large.pixels)
         v = 1;
-    EXPECT_NEAR(rms_when_spread(small, large), 1, 1e-12);
+    EXPECT_NEAR(rms_after_upscaling(small, large), 1, 1e-12);
     for (float& v : small.pixels)
         v = 1;
-    EXPECT_EQ(rms_when_spread(small, large), 0);
+    EXPECT_EQ(rms_after_upscaling(small, large), 0);
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// How the eye moves: the same at every frame rate, smoothly, and never through walls.
+// Motion of the eye: independent of the frame rate, smooth, and never through walls.
 #include "engine/viewer/motion.h"
 
 #include <gtest/gtest.h>
@@ -44,7 +44,7 @@ bool same(const Camera& a, const Camera& b) {
     return a.eye == b.eye && a.direction == b.direction && a.up == b.up && a.fov_y == b.fov_y;
 }
 
-/// Largest difference of eyes (over `scale`), views and ups.
+/// Largest difference of the eyes (divided by `scale`), view directions and up directions.
 double difference(const Camera& a, const Camera& b, double scale) {
     const CameraFrame f = camera_frame(a), g = camera_frame(b);
     return std::max({glm::length(f.eye - g.eye) / scale, glm::length(f.forward - g.forward), glm::length(f.up - g.up)});
@@ -58,7 +58,7 @@ Controls parts(Controls c, int count) {
     return c;
 }
 
-TEST(ViewerMotion, TheFrameRateDoesNotMatter) {
+TEST(ViewerMotion, IsIndependentOfFrameRate) {
     Controls fly, orbit;
     fly.move = {0.3, -0.2, 0.9};
     fly.look = {0.3, -0.1};
@@ -84,7 +84,7 @@ TEST(ViewerMotion, TheFrameRateDoesNotMatter) {
     }
 }
 
-TEST(ViewerMotion, SlowFramesEndWhereFastOnesDo) {
+TEST(ViewerMotion, SlowAndFastFramesReachSamePlace) {
     for (const double seconds : {0.5, 0.004}) {
         Motion motion = orbiting();
         motion.set_mode(MotionMode::Fly);
@@ -92,7 +92,7 @@ TEST(ViewerMotion, SlowFramesEndWhereFastOnesDo) {
         controls.move.z = 1;
         for (double t = 0; t < 1 - 1e-9; t += seconds)
             motion.step(controls, seconds);
-        // speed() is 2 a second of the distance to the centre, held within half an extent (50 mm/s).
+        // speed() is twice the distance to the centre per second, at most half an extent per second (50 mm/s).
         EXPECT_NEAR(motion.camera().eye.y, -100 + 50 * (1 - 0.12), 0.3) << seconds;
         EXPECT_EQ(motion.camera().eye.x, 0);
     }
@@ -137,7 +137,7 @@ TEST(ViewerMotion, OrbitKeepsCentreDistanceAndUp) {
         EXPECT_NEAR(glm::length(frame.eye - motion.center()), distance, 1e-9 * distance);
         EXPECT_LT(glm::length(*project(motion.camera(), size, motion.center()) - pixel), 1e-6);
     }
-    // It stands above the pole and comes down again on the other controls.
+    // The eye stops above the pole; the opposite control brings it down again.
     EXPECT_NEAR(camera_frame(motion.camera()).forward.z, -1, 1e-9);
     controls.orbit = {0, -0.05};
     for (int i = 0; i < 30; ++i)
@@ -160,7 +160,7 @@ TEST(ViewerMotion, OrbitGoesRightAndUp) {
     EXPECT_NEAR(motion.camera().eye.z, 100 * std::sin(0.1), 0.01);
 }
 
-TEST(ViewerMotion, ARolledCameraIsLevelledAsItOrbits) {
+TEST(ViewerMotion, OrbitLevelsRolledCamera) {
     Motion motion = orbiting();
     motion.jump(camera_of({0, -100, 0}, {0, 1, 0}, {1, 0, 1}));
     motion.set_center(glm::dvec3(0));
@@ -174,7 +174,7 @@ TEST(ViewerMotion, ARolledCameraIsLevelledAsItOrbits) {
         tilt = camera_frame(motion.camera()).up.z;
     }
     EXPECT_NEAR(tilt, 1, 1e-3);
-    // Rolling in this mode is meant to stay.
+    // A roll made in this mode stays.
     controls = {};
     controls.roll = 1;
     for (int i = 0; i < 30; ++i)
@@ -189,7 +189,7 @@ TEST(ViewerMotion, ARolledCameraIsLevelledAsItOrbits) {
     EXPECT_NEAR(camera_frame(motion.camera()).up.z, rolled, 0.02);
 }
 
-// From above the picture's own up says where level is.
+// Seen from a pole, the picture's own up defines the level.
 TEST(ViewerMotion, LeavesAPoleThroughTheBottomOfThePicture) {
     Motion motion = orbiting();
     motion.jump(camera_of({0, 0, 100}, {0, 0, -1}, {0.6, 0.8, 0}));
@@ -204,7 +204,7 @@ TEST(ViewerMotion, LeavesAPoleThroughTheBottomOfThePicture) {
     EXPECT_LT(eye.y, 0);
 }
 
-TEST(ViewerMotion, PanAndZoom) {
+TEST(ViewerMotion, PansAndZooms) {
     Motion motion = orbiting();
     const glm::ivec2 size(400, 300);
     const glm::dvec3 mark(1, 0, 2);
@@ -256,7 +256,7 @@ TEST(ViewerMotion, FlyTurnsInTheCamerasFrame) {
     EXPECT_EQ(motion.camera().eye, glm::dvec3(0, -100, 0));
 }
 
-TEST(ViewerMotion, TransitsEndExactlyAndAreInterrupted) {
+TEST(ViewerMotion, TransitsEndExactlyOrStopOnInput) {
     Motion motion = orbiting();
     const Camera there{{40, 50, 60}, {-1, -2, -2.5}, {0, 0.1, 3}, 30};
     motion.fly_to(there, {3, 4, 5}, 0.7);
@@ -271,7 +271,7 @@ TEST(ViewerMotion, TransitsEndExactlyAndAreInterrupted) {
     EXPECT_TRUE(same(motion.camera(), there));
     EXPECT_EQ(motion.center(), glm::dvec3(3, 4, 5));
     EXPECT_FALSE(motion.moving());
-    EXPECT_LT(longest, 15) << "eased, not jumped";
+    EXPECT_LT(longest, 15) << "the motion is eased, not a jump";
     motion.home();
     motion.step({}, 0.2);
     Controls controls;
@@ -292,8 +292,8 @@ TEST(ViewerMotion, TransitsEndExactlyAndAreInterrupted) {
     EXPECT_TRUE(same(motion.camera(), there));
 }
 
-// Halfway from front to back the eye is beside the object, not in it.
-TEST(ViewerMotion, TransitsGoAroundWhatIsLookedAt) {
+// Halfway from front to back the eye is beside the object, not inside it.
+TEST(ViewerMotion, TransitsGoAroundTarget) {
     Motion motion = orbiting();
     motion.fly_to(camera_of({1, 100, 0}, {-0.01, -1, 0}), glm::dvec3(0), 1);
     while (motion.travelling()) {
@@ -302,7 +302,7 @@ TEST(ViewerMotion, TransitsGoAroundWhatIsLookedAt) {
     }
 }
 
-TEST(ViewerMotion, WhateverTheControlsCamerasStayFinite) {
+TEST(ViewerMotion, CameraStaysFiniteForAnyControls) {
     std::mt19937 engine(3);
     const auto junk = [&] {
         const double values[] = {0, 1, -1, 0.3, NAN, INFINITY, -INFINITY, 1e300, -1e300, 1e-300, 7};
@@ -344,7 +344,7 @@ Motion flying(const Cavity& cavity, const std::shared_ptr<const Walls>& walls) {
     return motion;
 }
 
-TEST(ViewerMotion, SpeedFollowsTheRoomThereIs) {
+TEST(ViewerMotion, SpeedFollowsWallDistance) {
     const Cavity ball = hollow_ball();
     Motion motion = flying(ball, std::make_shared<Walls>(sampled(ball), solid_scene()));
     motion.jump(camera_of(ball.inside + glm::dvec3(0, 3, 0), {0, 1, 0}));
@@ -357,7 +357,7 @@ TEST(ViewerMotion, SpeedFollowsTheRoomThereIs) {
     EXPECT_NEAR(motion.speed(), 48 * std::sqrt(3.0) / 2, 1e-9);
 }
 
-TEST(ViewerMotion, TheCentreOfOrbitIsTheWallAhead) {
+TEST(ViewerMotion, OrbitsAroundWallAhead) {
     const Cavity ball = hollow_ball();
     Motion motion = flying(ball, std::make_shared<Walls>(sampled(ball), solid_scene()));
     motion.jump(camera_of(ball.inside, {0, -1, 0}));
@@ -366,7 +366,7 @@ TEST(ViewerMotion, TheCentreOfOrbitIsTheWallAhead) {
     EXPECT_LT(glm::length(motion.center() - ball.inside - glm::dvec3(0, -16, 0)), 0.2);
 }
 
-/// Moves towards a world direction as far as the camera's frame goes.
+/// Controls that move the eye in a world direction.
 Controls towards(const Motion& motion, const glm::dvec3& way) {
     const CameraFrame f = camera_frame(motion.camera());
     Controls c;
@@ -382,7 +382,7 @@ TEST(ViewerMotion, SlidesAlongWalls) {
     for (int i = 0; i < 600; ++i)
         motion.step(towards(motion, way), kFrame);
     const glm::dvec3 own = tube.to_own(motion.camera().eye);
-    EXPECT_GT(own.z, 50) << "stopped on its way";
+    EXPECT_GT(own.z, 50) << "the eye stopped at the wall";
     EXPECT_NEAR(tube.room(own), Motion::kClearance, 0.25);
     rest(motion);
     motion.set_collisions(false);
@@ -391,7 +391,7 @@ TEST(ViewerMotion, SlidesAlongWalls) {
     EXPECT_LT(tube.room_at(motion.camera().eye), -1);
 }
 
-// Through a hole that is hardly wider than the least clearance, hit askew.
+// Through a hole little wider than the least clearance, approached off-centre.
 TEST(ViewerMotion, SqueezesThroughNarrowPassages) {
     Cavity cavity = hollow_ball();
     cavity.room = [](const glm::dvec3& x) {
@@ -407,7 +407,7 @@ TEST(ViewerMotion, SqueezesThroughNarrowPassages) {
     EXPECT_GT(motion.camera().eye.x, 40);
 }
 
-// One heading against a wall: the eye stands still there, and does not tremble.
+// Constant motion into a wall: the eye stands still there without trembling.
 TEST(ViewerMotion, StandsStillAtAWall) {
     const Cavity ball = hollow_ball();
     Motion motion = flying(ball, std::make_shared<Walls>(sampled(ball), solid_scene()));
@@ -422,7 +422,7 @@ TEST(ViewerMotion, StandsStillAtAWall) {
     EXPECT_NEAR(ball.room_at(motion.camera().eye), Motion::kClearance, 0.2);
 }
 
-TEST(ViewerMotion, LeavesMatterItWasPutInto) {
+TEST(ViewerMotion, LeavesMatterItStartsIn) {
     for (const Cavity& cavity : {hollow_ball(), maze()}) {
         const auto walls = std::make_shared<Walls>(sampled(cavity), solid_scene());
         std::mt19937 engine(11);
@@ -446,7 +446,7 @@ TEST(ViewerMotion, LeavesMatterItWasPutInto) {
     }
 }
 
-/// A flight against the walls: 10^4 frames or more, random headings held for a while.
+/// A random flight against the walls: 10^4 frames or more; each heading is held for a while.
 void push_about(const Cavity& cavity, double least_visited, int frames = 10000) {
     SCOPED_TRACE(cavity.name + (cavity.spacing != glm::dvec3(1) ? ", anisotropic" : ""));
     const auto volume = sampled(cavity);
@@ -479,7 +479,7 @@ void push_about(const Cavity& cavity, double least_visited, int frames = 10000) 
     for (int frame = 0; frame < frames; ++frame) {
         if (held-- <= 0) {
             held = 10 + static_cast<int>(unit(engine) * 140);
-            // Half of the time to a distant place in sight, so that passages are met too.
+            // Half of the headings lead to a distant visible place, so that the eye enters passages, too.
             way = direction();
             if (unit(engine) < 0.5) {
                 const glm::dvec3 eye = motion.camera().eye;
@@ -510,7 +510,7 @@ void push_about(const Cavity& cavity, double least_visited, int frames = 10000) 
         in_matter += trilinear(*volume, eye) >= 0.5 ? 1 : 0;
         if (blocks.contains(block_of(own))) visited.insert(block_of(own));
         if (frame % 100 != 0) continue;
-        // Some heading leads away within a second.
+        // At least one heading leads away within a second.
         bool free = false;
         for (int attempt = 0; attempt < 30 && !free; ++attempt) {
             Motion probe = motion;
@@ -531,25 +531,25 @@ void push_about(const Cavity& cavity, double least_visited, int frames = 10000) 
               << " voxel, " << visited.size() << " of " << blocks.size() << " blocks\n";
 }
 
-TEST(ViewerMotion, NeverThroughTheWallsOfABall) {
+TEST(ViewerMotion, StaysInsideBall) {
     push_about(hollow_ball(), 0.5);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfATube) {
+TEST(ViewerMotion, StaysInsideTube) {
     push_about(straight_tube(), 0.5);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfABentTube) {
+TEST(ViewerMotion, StaysInsideBentTube) {
     push_about(bent_tube(), 0.5);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfAnAnisotropicTube) {
+TEST(ViewerMotion, StaysInsideAnisotropicTube) {
     push_about(bent_tube({1, 1, 3}), 0.5);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfAShell) {
+TEST(ViewerMotion, StaysInsideShell) {
     push_about(shell(), 0.5);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfAMaze) {
+TEST(ViewerMotion, StaysInsideMaze) {
     push_about(maze(), 0.5, 20000);
 }
-TEST(ViewerMotion, NeverThroughTheWallsOfAnAnisotropicMaze) {
+TEST(ViewerMotion, StaysInsideAnisotropicMaze) {
     push_about(maze({3, 1, 1}), 0.5, 20000);
 }
 

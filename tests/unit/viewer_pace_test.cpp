@@ -10,8 +10,7 @@
 namespace edgesplat::viewer {
 namespace {
 
-/// What a picture costs in a model of a device: a share per splat, of which a finer level has four times as many, and
-/// a share per pixel.
+/// A cost model of a device: a part per splat (a finer level has four times as many) and a part per pixel.
 struct Cost {
     double splats = 0, pixels = 0;  ///< milliseconds at level 0 and full size
     double of(const Rung& rung) const { return splats / std::pow(4.0, rung.level) + pixels * rung.scale * rung.scale; }
@@ -32,7 +31,7 @@ struct Flight {
     }
 };
 
-/// So many pictures, whose costs scatter by +-15 %.
+/// Draws `pictures` pictures; their costs scatter by +-15 %.
 template <typename CostAt>
 Flight fly(Pace& pace, int pictures, const CostAt& cost_at) {
     std::mt19937 random(7);
@@ -48,19 +47,19 @@ Flight fly(Pace& pace, int pictures, const CostAt& cost_at) {
     return flight;
 }
 
-TEST(Pace, BeginsCoarse) {
+TEST(Pace, StartsCoarse) {
     const Pace pace(150, 2);
     EXPECT_EQ(pace.rung().level, 2);
     EXPECT_LE(pace.rung().scale, 0.25);
 }
 
-TEST(Pace, GoesUpToTheBestWhereThereIsTime) {
+TEST(Pace, ReachesFinestLevelWithEnoughTime) {
     Pace pace(150, 2);
     fly(pace, 300, [](int) { return Cost{5, 20}; });
     EXPECT_EQ(pace.rung(), (Rung{0, 1.0}));
 }
 
-TEST(Pace, MeetsTheTargetWhateverACostsShape) {
+TEST(Pace, MeetsTargetForEveryCostModel) {
     for (const Cost cost : {Cost{400, 50}, Cost{100, 3000}, Cost{30, 300}, Cost{1500, 1000}, Cost{10, 20000}}) {
         Pace pace(150, 3);
         const Flight flight = fly(pace, 400, [&](int) { return cost; });
@@ -68,7 +67,7 @@ TEST(Pace, MeetsTheTargetWhateverACostsShape) {
     }
 }
 
-TEST(Pace, DoesNotFlickerWhereTheViewStaysAlike) {
+TEST(Pace, KeepsLevelInSteadyView) {
     for (const Cost cost : {Cost{400, 50}, Cost{100, 3000}, Cost{30, 300}, Cost{140, 100}, Cost{60, 500}}) {
         Pace pace(150, 3);
         const Flight flight = fly(pace, 600, [&](int) { return cost; });
@@ -76,7 +75,7 @@ TEST(Pace, DoesNotFlickerWhereTheViewStaysAlike) {
     }
 }
 
-TEST(Pace, FollowsAViewThatGetsDearer) {
+TEST(Pace, AdaptsToChangingCost) {
     Pace pace(150, 3);
     const Flight flight = fly(pace, 600, [](int i) {
         const double nearer = 1 + 3 * (1 + std::sin(i * 0.02));
@@ -85,7 +84,7 @@ TEST(Pace, FollowsAViewThatGetsDearer) {
     EXPECT_GE(flight.share_within(150), 0.95);
 }
 
-TEST(Pace, AnswersWithinOnePictureWhenOneIsTooLong) {
+TEST(Pace, ReactsToOneSlowPicture) {
     Pace pace(150, 0);
     fly(pace, 200, [](int) { return Cost{5, 40}; });
     ASSERT_EQ(pace.rung().scale, 1);
@@ -94,7 +93,7 @@ TEST(Pace, AnswersWithinOnePictureWhenOneIsTooLong) {
     EXPECT_LE(600 * pace.rung().scale * pace.rung().scale, 150);
 }
 
-TEST(Pace, RaysHaveNoLevels) {
+TEST(Pace, RaysUseOnlyLevelZero) {
     Pace pace(150, 3, true);
     const Flight flight = fly(pace, 200, [](int) { return Cost{0, 2000}; });
     for (const Rung& rung : flight.rungs) {
@@ -104,7 +103,7 @@ TEST(Pace, RaysHaveNoLevels) {
     EXPECT_GE(flight.share_within(150), 0.95);
 }
 
-TEST(Pace, AFinerLevelThatIsNotReadyIsNotTried) {
+TEST(Pace, WaitsForFinerLevel) {
     Pace pace(150, 2);
     for (int i = 0; i < 200; ++i)
         pace.drawn(1, 0, false);

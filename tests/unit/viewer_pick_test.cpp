@@ -1,4 +1,4 @@
-// What rays meet, against surfaces known in closed form.
+// Picking along rays, compared with surfaces in closed form.
 #include "engine/viewer/pick.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ namespace {
 
 using namespace viewer_test;
 
-/// Solid ball of radius 15 mm in the middle.
+/// A solid ball of radius 15 mm in the middle.
 Cavity ball() {
     Cavity cavity = hollow_ball();
     const glm::dvec3 c(23.3, 24.1, 23.7);
@@ -30,7 +30,7 @@ Cavity ball() {
     return cavity;
 }
 
-/// Half space, its normal `away` from the matter.
+/// A half space of matter; the normal `away` points out of it.
 const glm::dvec3 kAway = glm::normalize(glm::dvec3(0.3, -0.8, 0.5));
 Cavity half_space(const glm::dvec3& away = kAway) {
     Cavity cavity = hollow_ball();
@@ -49,7 +49,7 @@ Cavity placed_askew(Cavity cavity, double blur) {
     return cavity;
 }
 
-/// Over random rays: the error of the place along them, mm, and how often the uncertainty covers it.
+/// Errors of picks along random rays, mm, and how often the uncertainty covers them.
 struct Accuracy {
     int count = 0, missed = 0, covered = 0;
     double mean = 0, worst = 0, mean_uncertainty = 0;
@@ -72,12 +72,12 @@ Accuracy accuracy(Cavity cavity, Kind kind = Kind::Float) {
     Accuracy a;
     const glm::dvec3 size = glm::dvec3(cavity.dims) * cavity.spacing;
     while (a.count < kRays) {
-        // From outside of the matter to a place near the middle of it.
+        // From outside the matter to a place near its middle.
         const glm::dvec3 target = cavity.inside + random.direction() * random(0, 13);
         const glm::dvec3 eye = target + random.direction() * random(25, 80);
         if (cavity.room(eye) < 3) continue;
         const glm::dvec3 along = glm::normalize(target - eye);
-        double low = 0;  // `room` is a distance
+        double low = 0;  // sphere tracing: `room` is a distance
         for (double room = cavity.room(eye); room > 1e-10 && low < 150; room = cavity.room(eye + low * along))
             low += room;
         if (low >= 150) continue;
@@ -85,7 +85,7 @@ Accuracy accuracy(Cavity cavity, Kind kind = Kind::Float) {
         if (glm::any(glm::lessThan(place, 2.0 * cavity.spacing)) ||
             glm::any(glm::greaterThan(place, size - 3.0 * cavity.spacing)))
             continue;
-        // Seen at a glance the place of a surface along the ray means little: up to 80 degrees.
+        // At grazing incidence the position along the ray is ill defined: only rays up to 80 degrees.
         const double h = 1e-4, slope = (cavity.room(place + h * along) - cavity.room(place - h * along)) / (2 * h);
         if (slope > -std::cos(glm::radians(80.0))) continue;
         ++a.count;
@@ -112,7 +112,7 @@ Accuracy accuracy(Cavity cavity, Kind kind = Kind::Float) {
     return a;
 }
 
-TEST(ViewerPick, SurfacesLieWhereTheyAreAndUncertaintyCoversTheError) {
+TEST(ViewerPick, UncertaintyCoversSurfaceError) {
     for (const double blur : {0.3, 0.5, 0.7, 1.0})
         for (Cavity cavity :
              {ball(), half_space(), half_space({0, 1, 0}), half_space(glm::normalize(glm::dvec3(1, 1, 0))),
@@ -122,21 +122,21 @@ TEST(ViewerPick, SurfacesLieWhereTheyAreAndUncertaintyCoversTheError) {
             EXPECT_LT(a.mean, blur < 0.5 ? 0.3 : 0.15) << cavity.name;
             EXPECT_LT(a.worst, blur < 0.5 ? 0.8 : 0.4) << cavity.name;
             EXPECT_GE(a.share(), 0.95) << cavity.name << ' ' << blur;
-            EXPECT_LT(a.mean_uncertainty, 0.03 + 7 * a.mean) << cavity.name << ": covers everything";
+            EXPECT_LT(a.mean_uncertainty, 0.03 + 7 * a.mean) << cavity.name << ": the uncertainty is too large";
             EXPECT_EQ(a.missed, 0);
         }
 }
 
-TEST(ViewerPick, AnisotropicAndOblique) {
+TEST(ViewerPick, HandlesAnisotropicObliqueVolumes) {
     for (const Cavity& cavity : {placed_askew(ball(), 2), placed_askew(half_space(), 2)}) {
         const Accuracy a = accuracy(cavity);
         EXPECT_LT(a.mean, 0.15) << cavity.name;
         EXPECT_GE(a.share(), 0.95) << cavity.name;
-        EXPECT_LT(a.mean_uncertainty, 0.5) << cavity.name << ": covers everything";
+        EXPECT_LT(a.mean_uncertainty, 0.5) << cavity.name << ": the uncertainty is too large";
     }
 }
 
-TEST(ViewerPick, CoarseValuesMakeItLessCertain) {
+TEST(ViewerPick, UncertaintyGrowsWithCoarseValues) {
     for (const Cavity& cavity : {ball(), half_space()}) {
         const Accuracy steps = accuracy(cavity, Kind::Steps), binary = accuracy(cavity, Kind::Binary);
         EXPECT_GE(steps.share(), 0.95) << cavity.name;
@@ -164,7 +164,7 @@ TEST(ViewerPick, NormalsPointOutOfTheSurface) {
     }
 }
 
-TEST(ViewerPick, ThroughPixels) {
+TEST(ViewerPick, PicksThroughPixels) {
     const Cavity cavity = ball();
     const auto volume = sampled(cavity);
     const Camera camera{cavity.inside + glm::dvec3(0, -60, 0), {0, 1, 0}, {0, 0, 1}, 40};
@@ -188,7 +188,7 @@ TEST(ViewerPick, ThroughPixels) {
     EXPECT_FALSE(pick(*volume, solid_scene(), camera, size, {NAN, 1}));
 }
 
-TEST(ViewerPick, MissesAreNone) {
+TEST(ViewerPick, MissReturnsNothing) {
     const auto volume = sampled(ball());
     EXPECT_FALSE(pick(*volume, solid_scene(), ray_at_ball(17)));
     EXPECT_FALSE(pick(*volume, solid_scene(), {{-10, -10, -10}, {-1, 0, 0}}));
@@ -196,7 +196,7 @@ TEST(ViewerPick, MissesAreNone) {
     EXPECT_FALSE(pick(*volume, solid_scene(0.001), ray_at_ball()));
 }
 
-TEST(ViewerPick, FromInsideMatter) {
+TEST(ViewerPick, PicksFromInsideMatter) {
     const auto volume = sampled(ball());
     const Ray ray{ball().inside + glm::dvec3(0, -2, 0), {0, 1, 0}};
     const auto solid = pick(*volume, solid_scene(), ray);
@@ -208,7 +208,7 @@ TEST(ViewerPick, FromInsideMatter) {
     EXPECT_NEAR(translucent->distance, std::log(2.0) / 0.1, 1e-6);
 }
 
-// 30 mm of extinction 0.1 behind an edge of known shape: half of the light is left 6.93 mm behind it.
+// 30 mm of extinction 0.1 per mm behind a known edge: half of the light remains 6.93 mm behind it.
 TEST(ViewerPick, TranslucentMatterIsUncertain) {
     const auto volume = sampled(ball());
     const auto found = pick(*volume, solid_scene(0.1), ray_at_ball());
@@ -220,14 +220,14 @@ TEST(ViewerPick, TranslucentMatterIsUncertain) {
     const auto deeper = pick(*volume, solid_scene(0.1), ray_at_ball(), 0.9);
     ASSERT_TRUE(deeper);
     EXPECT_NEAR(deeper->distance, 45 + std::log(10.0) / 0.1, 0.05);
-    // Three quarters are never reached: to where the matter ends.
+    // Opacity 3/4 is never reached: the uncertainty extends to the end of the matter.
     const auto thin = pick(*volume, solid_scene(0.03), ray_at_ball());
     ASSERT_TRUE(thin);
     EXPECT_NEAR(thin->uncertainty, 30 - std::log(4.0 / 3) / 0.03, 0.1);
 }
 
-// A translucent hull in front of something solid: the solid's contour, unless the hull is enough.
-TEST(ViewerPick, SeesThroughTranslucentHulls) {
+// A translucent hull in front of a solid: the pick is the solid's contour unless the hull reaches the opacity alone.
+TEST(ViewerPick, PicksBehindTranslucentHulls) {
     Cavity cavity = ball();
     cavity.blur = 2;
     const auto volume = sampled(cavity);
@@ -248,7 +248,7 @@ TEST(ViewerPick, SeesThroughTranslucentHulls) {
     EXPECT_NEAR(found->distance, 45 - hull / 2 + std::log(2.0) / 0.2, 0.1);
 }
 
-TEST(ViewerPick, TransferFunctions) {
+TEST(ViewerPick, HandlesTransferFunctions) {
     Cavity cavity = half_space();
     cavity.blur = 0;
     auto volume = std::make_shared<Volume>(*sampled(cavity));
@@ -287,10 +287,10 @@ TEST(ViewerPick, RespectsClipPlanes) {
     EXPECT_FALSE(pick(*volume, scene, ray_at_ball()));
 }
 
-TEST(ViewerPick, TheSideOfTheVolume) {
+TEST(ViewerPick, PicksSideOfVolume) {
     const Cavity cavity = half_space();
     const auto volume = sampled(cavity);
-    // kAway has y below 0: the side of high y is matter.
+    // kAway.y < 0, so the side of high y is matter.
     const auto found = pick(*volume, solid_scene(), {{23, 100, 23}, {0, -1, 0}});
     ASSERT_TRUE(found);
     EXPECT_NEAR(found->world.y, 47.5, 1e-9);
@@ -298,7 +298,7 @@ TEST(ViewerPick, TheSideOfTheVolume) {
     EXPECT_EQ(found->normal, glm::dvec3(0, 1, 0));
 }
 
-TEST(ViewerPick, PackedVolumesGiveTheSame) {
+TEST(ViewerPick, PackedVolumeGivesSameResult) {
     const Cavity cavity = ball();
     const auto volume = sampled(cavity);
     const auto file =
@@ -319,7 +319,7 @@ TEST(ViewerPick, PackedVolumesGiveTheSame) {
     std::filesystem::remove(file);
 }
 
-TEST(ViewerScreen, PixelsAndRays) {
+TEST(ViewerScreen, MapsPixelsToRays) {
     const Camera camera{{1, 2, 3}, {0, 1, 0}, {0, 0, 1}, 90};
     const glm::ivec2 size(400, 200);
     EXPECT_LT(glm::length(pixel_ray(camera, size, {200, 100}).direction - glm::dvec3(0, 1, 0)), 1e-12);

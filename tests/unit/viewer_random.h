@@ -1,4 +1,4 @@
-// Random numbers that are the same with every standard library, for what holds at any place and direction.
+// Random numbers and directions that are the same with every standard library.
 #pragma once
 
 #include <glm/glm.hpp>

@@ -15,7 +15,7 @@ std::vector<ScriptCommand> parse(const char* text) {
     return parse_script(text, "a.txt", &known_key);
 }
 
-std::string refusal(const char* text) {
+std::string script_refusal(const char* text) {
     try {
         parse(text);
     } catch (const Error& error) {
@@ -44,18 +44,18 @@ TEST(Script, ExpectTakesAComparison) {
 }
 
 TEST(Script, RefusesWithFileAndLine) {
-    EXPECT_EQ(refusal("frames 3\nfames 3"), "a.txt:2: 'fames' is no command; did you mean frames?");
-    EXPECT_EQ(refusal("move 3"), "a.txt:1: move: expected 2 words");
-    EXPECT_EQ(refusal("move 3 x"), "a.txt:1: move: 'x', expected a number");
-    EXPECT_EQ(refusal("move 3 nan"), "a.txt:1: move: 'nan', expected a number");
-    EXPECT_EQ(refusal("frames 1e300"), "a.txt:1: frames: '1e300', expected a number from -1e9 to 1e9");
-    EXPECT_EQ(refusal("move 1 2 3"), "a.txt:1: move: '3' is too much, expected 2 words");
-    EXPECT_NE(refusal("hold Q").find("a.txt:1: hold: 'Q', expected a key"), std::string::npos);
-    EXPECT_NE(refusal("press upper").find("expected left, right or middle"), std::string::npos);
-    EXPECT_NE(refusal("expect a = 1").find("expected =="), std::string::npos);
+    EXPECT_EQ(script_refusal("frames 3\nfames 3"), "a.txt:2: 'fames' is not a command; did you mean frames?");
+    EXPECT_EQ(script_refusal("move 3"), "a.txt:1: move: expected 2 words");
+    EXPECT_EQ(script_refusal("move 3 x"), "a.txt:1: move: 'x', expected a number");
+    EXPECT_EQ(script_refusal("move 3 nan"), "a.txt:1: move: 'nan', expected a number");
+    EXPECT_EQ(script_refusal("frames 1e300"), "a.txt:1: frames: '1e300', expected a number from -1e9 to 1e9");
+    EXPECT_EQ(script_refusal("move 1 2 3"), "a.txt:1: move: unexpected word '3', expected 2 words");
+    EXPECT_NE(script_refusal("hold Q").find("a.txt:1: hold: 'Q', expected a key"), std::string::npos);
+    EXPECT_NE(script_refusal("press upper").find("expected left, right or middle"), std::string::npos);
+    EXPECT_NE(script_refusal("expect a = 1").find("expected =="), std::string::npos);
 }
 
-TEST(Script, Compares) {
+TEST(Script, ComparesNumbersAndText) {
     EXPECT_TRUE(holds("1.0", "==", "1"));
     EXPECT_TRUE(holds("2", ">", "1.5"));
     EXPECT_FALSE(holds("2", "<", "1.5"));
@@ -66,7 +66,7 @@ TEST(Script, Compares) {
     EXPECT_FALSE(holds("nan", "<=", "1"));
 }
 
-TEST(Script, EveryVerbIsReadBack) {
+TEST(Script, ParsesEveryVerb) {
     for (const ScriptVerb& verb : script_verbs()) {
         std::string line(verb.name);
         for (const char kind : verb.words)

@@ -1,4 +1,4 @@
-// Slices: which voxels they show, which way up, and the way back.
+// Slices: their voxels, their orientation and the inverse mapping.
 #include "engine/viewer/slices.h"
 
 #include <gtest/gtest.h>
@@ -59,7 +59,7 @@ TEST(ViewerSlices, ShowTheVoxelsOfTheirPlane) {
     EXPECT_EQ(grey_at(sagittal, 4, 3), 42);
 }
 
-TEST(ViewerSlices, Windows) {
+TEST(ViewerSlices, MapWindowToGrey) {
     const Volume volume = ramp();
     const Slice s = slice(volume, 2, {0, 0, 0}, 10, 30);
     EXPECT_EQ(grey_at(s, 0, 0), 0);
@@ -68,8 +68,8 @@ TEST(ViewerSlices, Windows) {
     EXPECT_EQ(grey_at(s, 0, 4), 255);
 }
 
-TEST(ViewerSlices, EveryDirectionOfTheAxes) {
-    // A place that is bright: where in the picture it is must not depend on how the file runs.
+TEST(ViewerSlices, HandleEveryAxisDirection) {
+    // The value at the cross and the picture's directions must not depend on the file's order of axes.
     for (int signs = 0; signs < 8; ++signs)
         for (const auto& order : {glm::ivec3(0, 1, 2), glm::ivec3(1, 2, 0), glm::ivec3(2, 0, 1), glm::ivec3(1, 0, 2)}) {
             glm::dmat3 directions(0);
@@ -97,13 +97,13 @@ TEST(ViewerSlices, EveryDirectionOfTheAxes) {
         }
 }
 
-TEST(ViewerSlices, PlacesOutsideAreClampedInDepthOnly) {
+TEST(ViewerSlices, ClampOutsidePlacesInDepthOnly) {
     const Slice s = slice(ramp(), 2, {-4, 9, 77}, 0, 500);
     EXPECT_EQ(s.depth, 3);
     EXPECT_EQ(s.cross, glm::dvec2(-3.5, 9.5));
 }
 
-TEST(ViewerSlices, PackedVolumesCoarsely) {
+TEST(ViewerSlices, ShowLargePackedVolumesCoarsely) {
     Volume volume;
     volume.geometry.dims = {1500, 8, 6};
     for (int i = 0; i < 1500 * 8 * 6; ++i)
@@ -127,24 +127,24 @@ TEST(ViewerSlices, PackedVolumesCoarsely) {
     EXPECT_LT(glm::length(voxel_at(coarse, coarse.cross) - glm::dvec3(700, 3, 5)), 1e-9);
 }
 
-TEST(ViewerSlices, SidesHaveThePatientsLetters) {
+TEST(ViewerSlices, LabelSidesWithPatientLetters) {
     const auto letters = [](const Volume& volume, int axis) {
         const auto four = slice_letters(slice(volume, axis, {3, 2, 2}, 0, 300), volume.geometry);
         return std::string(four.begin(), four.end());
     };
-    // A patient is looked at from the feet and from the front: his right is on the left. Left, right, top, bottom.
+    // Views are from the feet and from the front: the patient's right is on the left. Order: left, right, top, bottom.
     const Volume upright = ramp();
     EXPECT_EQ(letters(upright, 2), "RLAP");
     EXPECT_EQ(letters(upright, 1), "RLHF");
     EXPECT_EQ(letters(upright, 0), "APHF");
-    // However the axes lie in the file, and a little turned.
+    // Permuted and slightly rotated axes give the same letters.
     const Volume lying = ramp(glm::dmat3(glm::dvec3(0, 0.1, -1), glm::dvec3(-1, 0.1, 0), glm::dvec3(0.1, 1, 0.1)));
     EXPECT_EQ(letters(lying, 0), "RLAP");
     EXPECT_EQ(letters(lying, 2), "RLHF");
     EXPECT_EQ(letters(lying, 1), "APHF");
 }
 
-TEST(ViewerSlices, Refuse) {
+TEST(ViewerSlices, RefuseInvalidArguments) {
     const Volume volume = ramp();
     EXPECT_NE(refusal([&] { slice(volume, 3, glm::dvec3(0), 0, 1); }).find("axis"), std::string::npos);
     EXPECT_NE(refusal([&] { slice(volume, 0, glm::dvec3(0), 1, 1); }).find("window"), std::string::npos);

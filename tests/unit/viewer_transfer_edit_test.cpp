@@ -1,4 +1,4 @@
-// Transfer functions under a hand.
+// Editing transfer functions.
 #include "engine/viewer/transfer_edit.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ const TransferPoints kPoints{{-2, {1, 0, 0}, 0}, {1, {0, 1, 0}, 3}, {1.5, {0, 0,
 constexpr double kGap = 0.01;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-TEST(TransferEdit, AnAddedPointLeavesTheFunctionAsItIs) {
+TEST(TransferEdit, AddingPointKeepsFunction) {
     for (const double value : {-5.0, -1.9, 0.25, 1.2, 8.0}) {
         TransferPoints points = kPoints;
         const auto place = add_transfer_point(points, value, kGap);
@@ -34,7 +34,7 @@ TEST(TransferEdit, AnAddedPointLeavesTheFunctionAsItIs) {
     }
 }
 
-TEST(TransferEdit, PointsAreNotAddedOntoOthersNorWithoutAny) {
+TEST(TransferEdit, RefusesPointsOnOthersOrInEmptyFunction) {
     TransferPoints points = kPoints;
     EXPECT_FALSE(add_transfer_point(points, 1, kGap));
     EXPECT_FALSE(add_transfer_point(points, 0.995, kGap));
@@ -46,7 +46,7 @@ TEST(TransferEdit, PointsAreNotAddedOntoOthersNorWithoutAny) {
     EXPECT_FALSE(add_transfer_point(points, 0, kGap));
 }
 
-TEST(TransferEdit, ThereAreAtMostSoManyPoints) {
+TEST(TransferEdit, LimitsNumberOfPoints) {
     TransferPoints points = kPoints;
     while (points.size() < kMaxTransferPoints)
         ASSERT_TRUE(add_transfer_point(points, points.back().value + 1, kGap));
@@ -54,7 +54,7 @@ TEST(TransferEdit, ThereAreAtMostSoManyPoints) {
     EXPECT_EQ(points.size(), kMaxTransferPoints);
 }
 
-TEST(TransferEdit, AMovedPointStopsBeforeItsNeighbours) {
+TEST(TransferEdit, MovedPointStopsBeforeNeighbours) {
     TransferPoints points = kPoints;
     move_transfer_point(points, 1, 0.5, 7, kGap);
     EXPECT_EQ(points[1], (TransferPoint{0.5, {0, 1, 0}, 7}));
@@ -72,14 +72,14 @@ TEST(TransferEdit, AMovedPointStopsBeforeItsNeighbours) {
     EXPECT_EQ(points, before);
 }
 
-TEST(TransferEdit, APointBetweenNeighboursThatLeaveNoRoomOnlyChangesItsExtinction) {
+TEST(TransferEdit, CrowdedPointChangesOnlyExtinction) {
     TransferPoints points{{0, glm::dvec3(1), 1}, {0.005, glm::dvec3(1), 1}, {0.01, glm::dvec3(1), 1}};
     move_transfer_point(points, 1, 0.009, 4, kGap);
     EXPECT_EQ(points[1].value, 0.005);
     EXPECT_EQ(points[1].extinction, 4);
 }
 
-TEST(TransferEdit, TheLastPointStays) {
+TEST(TransferEdit, KeepsLastPoint) {
     TransferPoints points = kPoints;
     EXPECT_FALSE(remove_transfer_point(points, 3));
     EXPECT_TRUE(remove_transfer_point(points, 1));
@@ -89,7 +89,7 @@ TEST(TransferEdit, TheLastPointStays) {
     EXPECT_EQ(points, (TransferPoints{kPoints[0]}));
 }
 
-TEST(TransferEdit, WhateverIsDoneTheFunctionIsValid) {
+TEST(TransferEdit, RandomEditsKeepFunctionValid) {
     Random random(3);
     const auto uniform = [&] { return random(0, 1); };
     TransferPoints points = kPoints;
@@ -109,7 +109,7 @@ TEST(TransferEdit, WhateverIsDoneTheFunctionIsValid) {
     }
 }
 
-TEST(TransferEdit, MaterialsBecomeAFunctionOfTheSameExtinctions) {
+TEST(TransferEdit, ConvertsMaterialsToEqualFunction) {
     Scene scene;
     scene.iso_values = {0.2, 0.6, 0.601};
     scene.materials = {{{0, 0, 0}, 0}, {{1, 0, 0}, 0.5}, {{0, 1, 0}, 4}, {{0, 0, 1}, 9}};
@@ -127,16 +127,16 @@ TEST(TransferEdit, MaterialsBecomeAFunctionOfTheSameExtinctions) {
         }
         if (above <= width) continue;  // on a step
         EXPECT_EQ(transfer_at(points, value).extinction, scene.materials[m].extinction) << value;
-        // What is transparent has the colour of what follows.
+        // A transparent interval has the colour of the next interval.
         EXPECT_EQ(transfer_at(points, value).color, scene.materials[std::max<std::size_t>(m, 1)].color) << value;
     }
     scene.transfer = points;
     EXPECT_NO_THROW(validate(scene));
-    // Ends that the steps reach already are not doubled.
+    // Ends that coincide with steps are not duplicated.
     EXPECT_EQ(transfer_of_materials(scene, 0.19, 0.601, width).size(), 6U);
 }
 
-TEST(TransferEdit, DocumentsChangeBetweenMaterialsAndFunctions) {
+TEST(TransferEdit, SwitchesBetweenMaterialsAndFunctions) {
     const auto volume = sampled(hollow_ball(16, 5));
     SceneDocument d;
     d.iso_values = {0.5};
@@ -150,7 +150,7 @@ TEST(TransferEdit, DocumentsChangeBetweenMaterialsAndFunctions) {
     EXPECT_EQ(d.iso_values, before.iso_values);
     EXPECT_EQ(d.materials.at(0).name, "wall");
     EXPECT_EQ(resolve_scene(d, *volume).materials, resolve_scene(before, *volume).materials);
-    // Without edges a function leaves no iso-value behind: one is chosen.
+    // A function without edges leaves no iso-value: one is chosen.
     use_transfer(d, kPoints);
     d.iso_values.clear();
     d.materials.clear();
@@ -159,7 +159,7 @@ TEST(TransferEdit, DocumentsChangeBetweenMaterialsAndFunctions) {
     EXPECT_EQ(d.materials.size(), 1U);
 }
 
-TEST(TransferEdit, APresetBringsItsEdgesOrIsRefusedWhole) {
+TEST(TransferEdit, PresetAppliesWhollyOrNotAtAll) {
     const auto volume = sampled(hollow_ball(16, 5));
     SceneDocument d;
     d.iso_values = {0.3, 0.4};
@@ -177,7 +177,7 @@ TEST(TransferEdit, APresetBringsItsEdgesOrIsRefusedWhole) {
     EXPECT_EQ(d, before);
 }
 
-TEST(TransferEdit, TheScaleOfExtinctionsHasAnInverse) {
+TEST(TransferEdit, ExtinctionScaleIsInvertible) {
     const ExtinctionScale scale = ExtinctionScale::of(sampled(hollow_ball(16, 5))->geometry);
     EXPECT_EQ(scale.share(0), 0);
     EXPECT_EQ(scale.extinction(0), 0);

@@ -1,5 +1,5 @@
-// Cavities of known shape for the tests of navigation. `room` is the signed distance to the wall in mm, above 0 in the
-// cavity, of a place in the volume's own frame (index times spacing).
+// Cavities of known shape for the tests of navigation. `room` is the signed distance to the wall in mm, > 0 in the
+// cavity. Its argument is a position in the volume's own frame (index times spacing, mm).
 #pragma once
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace edgesplat::viewer_test {
 
 using Room = std::function<double(const glm::dvec3&)>;
 
-/// Turned about all axes; orthonormal.
+/// A rotation about all axes; orthonormal.
 inline const glm::dmat3 kTurned{{0.8, 0.6, 0}, {-0.48, 0.64, 0.6}, {0.36, -0.48, 0.8}};
 
 struct Cavity {
@@ -62,7 +62,7 @@ inline Scene solid_scene(double extinction = 8) {
     return scene;
 }
 
-/// The value at a world place by trilinear interpolation, written out once more.
+/// An independent trilinear interpolation at a world position.
 inline double trilinear(const Volume& volume, const glm::dvec3& world) {
     const glm::dvec3 last(volume.geometry.dims - 1);
     const glm::dvec3 p = glm::clamp(volume.geometry.to_index(world), glm::dvec3(0), last);

@@ -1,4 +1,4 @@
-// Walls against shapes whose distances are known.
+// Walls, compared with shapes of known distance.
 #include "engine/viewer/walls.h"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ namespace {
 
 using namespace viewer_test;
 
-/// Largest difference from the true distance, mm, over random places: near the surface and anywhere.
+/// Largest error of the distance at random places, mm: near the surface and far from it.
 struct Errors {
     double near = 0, far = 0;
     int wrong_sides = 0;
@@ -37,7 +37,7 @@ Errors errors(const Cavity& cavity, bool within_matter = true, int count = 4000)
         const glm::dvec3 own = random.in(glm::dvec3(0), size), world = cavity.to_world(own);
         const double expected = cavity.room(own), found = walls.distance(world);
         if (expected < 0 && !within_matter) continue;
-        // Matter reaches to the sides of the volume, and there ends.
+        // Matter ends at the sides of the volume.
         const glm::dvec3 to_side = glm::min(own, size - own) + cavity.spacing / 2.0;
         if (expected < 0 && -expected > std::min({to_side.x, to_side.y, to_side.z})) continue;
         double& worst = std::abs(expected) < 2 * walls.voxel() ? e.near : e.far;
@@ -48,9 +48,9 @@ Errors errors(const Cavity& cavity, bool within_matter = true, int count = 4000)
     return e;
 }
 
-TEST(ViewerWalls, DistancesAreThoseOfTheShape) {
+TEST(ViewerWalls, DistancesMatchShape) {
     for (const Cavity& cavity : {hollow_ball(), straight_tube(), bent_tube(), shell()}) {
-        // Around the ends of tubes `room` is no distance in the matter, and their rims are sharper than samples show.
+        // In the matter around the ends of tubes `room` is not a distance, and samples do not resolve the rims.
         const bool has_rims = cavity.name != "shell" && cavity.name != "hollow ball";
         const Errors e = errors(cavity, !has_rims);
         EXPECT_LT(e.near, has_rims ? 0.4 : 0.12) << cavity.name;
@@ -59,13 +59,13 @@ TEST(ViewerWalls, DistancesAreThoseOfTheShape) {
     }
 }
 
-TEST(ViewerWalls, AnisotropicAndOblique) {
+TEST(ViewerWalls, HandleAnisotropicObliqueVolumes) {
     Cavity cavity = hollow_ball();
     cavity.spacing = {1, 1, 3};
     cavity.dims = {48, 48, 16};
     cavity.axes = kTurned;
     cavity.origin = {-100, 50, 20};
-    cavity.blur = 2;  // an edge that samples 3 mm apart show
+    cavity.blur = 2;  // an edge wide enough for samples 3 mm apart
     const Errors e = errors(cavity);
     // Chords of 3 mm in a circle of 16 mm radius are 0.07 mm inside of it.
     EXPECT_LT(e.near, 0.25);
@@ -73,8 +73,8 @@ TEST(ViewerWalls, AnisotropicAndOblique) {
     EXPECT_EQ(e.wrong_sides, 0);
 }
 
-// Of yes-or-no data the surface of the interpolated field lies half a voxel around the true one.
-TEST(ViewerWalls, BinaryData) {
+// In binary data the surface of the interpolated field lies up to half a voxel from the true one.
+TEST(ViewerWalls, HandleBinaryData) {
     Cavity cavity = hollow_ball();
     cavity.blur = 0;
     const Errors e = errors(cavity);
@@ -82,7 +82,7 @@ TEST(ViewerWalls, BinaryData) {
     EXPECT_LT(e.far, 1.0);
 }
 
-TEST(ViewerWalls, AwayIsTheWayToMoreRoom) {
+TEST(ViewerWalls, AwayPointsToFreeSpace) {
     const Cavity ball = hollow_ball();
     const Walls walls(sampled(ball), solid_scene());
     Random random(7);
@@ -94,21 +94,21 @@ TEST(ViewerWalls, AwayIsTheWayToMoreRoom) {
     EXPECT_NEAR(glm::length(walls.away(ball.inside)), 1, 1e-12);
 }
 
-TEST(ViewerWalls, OutsideTheVolumeNothingIsSolid) {
+TEST(ViewerWalls, NothingIsSolidOutsideVolume) {
     const Cavity ball = hollow_ball();
     const Walls walls(sampled(ball), solid_scene());
-    // Its side is matter.
+    // The sides of the volume are matter.
     EXPECT_FALSE(walls.solid({-0.6, 23, 23}));
     EXPECT_TRUE(walls.solid({-0.4, 23, 23}));
     EXPECT_NEAR(walls.distance({-10.5, 23, 23}), 10, 1e-9);
     EXPECT_NEAR(walls.distance({0.5, 5, 5}), -1, 1e-9);
     EXPECT_GT(walls.away({0.5, 5, 5}).x, -1.01);
     EXPECT_LT(walls.away({0.5, 5, 5}).x, -0.99);
-    EXPECT_NEAR(walls.free_way({-20.5, 23, 23}, {2, 0, 0}), 20, 1e-6);
-    EXPECT_EQ(walls.free_way({-20.5, 23, 23}, {-1, 0, 0}, 500), 500);
-    EXPECT_NEAR(walls.free_way(ball.inside, {0, 1, 0}), 16, 0.1);
-    EXPECT_EQ(walls.free_way({1, 5, 5}, {0, 1, 0}), 0);
-    // A cavity that is open.
+    EXPECT_NEAR(walls.free_distance({-20.5, 23, 23}, {2, 0, 0}), 20, 1e-6);
+    EXPECT_EQ(walls.free_distance({-20.5, 23, 23}, {-1, 0, 0}, 500), 500);
+    EXPECT_NEAR(walls.free_distance(ball.inside, {0, 1, 0}), 16, 0.1);
+    EXPECT_EQ(walls.free_distance({1, 5, 5}, {0, 1, 0}), 0);
+    // An open cavity.
     Cavity half = ball;
     half.room = [](const glm::dvec3& x) { return 20.25 - x.x; };
     const Walls block(sampled(half), solid_scene());
@@ -117,7 +117,7 @@ TEST(ViewerWalls, OutsideTheVolumeNothingIsSolid) {
     EXPECT_NEAR(block.distance({10, 23, 80}), std::hypot(10.25, 80 - 47.5), 0.2);
 }
 
-TEST(ViewerWalls, NothingSolidOrEverything) {
+TEST(ViewerWalls, HandleEmptyAndSolidVolumes) {
     const Cavity ball = hollow_ball(16, 5);
     const auto volume = sampled(ball);
     Scene scene = solid_scene(0.1);
@@ -125,14 +125,14 @@ TEST(ViewerWalls, NothingSolidOrEverything) {
     EXPECT_FALSE(none.any());
     EXPECT_EQ(none.distance(ball.inside), INFINITY);
     EXPECT_FALSE(none.solid({1, 1, 1}));
-    EXPECT_EQ(none.free_way({0, 0, 0}, {1, 1, 1}), INFINITY);
+    EXPECT_EQ(none.free_distance({0, 0, 0}, {1, 1, 1}), INFINITY);
     EXPECT_NEAR(glm::length(none.away({0, 0, 0})), 1, 1e-12);
     scene.materials[0].extinction = scene.materials[1].extinction = 8;
     const Walls all(volume, scene);
     EXPECT_TRUE(all.any());
     EXPECT_NEAR(all.distance(ball.inside), -8, 1e-9);
     EXPECT_NEAR(all.distance({-3, 5, 5}), 2.5, 1e-9);
-    // One slice is a volume too.
+    // A volume of one slice.
     auto flat = std::make_shared<Volume>();
     flat->geometry.dims = {8, 8, 1};
     for (int i = 0; i < 64; ++i)
@@ -144,7 +144,7 @@ TEST(ViewerWalls, NothingSolidOrEverything) {
     EXPECT_FALSE(sheet.solid({1, 4, 0.6}));
 }
 
-TEST(ViewerWalls, WhatIsSolidFollowsMaterialsAndTransferFunctions) {
+TEST(ViewerWalls, FollowMaterialsAndTransferFunctions) {
     Cavity ramp = hollow_ball(32, 5);
     ramp.blur = 0;
     auto volume = std::make_shared<Volume>(*sampled(ramp));
@@ -165,7 +165,7 @@ TEST(ViewerWalls, WhatIsSolidFollowsMaterialsAndTransferFunctions) {
     EXPECT_NEAR(materials.distance(place(7)), -2, 1e-6);
     scene.transfer = {{8, {}, 0}, {10, {}, 2 * std::log(2.0)}, {11, {}, 0}};
     const Walls transfer(volume, scene);
-    // A layer thinner than the voxels' spacing from 9 to 10.5.
+    // A thin layer from 9 to 10.5.
     EXPECT_FALSE(transfer.solid(place(8.9)));
     EXPECT_TRUE(transfer.solid(place(9.1)));
     EXPECT_TRUE(transfer.solid(place(10.4)));
@@ -175,8 +175,8 @@ TEST(ViewerWalls, WhatIsSolidFollowsMaterialsAndTransferFunctions) {
     EXPECT_NEAR(transfer.distance(place(9.6)), -0.6, 1e-6);
 }
 
-// Both ends of every edge of the grid are free: only the layer between is solid.
-TEST(ViewerWalls, LayersBetweenTwoVoxelsAreFound) {
+// The voxels on both sides are free; only the layer between them is solid.
+TEST(ViewerWalls, FindLayersBetweenTwoVoxels) {
     Cavity step = hollow_ball(32, 5);
     step.blur = 0;
     step.room = [](const glm::dvec3& x) { return x.x - 12.5; };
@@ -188,10 +188,10 @@ TEST(ViewerWalls, LayersBetweenTwoVoxelsAreFound) {
     EXPECT_NEAR(walls.distance({12.5, 10, 10}), -0.2, 1e-6);
     EXPECT_NEAR(walls.distance({20, 10, 10}), 7.3, 1e-5);
     EXPECT_NEAR(walls.distance({6, 10, 10}), 6.3, 1e-5);
-    EXPECT_NEAR(walls.free_way({20, 10, 10}, {-1, 0, 0}), 7.3, 1e-5);
+    EXPECT_NEAR(walls.free_distance({20, 10, 10}, {-1, 0, 0}), 7.3, 1e-5);
 }
 
-TEST(ViewerWalls, ClipPlanesOpenWhatTheyCutAway) {
+TEST(ViewerWalls, ClipPlanesOpenWalls) {
     const Cavity ball = hollow_ball();
     Scene scene = solid_scene();
     scene.effects.clip.keep = {{ball.inside, {0, 0, 5}}};
@@ -203,9 +203,9 @@ TEST(ViewerWalls, ClipPlanesOpenWhatTheyCutAway) {
     EXPECT_TRUE(walls.solid(below));
     EXPECT_NEAR(walls.distance(below), -1, 1e-9);
     EXPECT_GT(walls.away(above).z, 0.99);
-    EXPECT_NEAR(walls.free_way(ball.inside - glm::dvec3(0, 0, 4), {0, 0, -1}), 12, 0.1);
-    EXPECT_EQ(walls.free_way(ball.inside, {0, 0, 1}, 100), 100);
-    // A box cut out at the side of +x; the same matter again.
+    EXPECT_NEAR(walls.free_distance(ball.inside - glm::dvec3(0, 0, 4), {0, 0, -1}), 12, 0.1);
+    EXPECT_EQ(walls.free_distance(ball.inside, {0, 0, 1}, 100), 100);
+    // A box cut out at the side of +x, from the same matter.
     Clip box;
     box.remove = {{ball.inside + glm::dvec3(10, 0, 0), {-1, 0, 0}},
                   {ball.inside + glm::dvec3(0, 3, 0), {0, 1, 0}},
@@ -214,13 +214,13 @@ TEST(ViewerWalls, ClipPlanesOpenWhatTheyCutAway) {
     EXPECT_FALSE(open.solid(ball.inside + glm::dvec3(20, 2.9, 0)));
     EXPECT_TRUE(open.solid(ball.inside + glm::dvec3(20, 3.1, 0)));
     EXPECT_NEAR(open.distance(ball.inside + glm::dvec3(20, 1, 0)), 2, 1e-9);
-    EXPECT_EQ(open.free_way(ball.inside, {1, 0, 0}, 100), 100);
+    EXPECT_EQ(open.free_distance(ball.inside, {1, 0, 0}, 100), 100);
     EXPECT_TRUE(open.solid(ball.inside + glm::dvec3(18, 8, 3)));
     EXPECT_LT(open.distance_at({43, 27, 23}), 0);
     EXPECT_GT(open.distance_at({43, 24, 23}), 0);
 }
 
-TEST(ViewerWalls, PackedVolumesGiveTheSame) {
+TEST(ViewerWalls, PackedVolumeGivesSameResult) {
     const Cavity ball = hollow_ball();
     const auto volume = sampled(ball);
     const auto file =
@@ -234,14 +234,14 @@ TEST(ViewerWalls, PackedVolumesGiveTheSame) {
         EXPECT_EQ(same.distance(ball.inside + glm::dvec3(x, 1, 2)), walls.distance(ball.inside + glm::dvec3(x, 1, 2)));
 }
 
-TEST(ViewerWalls, Refuses) {
+TEST(ViewerWalls, RefuseInvalidArguments) {
     EXPECT_NE(refusal([] { Walls(nullptr, solid_scene()); }).find("no volume"), std::string::npos);
     EXPECT_NE(refusal([] { Walls(std::make_shared<const Volume>(), solid_scene()); }).find("samples"),
               std::string::npos);
     EXPECT_NE(refusal([] { Walls(sampled(hollow_ball(8, 2)), Scene{}); }), "");
 }
 
-TEST(ViewerWalls, OfAHeadInSeconds) {
+TEST(ViewerWalls, SurroundAirInRealHead) {
     const char* folder = std::getenv("EDGESPLAT_DATA");
     if (folder == nullptr || *folder == '\0') GTEST_SKIP() << "EDGESPLAT_DATA is not set: no folder of real volumes";
     const auto volume = std::make_shared<const Volume>(load_volume(std::string(folder) + "/cranium_ct/cranium.nhdr"));

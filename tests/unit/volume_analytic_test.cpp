@@ -1,4 +1,5 @@
-// Built-in scenes against finite differences and the defining properties of a distance; filters against hand sums.
+// Built-in scenes, compared with finite differences and the properties of a distance; filters, compared with sums by
+// hand.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -64,14 +65,14 @@ TEST(AnalyticVolumes, GradientsAgreeWithDifferences) {
     }
 }
 
-TEST(AnalyticVolumes, DistancesAreDistances) {
+TEST(AnalyticVolumes, DistancesHaveSlopeAtMostOne) {
     for (const auto& scene : smooth_scenes()) {
-        if (!scene.signed_distance || scene.name == "gyroid") continue;  // that is a distance near the surface only
+        if (!scene.signed_distance || scene.name == "gyroid") continue;  // a distance only near the surface
         const auto where = points(scene, 600);
         for (std::size_t i = 1; i < where.size(); ++i) {
             const double a = scene.signed_distance(where[i - 1]), b = scene.signed_distance(where[i]);
             ASSERT_LE(std::abs(a - b), glm::length(where[i] - where[i - 1]) + 1e-9) << scene.name;
-            // There is a surface point within the distance, and none nearer: walk there along the gradient.
+            // No surface point is nearer than the distance: a step of 0.999 of it does not cross the surface.
             const auto near = where[i] + glm::normalize(where[i - 1] - where[i]) * std::abs(b) * 0.999;
             ASSERT_GE(scene.signed_distance(near) * (b < 0 ? -1 : 1), -1e-9) << scene.name;
         }
@@ -92,7 +93,7 @@ TEST(AnalyticVolumes, EdgesLieAtTheIsoValue) {
     EXPECT_NEAR(sphere.signed_distance({15, 23, 15}), 3, 1e-12);
 }
 
-/// The point of the surface that Newton's steps along the gradient reach from p; nothing where they do not settle.
+/// The surface point that Newton steps along the gradient reach from p; nullopt if they do not converge.
 std::optional<glm::dvec3> surface_near(const AnalyticScene& scene, glm::dvec3 p) {
     constexpr double h = 1e-5;
     for (int i = 0; i < 30; ++i) {
@@ -109,7 +110,7 @@ std::optional<glm::dvec3> surface_near(const AnalyticScene& scene, glm::dvec3 p)
     return {};
 }
 
-TEST(AnalyticVolumes, DistancesRiseByOneAVoxelAtEverySurface) {
+TEST(AnalyticVolumes, DistancesHaveUnitSlopeAtSurface) {
     for (const auto& scene : smooth_scenes()) {
         if (!scene.signed_distance) continue;
         int reached = 0, smooth = 0;
@@ -124,7 +125,7 @@ TEST(AnalyticVolumes, DistancesRiseByOneAVoxelAtEverySurface) {
                 e[axis] = h;
                 slope[axis] = (scene.signed_distance(*p + e) - scene.signed_distance(*p - e)) / (2 * h);
             }
-            // Nearly half of the points come to rest on the edges of a cube, where there is no slope.
+            // Nearly half of the points converge to the edges of a cube, where the gradient is undefined.
             if (std::abs(glm::length(slope) - 1) < 1e-3) ++smooth;
         }
         EXPECT_GT(reached, 200) << scene.name;
@@ -132,9 +133,9 @@ TEST(AnalyticVolumes, DistancesRiseByOneAVoxelAtEverySurface) {
     }
 }
 
-TEST(AnalyticVolumes, TheNearestPointOfTheSurfaceIsAsFarAsTheDistance) {
-    // Towards where the distance falls fastest, the surface is met after exactly that way: bounds it from above; that
-    // it changes by no more than the way bounds it from below.
+TEST(AnalyticVolumes, DistanceReachesNearestSurfacePoint) {
+    // A step of the distance along steepest descent meets the surface: the distance is not too small. That its slope is
+    // at most 1 shows that it is not too large.
     for (const char* name : {"ellipsoid", "box", "rounded-box", "tilted-torus", "tube", "shell", "balls", "small-ball",
                              "vessels", "specks"}) {
         const auto scene = analytic_scene(name);
@@ -148,7 +149,7 @@ TEST(AnalyticVolumes, TheNearestPointOfTheSurfaceIsAsFarAsTheDistance) {
                 e[axis] = h;
                 slope[axis] = (scene.signed_distance(p + e) - scene.signed_distance(p - e)) / (2 * h);
             }
-            if (std::abs(glm::length(slope) - 1) > 1e-6) continue;  // two points are nearest
+            if (std::abs(glm::length(slope) - 1) > 1e-6) continue;  // two surface points are equally near
             ASSERT_NEAR(scene.signed_distance(p - d * slope), 0, 1e-4 * (1 + std::abs(d))) << name;
             ++checked;
         }
@@ -156,7 +157,7 @@ TEST(AnalyticVolumes, TheNearestPointOfTheSurfaceIsAsFarAsTheDistance) {
     }
 }
 
-TEST(AnalyticVolumes, BodiesAreWhereTheyAreSaidToBe) {
+TEST(AnalyticVolumes, BodiesHaveDocumentedPositions) {
     const auto distance = [](const char* name, const glm::dvec3& x) { return analytic_scene(name).signed_distance(x); };
     EXPECT_NEAR(distance("small-ball", {19.7, 19.4, 19.2}), -4, 1e-12);
     EXPECT_NEAR(distance("shell", glm::dvec3(19.6, 19.3, 19.4) + glm::dvec3(0, 14.3, 0)), -0.9, 1e-12);
@@ -167,7 +168,7 @@ TEST(AnalyticVolumes, BodiesAreWhereTheyAreSaidToBe) {
     const auto binary = builtin_volume("builtin:binary-ball");
     for (const float value : binary.values)
         ASSERT_TRUE(value == 0.0F || value == 1.0F);
-    // What specks and rings hold, by counting: 60 balls, five tori.
+    // Volumes of specks (60 balls) and vessels (five tori), by counting samples.
     const auto held = [](const char* name) {
         const auto scene = resized(analytic_scene(name), glm::ivec3(157));
         double count = 0;
@@ -187,7 +188,7 @@ TEST(AnalyticVolumes, BodiesAreWhereTheyAreSaidToBe) {
     EXPECT_NEAR(held("vessels") / rings, 1, 0.01);
 }
 
-TEST(AnalyticVolumes, NoiseIsAShareOfTheStep) {
+TEST(AnalyticVolumes, NoiseIsRelativeToStep) {
     for (const std::string name : {"sphere", "phantom", "gyroid:24"}) {
         const auto clean = builtin_volume("builtin:" + name + ":noise=0");
         const auto noisy = builtin_volume("builtin:" + name + ":noise=0.02");
@@ -222,14 +223,14 @@ TEST(AnalyticVolumes, NoiseIsAShareOfTheStep) {
     EXPECT_THAT(refusal("builtin:bax:noise=0.1"), HasSubstr("no built-in volume 'bax'"));
 }
 
-TEST(AnalyticVolumes, CubeHoleIsThePapersCube) {
+TEST(AnalyticVolumes, CubeHoleMatchesPaper) {
     const auto volume = builtin_volume("builtin:cube-hole");
     double inside = 0;
     for (const float value : volume.values) {
         ASSERT_TRUE(value == 0.0F || value == 1.0F);
         inside += static_cast<double>(value);
     }
-    EXPECT_NEAR(inside, 12 * (144 - 3.14159 * 3.5 * 3.5), 80);  // 12^3 less the hole, at voxel centres
+    EXPECT_NEAR(inside, 12 * (144 - 3.14159 * 3.5 * 3.5), 80);  // 12^3 minus the hole, at voxel centres
     EXPECT_EQ(volume.at(4, 4, 10), 1.0F);
     EXPECT_EQ(volume.at(3, 10, 10), 0.0F);
     EXPECT_EQ(volume.at(9, 10, 10), 0.0F);
@@ -247,7 +248,7 @@ TEST(AnalyticVolumes, ThinSlabsKeepTheirMass) {
     EXPECT_NEAR(sum, 0.6, 1e-6);
 }
 
-TEST(AnalyticVolumes, NamesDimsAndNoise) {
+TEST(AnalyticVolumes, ParseNamesAndDims) {
     EXPECT_EQ(builtin_volume("builtin:phantom").checksum, builtin_volume("builtin:phantom").checksum);
     EXPECT_EQ(builtin_volume("builtin:sphere:24x20x16").geometry.dims, glm::ivec3(24, 20, 16));
     EXPECT_EQ(builtin_volume("builtin:orbital:32").geometry.dims, glm::ivec3(32));
@@ -278,7 +279,7 @@ TEST(FinishVolume, ReplacesAndCountsNonFiniteSamples) {
     EXPECT_THROW(finish_volume(volume), Error);
 }
 
-TEST(Filters, BoxThresholdAndScaling) {
+TEST(Filters, ComputeBoxThresholdAndScaling) {
     const auto cube = builtin_volume("builtin:cube-hole");
     const auto box = box_filter(cube);
     EXPECT_NEAR(box.at(5, 5, 5), 1, 1e-6);
@@ -330,7 +331,7 @@ TEST(Filters, BsplineCoefficientsInterpolate) {
     EXPECT_THROW(bspline_coefficients({1, 2}, {3, 1, 1}), Error);
 }
 
-TEST(Filters, ASplineGoesOnStraightBeyondTheBorder) {
+TEST(Filters, SplineExtrapolatesLinearly) {
     const glm::ivec3 dims(6, 5, 2);
     const auto plane = [](const glm::dvec3& p) { return 0.3 + 0.1 * p.x - 0.04 * p.y + 0.2 * p.z; };
     std::vector<float> samples;
@@ -341,7 +342,7 @@ TEST(Filters, ASplineGoesOnStraightBeyondTheBorder) {
     const auto c = bspline_coefficients(samples, dims);
     for (const glm::dvec3 p : {glm::dvec3(-0.5, 2.3, 1.5), {5.5, 4.5, -0.5}, {0, 0.2, 0}, {4.9, 4, 1}, {2.5, -2, 3}})
         EXPECT_NEAR(spline_at(c, dims, p), plane(p), 1e-6);
-    // Slopes are the weights' own derivatives, at borders and within.
+    // Slopes are the derivatives of the weights, at borders and inside.
     for (const double place : {-0.4, 0.3, 1.7, 4.2, 5.3})
         for (std::size_t k = 0; k < 4; ++k) {
             const double h = 1e-5;
@@ -352,7 +353,7 @@ TEST(Filters, ASplineGoesOnStraightBeyondTheBorder) {
         }
 }
 
-TEST(Filters, HistogramAndIsoValues) {
+TEST(Filters, ComputeHistogramAndIsoValues) {
     const auto sphere = builtin_volume("builtin:sphere");
     const auto bins = histogram(sphere, 16);
     std::size_t sum = 0;

@@ -1,4 +1,4 @@
-// Real volumes and odd files of other projects, in the folder EDGESPLAT_DATA names; skipped without it.
+// Real volumes and unusual files of other projects, in the folder that EDGESPLAT_DATA names; skipped without it.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -28,7 +28,7 @@ double mean_of(const Volume& volume) {
     return sum / static_cast<double>(volume.values.size());
 }
 
-TEST_F(Data, VolumesHaveTheStatedDimsSpacingAndRange) {
+TEST_F(Data, VolumesHaveExpectedDimsSpacingAndRange) {
     struct Case {
         const char* path;
         glm::ivec3 dims;
@@ -72,15 +72,15 @@ TEST_F(Data, VolumesHaveTheStatedDimsSpacingAndRange) {
     }
 }
 
-// Its header states too few compressed bytes: a reader that obeys it leaves the last million voxels undefined.
-TEST_F(Data, FrogIsWhole) {
+// The header states too few compressed bytes: a reader that trusts it leaves the last million voxels undefined.
+TEST_F(Data, FrogIsComplete) {
     const auto volume = load_volume(data("frog_labels/frogtissue.mhd"));
     const auto label = std::count(volume.values.begin(), volume.values.end(), 13.0F);
     EXPECT_EQ(label, 440722);
     EXPECT_NEAR(mean_of(volume), 0.38421377, 1e-6);
 }
 
-TEST_F(Data, TwinsAreIdentical) {
+TEST_F(Data, EqualFilesLoadIdentically) {
     const auto same = [](std::initializer_list<const char*> names) {
         const auto first = load_volume(data(*names.begin()));
         for (const char* name : names)
@@ -101,8 +101,8 @@ TEST_F(Data, TwinsAreIdentical) {
     EXPECT_EQ(load_volume(data(ball + ".raw"), {.raw = "30x30x30:int16:little"}).values, values);
 }
 
-// The header has no byte skip, so the data begin with the NIfTI header: obeyed, and said.
-TEST_F(Data, NrrdThatPointsIntoNiftiIsObeyed) {
+// The header has no byte skip, so the data begin with the NIfTI header. It is read as stated, with a note.
+TEST_F(Data, ReadsNrrdThatPointsIntoNifti) {
     const auto volume = load_volume(data("odd/nrrd/BallBinary30x30x30_nifti.nhdr"));
     EXPECT_EQ(volume.min_value, -16512.0F);
     EXPECT_EQ(volume.max_value, 22850.0F);
@@ -110,13 +110,13 @@ TEST_F(Data, NrrdThatPointsIntoNiftiIsObeyed) {
     EXPECT_THAT(volume.notes[0], HasSubstr("byte skip"));
 }
 
-TEST_F(Data, NonFiniteSamplesAreCounted) {
+TEST_F(Data, CountsNonFiniteSamples) {
     const auto volume = load_volume(data("odd/nifti/resampled_anat_moved.nii"));
     EXPECT_EQ(volume.non_finite_count, 153U);
     EXPECT_NEAR(volume.min_value, 409.3004, 1e-3);
 }
 
-TEST_F(Data, FramesAndComponents) {
+TEST_F(Data, SelectsFramesAndComponents) {
     const auto functional = data("timeseries/functional.nii");
     EXPECT_THAT(refusal(functional), AllOf(HasSubstr("functional.nii"), HasSubstr("--frame 0..19")));
     float low = INFINITY, high = -INFINITY;
@@ -133,7 +133,7 @@ TEST_F(Data, FramesAndComponents) {
     EXPECT_THAT(refusal(run), HasSubstr("--frame 0..1"));
     EXPECT_EQ(load_volume(run, {.frame = 1}).geometry.dims, glm::ivec3(128, 96, 24));
     EXPECT_THAT(refusal(data("odd/nifti/5D_small.nii")), HasSubstr("--component 0..2"));
-    // Scaled vector data overrun ITK's buffers; the third component from the bytes themselves.
+    // ITK's buffers overflow with scaled vector data; the expected third component comes from the file's bytes.
     const auto vector = load_volume(data("odd/nifti/5D_small.nii"), {.component = 2});
     const double expected[] = {0.27826, 0.42996, 0.07968, 0.35273, 0.39135, 0.45478};
     ASSERT_EQ(vector.values.size(), 6U);
@@ -143,8 +143,8 @@ TEST_F(Data, FramesAndComponents) {
     EXPECT_NEAR(load_volume(data("odd/nrrd/test_simple4d_raw.nrrd")).values[0], 0.76903426, 1e-6);
 }
 
-// What the formats allow and a volume is not: see TwoDimensionsAreOneSlice.
-TEST_F(Data, FlatFiles) {
+// Two-dimensional files; see also Formats.ReadsTwoDimensionsAsOneSlice.
+TEST_F(Data, ReadsFlatFiles) {
     const auto foot = load_volume(data("odd/meta_vtk/foot.mha"));
     EXPECT_EQ(foot.geometry.dims, glm::ivec3(256, 256, 1));
     EXPECT_THAT(foot.notes, testing::Contains(HasSubstr("3 spacings")));
@@ -155,13 +155,13 @@ TEST_F(Data, FlatFiles) {
     EXPECT_EQ(load_volume(data("odd/nrrd/beach.nrrd"), {.component = 0}).geometry.dims, glm::ivec3(100, 100, 1));
 }
 
-TEST_F(Data, WhatMustBeRefusedIs) {
+TEST_F(Data, RefusesInvalidFiles) {
     const std::pair<const char*, const char*> cases[] = {
         {"odd/nrrd/BallBinary30x30x30_byteskip_minus_five.nhdr", "byte skip"},
         {"odd/nrrd/beach.nrrd", "colour or space"},
         {"odd/nrrd/test1d_ascii.nrrd", "1 axis"},
         {"odd/nrrd/test_customFields.nrrd", "1 axis"},
-        {"odd/nrrd/beach.ascii", "not a volume"},
+        {"odd/nrrd/beach.ascii", "unknown volume format"},
         {"odd/nrrd/BallBinary30x30x30.raw", "--raw"},
         {"odd/nifti/not-nifti.nii", "not a NIfTI"},
         {"odd/nifti/analyze.hdr", "analyze.img"},
@@ -174,7 +174,7 @@ TEST_F(Data, WhatMustBeRefusedIs) {
         EXPECT_THAT(refusal(data(path)), AllOf(HasSubstr(data(path)), HasSubstr(reason)));
 }
 
-TEST_F(Data, Vti) {
+TEST_F(Data, ReadsVtiIfSupported) {
     for (const auto& [path, dims] : {std::pair{"hydrogen/hydrogen.vti", glm::ivec3(64)},
                                      std::pair{"odd/meta_vtk/vase_1comp.vti", glm::ivec3(115, 101, 75)}}) {
         if (edgesplat::can_read_vti())

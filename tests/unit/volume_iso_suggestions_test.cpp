@@ -1,4 +1,4 @@
-// Default surfaces: strong, smooth, seen from outside, and no padding.
+// Suggested iso-values: strong, smooth surfaces that are visible from outside, and no padding.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -11,7 +11,7 @@ namespace {
 
 using Field = std::function<double(const glm::dvec3&)>;
 
-/// The field at the voxels of a cube, with noise of that standard deviation.
+/// The field at the voxels of a cube, with Gaussian noise of standard deviation `noise`.
 Volume sampled(const Field& field, double noise = 0) {
     constexpr int kSide = 40;
     Volume volume;
@@ -31,7 +31,7 @@ double from_middle(const glm::dvec3& p) {
     return glm::length(p - 19.5);
 }
 
-/// 1 inside of a ball, 0 outside, over some two voxels.
+/// 1 inside a ball, 0 outside; the edge is about two voxels wide.
 double ball(const glm::dvec3& p, double radius) {
     return 1 / (1 + std::exp(2 * (from_middle(p) - radius)));
 }
@@ -40,24 +40,23 @@ double first(const Volume& volume) {
     return suggest_iso_values(volume).at(0).value;
 }
 
-TEST(IsoSuggestions, AHiddenSurfaceYieldsToTheOneAroundIt) {
-    // The core's surface is four times as strong, and hardly smaller; no ray from outside is the first to meet it
-    // alone.
+TEST(IsoSuggestions, PrefersOuterToHiddenSurface) {
+    // The core's step is 150, the outer step 100, but rays from outside meet the outer surface first.
     const Volume volume = sampled([](const glm::dvec3& p) { return 100 * ball(p, 15) + 150 * ball(p, 4); });
     const double value = first(volume);
     EXPECT_GT(value, 20);
     EXPECT_LT(value, 90);
 }
 
-TEST(IsoSuggestions, NoiseIsNoSurface) {
+TEST(IsoSuggestions, IgnoresNoise) {
     const Volume volume = sampled([](const glm::dvec3& p) { return 400 * ball(p, 12); }, 30);
     const double value = first(volume);
-    EXPECT_GT(value, 120) << "not in the noise of what is around";
-    EXPECT_LT(value, 300) << "nor in that of the ball";
+    EXPECT_GT(value, 120) << "above the noise of the background";
+    EXPECT_LT(value, 300) << "below the noise of the ball";
 }
 
-TEST(IsoSuggestions, PaddingIsNoSurface) {
-    // A scanner's cylinder of noisy air with a body in it, and corners that were never measured.
+TEST(IsoSuggestions, IgnoresPadding) {
+    // A body in a scanner's cylinder of noisy air; the corners were not measured (padding).
     const Volume noisy = sampled([](const glm::dvec3& p) { return -1000 + 1040 * ball(p, 11); }, 8);
     Volume padded = noisy;
     for (int z = 0; z < 40; ++z)
@@ -72,8 +71,8 @@ TEST(IsoSuggestions, PaddingIsNoSurface) {
         EXPECT_GT(suggestion.value, -1050);
 }
 
-TEST(IsoSuggestions, NothingAroundAThingIsNoPadding) {
-    // Values begin at 50 of 150 where a brain is cut out: the step down to 0 is its surface.
+TEST(IsoSuggestions, KeepsSurfaceOnZeroBackground) {
+    // An extracted brain with values from 50 to 150 on a background of 0: the step to 0 is its surface.
     const Volume volume = sampled([](const glm::dvec3& p) {
         const double share = ball(p, 15);
         return share < 0.3 ? 0 : 50 + 100 * share + 3 * std::sin(p.x);
@@ -83,8 +82,8 @@ TEST(IsoSuggestions, NothingAroundAThingIsNoPadding) {
     EXPECT_LT(value, 130);
 }
 
-TEST(IsoSuggestions, OfEqualsTheMiddleIsTaken) {
-    // No sample lies between 0 and 80: all values there have one surface.
+TEST(IsoSuggestions, ChoosesMiddleOfEqualCandidates) {
+    // No sample lies between 0 and 80: all iso-values there have the same surface.
     const Volume volume = sampled([](const glm::dvec3& p) {
         const double r = from_middle(p);
         return r < 12 ? 80 + (12 - r) : 0;

@@ -1,4 +1,4 @@
-// Which volumes are segmentations.
+// Recognition of segmentations (label volumes).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,7 +22,7 @@ edgesplat::Volume sampled(const std::function<double(const glm::dvec3&)>& value)
     return volume;
 }
 
-/// Two organs, one in the other's side, and a thin one.
+/// Two organs, one embedded in the side of the other, and a thin one.
 double organ(const glm::dvec3& p) {
     if (glm::distance(p, {15, 15, 10}) < 5) return 7;
     if (glm::distance(p, {20, 15, 10}) < 9) return 3;
@@ -35,7 +35,7 @@ TEST(Labels, AreFewWholeNumbersWithoutPartialVolume) {
         << "a mask";
 }
 
-TEST(Labels, AreNotWhatWasMeasured) {
+TEST(Labels, RejectsMeasuredValues) {
     const auto blurred = [](const glm::dvec3& p) {
         double sum = 0;
         for (int i = 0; i < 27; ++i)
@@ -51,11 +51,11 @@ TEST(Labels, AreNotWhatWasMeasured) {
 
 TEST(Labels, AreDrawnAsNumbersAboveOne) {
     const edgesplat::Volume drawn = edgesplat::drawn_labels(sampled(organ));
-    EXPECT_EQ(drawn.at(0, 0, 0), 0) << "what is at the border is nothing";
+    EXPECT_EQ(drawn.at(0, 0, 0), 0) << "the label at the border is the background";
     EXPECT_FLOAT_EQ(drawn.at(22, 15, 10), 1 + 3.0F / 1024);
     EXPECT_FLOAT_EQ(drawn.at(15, 15, 10), 1 + 7.0F / 1024);
     EXPECT_FLOAT_EQ(drawn.at(35, 1, 10), 1 + 250.0F / 1024);
-    // Numbers that cannot stand for themselves are ranks: around is 4 here.
+    // With negative labels, ranks replace all labels; the background is 4 here.
     const edgesplat::Volume ranked =
         edgesplat::drawn_labels(sampled([](const glm::dvec3& p) { return organ(p) == 0 ? 4 : -10 * organ(p); }));
     EXPECT_EQ(ranked.at(0, 0, 0), 0);

@@ -23,7 +23,8 @@ using testing::HasSubstr;
 
 class Series : public FolderTest {
   protected:
-    // One 4 x 3 CT slice at `position`, axes along x and y; pixel (x, y) of it holds first + x + 10 y after the slope.
+    // Writes a CT slice of width x 3 pixels at `position`, axes along x and y. Pixel (x, y): first + x + 10 y after
+    // rescaling.
     void write_slice(const std::string& name, const glm::dvec3& position, int first, const std::string& series = "1",
                      unsigned width = 4) const {
         const auto io = itk::GDCMImageIO::New();
@@ -82,7 +83,7 @@ class Series : public FolderTest {
     }
 };
 
-TEST_F(Series, DicomInAnyOrderIsSortedByPosition) {
+TEST_F(Series, SortsDicomByPosition) {
     write_slice("b.dcm", {1, 2, 10}, 0);
     write_slice("a.dcm", {1, 2, 14}, 200);
     write_slice("z.dcm", {1, 2, 12}, 100);
@@ -94,7 +95,7 @@ TEST_F(Series, DicomInAnyOrderIsSortedByPosition) {
     EXPECT_THAT(volume.stored_type, HasSubstr("int16"));
 }
 
-TEST_F(Series, DicomGantryTiltStaysInTheMatrix) {
+TEST_F(Series, KeepsDicomGantryTiltInMatrix) {
     for (int z = 0; z < 4; ++z)
         write_slice(std::to_string(9 - z) + ".dcm", {0, 0.5 * z, 2.0 * z}, z);
     const auto volume = load_volume(folder_.string());
@@ -103,7 +104,7 @@ TEST_F(Series, DicomGantryTiltStaysInTheMatrix) {
     EXPECT_THAT(volume.notes[0], AllOf(HasSubstr("14.04 degrees"), HasSubstr("tilt")));
 }
 
-TEST_F(Series, DicomUnevenSpacingIsRefused) {
+TEST_F(Series, RefusesUnevenDicomSpacing) {
     for (const double z : {0.0, 2.0, 4.0, 6.1, 8.1})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
     EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("uneven"), HasSubstr("4.000)"), HasSubstr("6.100)"),
@@ -112,8 +113,8 @@ TEST_F(Series, DicomUnevenSpacingIsRefused) {
     EXPECT_THAT(refusal(folder_.string()), HasSubstr("are 2.1 mm apart, the others 1.9 to 2 mm"));
 }
 
-TEST_F(Series, DicomUnevenSpacingIsResampledWhereThatIsAskedFor) {
-    // Pixels rise as a parabola does along the slices, 1 mm aside for each 10 mm along.
+TEST_F(Series, ResamplesUnevenDicomSpacingOnRequest) {
+    // Values are a parabola along the slices, which shift sideways by 1 mm per 10 mm.
     const auto value = [](double z) { return std::lround(4 * z * z); };
     for (const double z : {0.0, 1.0, 2.0, 3.5, 4.5, 6.0})
         write_slice(std::to_string(z) + ".dcm", {0.1 * z, 0, 5 + z}, static_cast<int>(value(z)));
@@ -128,7 +129,7 @@ TEST_F(Series, DicomUnevenSpacingIsResampledWhereThatIsAskedFor) {
     EXPECT_THAT(refusal(folder_.string(), {.resample = true}), HasSubstr("one line"));
 }
 
-TEST_F(Series, DicomThatIsBrokenIsLeftOutAndNamed) {
+TEST_F(Series, SkipsAndNamesBrokenDicomFiles) {
     for (int z = 0; z < 4; ++z)
         write_slice(std::to_string(z) + ".dcm", {0, 0, 2.0 * z}, 100 * z);
     const auto whole = content_of(file("3.dcm"));
@@ -136,19 +137,19 @@ TEST_F(Series, DicomThatIsBrokenIsLeftOutAndNamed) {
     const auto volume = load_volume(folder_.string());
     EXPECT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3));
     EXPECT_THAT(volume.warnings,
-                testing::ElementsAre(AllOf(HasSubstr("3.dcm"), HasSubstr("truncated"), HasSubstr("left out"))));
-    // One in the middle leaves a hole, which is told with its reason or interpolated.
+                testing::ElementsAre(AllOf(HasSubstr("3.dcm"), HasSubstr("truncated"), HasSubstr("skipped"))));
+    // A broken slice in the middle leaves a gap, which is reported with its reason, or interpolated.
     write("3.dcm", whole);
     write("2.dcm", content_of(file("2.dcm")).substr(0, whole.size() - 10));
     EXPECT_THAT(refusal(folder_.string()),
-                AllOf(HasSubstr("a slice may be missing"), HasSubstr("left out:"), HasSubstr("2.dcm: truncated")));
+                AllOf(HasSubstr("a slice may be missing"), HasSubstr("skipped:"), HasSubstr("2.dcm: truncated")));
     EXPECT_EQ(load_volume(folder_.string(), {.resample = true}).warnings.size(), 2U);
     for (int z = 0; z < 4; ++z)
         write(std::to_string(z) + ".dcm", whole.substr(0, whole.size() - 10));
     EXPECT_THAT(refusal(folder_.string()), HasSubstr("none of its 4 DICOM files"));
 }
 
-TEST_F(Series, DicomWithoutPreambleIsRead) {
+TEST_F(Series, ReadsDicomWithoutPreamble) {
     for (const bool meta : {true, false}) {
         SCOPED_TRACE(meta);
         for (int z = 0; z < 3; ++z) {
@@ -169,13 +170,13 @@ TEST_F(Series, DicomWithoutPreambleIsRead) {
     }
 }
 
-TEST_F(Series, DicomByAPatternIsDicom) {
+TEST_F(Series, ReadsDicomByPattern) {
     for (int z = 0; z < 3; ++z)
         write_slice("s" + std::to_string(z) + ".dcm", {0, 0, 6.0 - 2.0 * z}, 100 * z);
     for (const char* pattern : {"s%d.dcm", "s*.dcm", "s?.dcm"}) {
         const auto volume = load_volume(file(pattern));
         ASSERT_EQ(volume.geometry.dims, glm::ivec3(4, 3, 3)) << pattern;
-        EXPECT_EQ(volume.at(3, 2, 2), 23.0F) << "sorted by place, not by number";
+        EXPECT_EQ(volume.at(3, 2, 2), 23.0F) << "sorted by position, not by number";
         EXPECT_EQ(volume.geometry.spacing().z, 2);
     }
     write_image("s3.png", {{1, 1, 1, 1}});
@@ -184,7 +185,7 @@ TEST_F(Series, DicomByAPatternIsDicom) {
     EXPECT_EQ(load_volume(file("*.png")).geometry.dims, glm::ivec3(2, 2, 1));
 }
 
-/// A zip archive of files of the folder, under names of its own.
+/// Writes a zip archive with these names and contents.
 void write_zip(const std::string& path, const std::vector<std::pair<std::string, std::string>>& entries) {
     archive* out = archive_write_new();
     archive_write_set_format_zip(out);
@@ -202,7 +203,7 @@ void write_zip(const std::string& path, const std::vector<std::pair<std::string,
     EXPECT_EQ(archive_write_free(out), ARCHIVE_OK);
 }
 
-TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
+TEST_F(Series, ReadsZipArchives) {
     std::vector<std::pair<std::string, std::string>> entries;
     for (int z = 0; z < 3; ++z) {
         write_slice("slice", {0, 0, 2.0 * z}, 100 * z);
@@ -225,7 +226,7 @@ TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
 
     const auto whole = content_of(file("a.zip"));
     for (std::size_t lost = 1; lost < whole.size() - 4; lost += 1 + lost / 3) {
-        // Without its list of entries at the end an archive may be read from its beginning; what is cut is refused.
+        // Without its directory at the end an archive may be read from its beginning; truncated entries are refused.
         try {
             EXPECT_EQ(load_volume(write("c.zip", whole.substr(0, whole.size() - lost))).values, volume.values) << lost;
         } catch (const edgesplat::Error& error) {
@@ -241,11 +242,11 @@ TEST_F(Series, ZipArchivesAreFoldersOrFiles) {
     entries[1].second.resize(500);
     write_zip(file("f.zip"), entries);
     EXPECT_THAT(load_volume(file("f.zip")).warnings,
-                testing::ElementsAre(AllOf(HasSubstr("f.zip/"), HasSubstr("left out"))));
+                testing::ElementsAre(AllOf(HasSubstr("f.zip/"), HasSubstr("skipped"))));
 }
 
-TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
-    // The portable bitmap of 8 x 2 pixels.
+TEST_F(Series, ReadsOneBitMasksAsZeroAndOne) {
+    // A portable bitmap of 8 x 2 pixels.
     const auto volume = load_volume(write("a.pbm", std::string("P4\n8 2\n") + '\x81' + '\x0f'));
     EXPECT_EQ(volume.geometry.dims, glm::ivec3(8, 2, 1));
     EXPECT_EQ(volume.min_value, 0.0F);
@@ -259,25 +260,25 @@ TEST_F(Series, MasksOfOneBitAreZeroAndOne) {
     EXPECT_THAT(load_volume(file("b.tif")).values, testing::ElementsAre(1, 0, 0, 1, 1, 0, 0, 1));
 }
 
-TEST_F(Series, DicomMissingSliceIsRefused) {
+TEST_F(Series, RefusesMissingDicomSlice) {
     for (const double z : {0.0, 2.0, 6.0, 8.0})
         write_slice(std::to_string(z) + ".dcm", {0, 0, z}, 0);
     EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("missing"), HasSubstr("2.000)"), HasSubstr("6.000)")));
 }
 
-TEST_F(Series, DicomSlicesAtOnePlaceAreRefused) {
+TEST_F(Series, RefusesDicomSlicesAtSamePosition) {
     for (int i = 0; i < 4; ++i)
         write_slice(std::to_string(i) + ".dcm", {0, 0, 2.0 * (i / 2)}, 0);
-    EXPECT_THAT(refusal(folder_.string()), HasSubstr("same place"));
+    EXPECT_THAT(refusal(folder_.string()), HasSubstr("same position"));
 }
 
-TEST_F(Series, DicomSlicesOffTheLineAreRefused) {
+TEST_F(Series, RefusesDicomSlicesOffLine) {
     for (int i = 0; i < 4; ++i)
         write_slice(std::to_string(i) + ".dcm", {i == 2 ? 1.0 : 0.0, 0, 2.0 * i}, 0);
     EXPECT_THAT(refusal(folder_.string()), HasSubstr("one line"));
 }
 
-TEST_F(Series, DicomOfTwoSeriesMustBeChosen) {
+TEST_F(Series, RequiresChoiceOfDicomSeries) {
     for (int z = 0; z < 3; ++z) {
         write_slice("a" + std::to_string(z), {0, 0, 2.0 * z}, 0, "1");
         write_slice("b" + std::to_string(z), {0, 0, 2.0 * z}, 50, "2");
@@ -288,14 +289,14 @@ TEST_F(Series, DicomOfTwoSeriesMustBeChosen) {
     EXPECT_THAT(refusal(folder_.string(), {.series = "7"}), HasSubstr("none of its 2 series"));
 }
 
-TEST_F(Series, DicomOfTwoSizesIsRefused) {
+TEST_F(Series, RefusesDicomOfTwoSizes) {
     write_slice("a", {0, 0, 0}, 0);
     write_slice("b", {0, 0, 2}, 0, "1", 6);
     EXPECT_THAT(refusal(folder_.string()), HasSubstr("pixels"));
 }
 
 // GDCM aborts the program on some of these; all must be errors.
-TEST_F(Series, DicomTruncatedAnywhereIsRefused) {
+TEST_F(Series, RefusesTruncatedDicom) {
     write_slice("a.dcm", {0, 0, 0}, 0);
     const auto whole = content_of(file("a.dcm"));
     for (std::size_t lost = 1; lost < whole.size() - 140; lost += 1 + lost / 6) {
@@ -322,7 +323,7 @@ TEST_F(Series, ColourImagesNeedAComponent) {
     EXPECT_THAT(load_volume(file("a.tif"), {.component = 2}).values, testing::ElementsAre(3, 6, 9, 12));
 }
 
-TEST_F(Series, ImagesAreSortedByNumber) {
+TEST_F(Series, SortsImagesByNumber) {
     for (int i = 8; i <= 11; ++i) {
         const auto v = static_cast<std::uint16_t>(i);
         write_image("slice_" + std::to_string(i) + ".png", {{v, v, v, v}});

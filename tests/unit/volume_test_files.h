@@ -1,4 +1,4 @@
-// A folder of the test's own, small volumes with known voxels and geometry, and ITK writers for them.
+// A temporary folder per test, small volumes with known voxels and geometry, and ITK writers for them.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -47,7 +47,7 @@ inline std::string content_of(const std::string& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-/// The message of the Error that loading throws; "" and a failure when it loads.
+/// The message of the Error that loading throws. If it loads: "" and a test failure.
 inline std::string refusal(const std::string& path, const edgesplat::LoadOptions& options = {}) {
     try {
         (void)edgesplat::load_volume(path, options);
@@ -59,7 +59,7 @@ inline std::string refusal(const std::string& path, const edgesplat::LoadOptions
     return "";
 }
 
-/// Where a test volume lies: oblique, anisotropic, left-handed.
+/// Geometry of a test volume: oblique, anisotropic, left-handed.
 struct Place {
     glm::dmat3 directions{{0.8, 0.6, 0}, {-0.48, 0.64, 0.6}, {-0.36, 0.48, -0.8}};  // columns; determinant -1
     glm::dvec3 spacing{0.5, 1.25, 3};
@@ -115,7 +115,7 @@ inline void expect_place(const edgesplat::Volume& volume, const Place& place, do
     EXPECT_LT(glm::length(volume.geometry.origin - place.origin), tolerance * 10);
 }
 
-/// Path inside the folder EDGESPLAT_DATA names, or "" where it is not set.
+/// Path inside the folder that EDGESPLAT_DATA names; "" if it is not set.
 inline std::string data(const std::string& name) {
     const char* folder = std::getenv("EDGESPLAT_DATA");
     return folder == nullptr || *folder == '\0' ? "" : std::string(folder) + "/" + name;

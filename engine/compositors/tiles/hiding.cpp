@@ -6,12 +6,12 @@
 namespace edgesplat {
 namespace {
 
-// Of splats that touch more tiles each, drawing is what takes time, and pixels may be refined (worth_refining).
+// Limit of the mean number of tiles per splat. Above it drawing dominates, and pixels may be refined (should_refine).
 constexpr double kMostTiles = 2.6;
-// Bricks are divided from bricks: where more than this share of the splats is on either side, all at once is quicker.
+// Limit of the share of splats in bricks that belong to both parts. Above it drawing all at once is faster.
 constexpr double kMostTwice = 0.3;
 
-/// Half extents of a box and its middle relative to the anchor, voxels; widened by the kernels' reach.
+/// A box widened by the kernels' reach: its middle relative to the anchor, and half extents, voxels.
 struct WideBox {
     glm::dvec3 middle, half;
     WideBox(const FramePlan& plan, const VoxelBox& box)
@@ -27,14 +27,14 @@ glm::dvec2 depths_of(const FramePlan& plan, const WideBox& box) {
     return {middle - half, middle + half};
 }
 
-/// Sheets numbered from the eye on, half open; one more on either side, for what the device rounds.
+/// Sheets between two depths, numbered from the eye on, half open; one more on either side for the device's rounding.
 glm::ivec2 sheets_of(const FramePlan& plan, const glm::dvec2& depths) {
     const glm::dvec2 sheets =
         glm::clamp(glm::floor(depths / static_cast<double>(plan.params.sheet_thickness)), 0.0, 1e9);
     return {std::max(static_cast<int>(sheets.x) - 1, 0), static_cast<int>(sheets.y) + 2};
 }
 
-/// Tiles x0, y0, x1, y1, half open, that a box may show in; nothing where it reaches the eye's plane.
+/// Tiles x0, y0, x1, y1, half open, that a box may show in; nullopt if it reaches the eye's plane.
 std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
     const auto& p = plan.params;
     const glm::dvec2 size(p.size), tan_half(p.tan_half_x, p.tan_half_y);
@@ -56,7 +56,7 @@ std::optional<glm::ivec4> tiles_of(const FramePlan& plan, const WideBox& box) {
     return glm::ivec4(glm::floor(low / kTile), glm::ceil(high / kTile));
 }
 
-/// Tiles that a splat of the middle of a box touches.
+/// Estimated number of tiles that a splat at this depth (mm) touches.
 double tiles_of_splat(const FramePlan& plan, double depth) {
     const auto& p = plan.params;
     const glm::dmat3 to_world(p.index_to_world);
@@ -71,7 +71,7 @@ double tiles_of_splat(const FramePlan& plan, double depth) {
 
 std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least) {
     const auto& p = plan.params;
-    if (plan.variant.sliced || plan.variant.antialias || p.saturation > 1 || plan.looked_at < least ||
+    if (plan.variant.sliced || plan.variant.antialias || p.saturation > 1 || plan.splats_examined < least ||
         plan.bricks.empty())
         return std::nullopt;
     struct Place {
@@ -114,9 +114,9 @@ OpenTiles::OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> close
     for (int y = 0; y < tiles.y; ++y)
         for (int x = 0; x < tiles.x; ++x, ++tile) {
             const glm::ivec2 pixels = glm::min(glm::ivec2(kTile), plan.params.size - kTile * glm::ivec2(x, y));
-            const bool takes_more = closed[tile] != static_cast<std::uint32_t>(pixels.x * pixels.y);
+            const bool is_open = closed[tile] != static_cast<std::uint32_t>(pixels.x * pixels.y);
             open_[corner(x + 1, y + 1)] =
-                open_[corner(x, y + 1)] + open_[corner(x + 1, y)] - open_[corner(x, y)] + (takes_more ? 1U : 0U);
+                open_[corner(x, y + 1)] + open_[corner(x + 1, y)] - open_[corner(x, y)] + (is_open ? 1U : 0U);
         }
 }
 

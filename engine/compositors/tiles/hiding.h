@@ -1,4 +1,5 @@
-// What closed tiles hide; and a frame in two parts, what is in front, then of the rest what is not hidden behind it.
+// Culls bricks that saturated tiles occlude: divides a frame into a front part and the rest, and tests which bricks of
+// the rest are still visible.
 #pragma once
 
 #include <optional>
@@ -9,21 +10,22 @@
 
 namespace edgesplat {
 
-/// Bricks in view by number, ascending. Those that reach across the sheet are among both.
+/// Bricks in view by number, ascending. Bricks that reach across the sheet are in both lists.
 struct FrontAndRest {
-    int sheet = 0;  ///< numbered from the eye on: in front of it are about half of the splats
+    int sheet = 0;  ///< numbered from the eye on; about half of the splats are in front of it
     std::vector<std::uint32_t> front, rest;
 };
 
-/// Nothing where that would save little: fewer splats in view than `least`, large ones, pixels that never close.
+/// nullopt if the division would save little: fewer than `least` splats in view, large splats, or pixels that never
+/// saturate.
 std::optional<FrontAndRest> divide_front(const FramePlan& plan, const SplatBricks& bricks, std::uint64_t least);
 
-/// The tiles of a picture that take more, and what may show in them.
+/// The unsaturated tiles of a picture, as a summed-area table.
 class OpenTiles {
   public:
-    /// `closed`: of each tile, row by row, pixels that take no more.
+    /// `closed`: number of saturated pixels of each tile, row by row.
     OpenTiles(const FramePlan& plan, std::span<const std::uint32_t> closed);
-    /// Whether kernels of the voxels in a box may show in one of them. Never false for a box that reaches the eye's
+    /// Whether kernels of a box's voxels may show in an unsaturated tile. Always true for a box that reaches the eye's
     /// plane.
     bool may_show(const VoxelBox& box) const;
 
@@ -31,7 +33,7 @@ class OpenTiles {
     std::size_t corner(int x, int y) const;
 
     const FramePlan* plan_;
-    std::vector<std::uint32_t> open_;  ///< how many of them lie above and left of each corner between tiles
+    std::vector<std::uint32_t> open_;  ///< per corner between tiles: unsaturated tiles above and left of it
 };
 
 }  // namespace edgesplat

@@ -85,9 +85,9 @@ bool fit(const Chunks& chunks, const shader::FrameParams& params, std::size_t sl
            std::ranges::all_of(chunks.parts, prepared);
 }
 
-bool worth_refining(const Chunks& chunks) {
-    // Splats that are few pixels wide are as many for the eight pixels that are drawn together, wherever those lie.
-    // Those of voxels as wide as the first step, 12.8 pixels across, touch 1.8 x 1.8 tiles.
+bool should_refine(const Chunks& chunks) {
+    // Refinement saves nothing for small splats: the eight separate pixels drawn together share few of them. Splats of
+    // voxels as wide as the first step (4 pixels) are 12.8 pixels across and touch 1.8 x 1.8 = 3.25 tiles (13 / 4).
     return 4 * chunks.pairs > 13 * chunks.entries;
 }
 
@@ -117,7 +117,7 @@ void TileOrder::sort(std::uint32_t groups) {
             order_[at++] = tile * groups + i;
         ends_.push_back(at);
     }
-    // Of a dispatch that is folded into rows the last may have groups too many.
+    // A dispatch that is folded into rows may have surplus groups in its last row.
     std::ranges::fill(order_.subspan(at), ~0U);
 }
 
@@ -137,14 +137,14 @@ std::size_t TileOrder::groups_in(std::uint32_t round) const {
     return tiles == 0 ? 0 : ends_[tiles - 1];
 }
 
-bool TileOrder::any_todo() const {
+bool TileOrder::has_pixels_to_draw() const {
     return std::ranges::any_of(todo_, [](std::uint32_t pixels) { return pixels > 0; });
 }
 
 namespace {
 
-/// So many entries of tiles have room in every buffer that says something of each. Earlier pictures, which had other
-/// entries or did without some of the buffers, may have left one larger than another.
+/// Number of tile entries that every buffer with data per entry has room for. The buffers may differ: earlier pictures
+/// may have enlarged only some of them.
 std::uint64_t pairs_with_room(const TargetResources& targets) {
     const std::uint64_t marked =
         std::min(targets.tile_entries.bytes() / sizeof(glm::uvec2), targets.tile_marks.bytes() / sizeof(std::uint32_t));
@@ -190,7 +190,7 @@ bool KeptLists::take(std::uint32_t chunk) {
 }
 
 bool KeptLists::is_closed(std::size_t tile) const {
-    return targets_.tiles_seen.mapped<std::uint32_t>(tiles_)[tile] ==
+    return targets_.tile_closed_on_host.mapped<std::uint32_t>(tiles_)[tile] ==
            targets_.tile_todo.mapped<std::uint32_t>(tiles_)[tile];
 }
 

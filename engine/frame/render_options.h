@@ -1,4 +1,4 @@
-// What a renderer's user asked of the pictures to come (engine/renderer.h).
+// Options that a renderer's user sets for the next pictures (engine/renderer.h).
 #pragma once
 
 #include <functional>
@@ -9,16 +9,16 @@
 
 namespace edgesplat {
 
-struct Orders {
+struct RenderOptions {
     double patience = std::numeric_limits<double>::infinity();  ///< milliseconds: Renderer::set_patience
     std::function<bool()> interruption;                         ///< Renderer::set_interruption
-    std::uint64_t memory_budget = 0;                            ///< bytes; 0: what the device has
+    std::uint64_t memory_budget = 0;                            ///< bytes; 0: the device's memory
     bool counting = false;                                      ///< Renderer::count_fragments
     bool check_numbers = false;                                 ///< DeviceChoice::check_numbers
     PartExchange* exchange = nullptr;                           ///< Renderer::divide_sheets
 
-    /// Throws Interrupted if that is wanted.
-    void heed_interruption() const {
+    /// Throws Interrupted if an interruption is requested.
+    void throw_if_interrupted() const {
         if (interruption && interruption()) throw Interrupted();
     }
 };
