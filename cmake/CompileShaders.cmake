@@ -1,5 +1,5 @@
 # edgesplat_add_shaders(target folder): compiles every folder/*/*.{comp,vert,frag} to SPIR-V in the build tree and embeds
-# it. C++ finds a shader by its file name: gpu::find_shader("3_select_footprints.comp").
+# it in `target`. C++ finds a shader by its file name: gpu::find_shader("3_select_footprints.comp").
 function(edgesplat_add_shaders target folder)
     file(GLOB sources CONFIGURE_DEPENDS ${folder}/*/*.comp ${folder}/*/*.vert ${folder}/*/*.frag)
     file(GLOB includes CONFIGURE_DEPENDS ${folder}/*/*.h ${folder}/*/*.glsl)

@@ -2,8 +2,8 @@
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME edgesplat)
 set(CPACK_PACKAGE_VENDOR "Edgesplat developers")
-# Whoever packs maintains the package: DEBFULLNAME and DEBEMAIL, as Debian's own tools read them, else git's user, else who made
-# the last commit.
+# The maintainer is the person who builds the package: DEBFULLNAME and DEBEMAIL (Debian's convention), otherwise git's
+# user, otherwise the author of the last commit.
 foreach(row "DEBFULLNAME user.name %an packer" "DEBEMAIL user.email %ae packer_mail")
     string(REPLACE " " ";" row ${row})
     list(GET row 0 variable)
@@ -36,13 +36,14 @@ if(EDGESPLAT_PYTHON)
     list(APPEND CPACK_COMPONENTS_ALL python-debian)
 endif()
 
-# edgesplat_deb(COMPONENT PACKAGE SUMMARY DESCRIPTION DEPENDS): what control files say. Paragraphs are lines.
+# edgesplat_deb(COMPONENT PACKAGE SUMMARY DESCRIPTION DEPENDS): fields of the control file. Each line of DESCRIPTION is a
+# paragraph.
 function(edgesplat_deb component package summary description depends)
     string(TOUPPER ${component} upper)
     set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${package} PARENT_SCOPE)
     set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${description}" PARENT_SCOPE)
     set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${depends}" PARENT_SCOPE)
-    # What every package has to say of itself, in the folder of its name.
+    # Copyright and changelog, which every package must install in its own documentation folder.
     set(doc ${CMAKE_INSTALL_DATADIR}/doc/${package})
     install(FILES ${CMAKE_SOURCE_DIR}/packaging/copyright DESTINATION ${doc} COMPONENT ${component} EXCLUDE_FROM_ALL)
     install(FILES ${CMAKE_BINARY_DIR}/packaging/changelog.gz DESTINATION ${doc} COMPONENT ${component} EXCLUDE_FROM_ALL)
@@ -66,7 +67,7 @@ set(CPACK_DEBIAN_DEV_PACKAGE_SHLIBDEPS OFF)
 set(CPACK_DEBIAN_PYTHON-DEBIAN_PACKAGE_SECTION python)
 set(CPACK_DEBIAN_PYTHON-DEBIAN_PACKAGE_SUGGESTS "python3-ipywidgets")
 
-# Debian wants the date of a version, which is that of its commit.
+# Debian's changelog needs a date: that of the commit.
 execute_process(COMMAND git -C ${CMAKE_SOURCE_DIR} log -1 --format=%cD OUTPUT_VARIABLE date
     OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)
 if(failed OR NOT date)
@@ -75,7 +76,7 @@ endif()
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/packaging/changelog CONTENT [=[
 edgesplat (@PROJECT_VERSION@) unstable; urgency=medium
 
-  * What changed is told in CHANGELOG.md, which the package edgesplat has.
+  * CHANGELOG.md, in the package edgesplat, lists the changes.
 
  -- @CPACK_PACKAGE_CONTACT@  @date@
 ]=] @ONLY)

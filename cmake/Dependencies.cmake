@@ -1,4 +1,4 @@
-# Everything third-party, from the distribution's packages (cmake/packages.debian).
+# All third-party libraries, from the distribution's packages (cmake/packages.debian).
 find_package(Threads REQUIRED)
 find_package(Vulkan REQUIRED)
 find_package(glm REQUIRED)
@@ -8,27 +8,27 @@ find_package(nlohmann_json REQUIRED)
 find_package(PkgConfig REQUIRED)
 find_program(GLSLANG_VALIDATOR glslangValidator REQUIRED)
 
-# Pictures: PNG, and for everything else OpenImageIO.
+# Pictures: libpng for PNG, OpenImageIO for all other formats.
 find_package(PNG REQUIRED)
-# OpenImageIO's CMake package on Debian 12 asks for programs its -dev package does not bring; pkg-config works.
+# OpenImageIO's CMake package on Debian 12 requires programs that its -dev package does not contain; pkg-config works.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
 # Scene files.
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 
-# Components by name: without them ITK loads every module it was built with.
+# Named components: otherwise ITK loads every module of its build.
 set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
     ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)
 find_package(ITK REQUIRED COMPONENTS ${EDGESPLAT_ITK_COMPONENTS})
-# ITK's own use file registers factories per directory; what it sets is kept in one interface target.
+# ITK's use file registers factories per directory. An interface target holds its settings instead.
 add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
 target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
 
-# Packed volumes. A module of CMake's that ITK's own search has already been through.
+# Packed volumes. ITK's search has already run this CMake module.
 find_package(HDF5 REQUIRED COMPONENTS C)
 
-# What ITK's readers lack: bzip2 in NRRD, and a look into (gzipped) NIfTI files before ITK has them.
+# For formats that ITK's readers lack: bzip2 in NRRD, and checks of (gzipped) NIfTI files before ITK reads them.
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)
 target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)
@@ -40,16 +40,16 @@ if(EDGESPLAT_VTK)
     target_compile_definitions(edgesplat_itk INTERFACE EDGESPLAT_HAS_VTK)
 endif()
 
-# The navigation app: window and widgets. Debian's imgui has its Vulkan backend in the library.
+# The navigation app: window and widgets. Debian's imgui library contains the Vulkan backend.
 find_package(glfw3 3.3 REQUIRED)
 pkg_check_modules(IMGUI REQUIRED imgui)
 find_library(IMGUI_LIBRARY imgui HINTS ${IMGUI_LIBRARY_DIRS} REQUIRED)
-# What its pkg-config file leaves out: the backend in it calls Vulkan, which a linker has to see after it.
+# The backend calls Vulkan, which imgui's pkg-config file omits; Vulkan must follow imgui in the link order.
 add_library(edgesplat_imgui UNKNOWN IMPORTED)
 set_target_properties(edgesplat_imgui PROPERTIES IMPORTED_LOCATION ${IMGUI_LIBRARY}
     INTERFACE_INCLUDE_DIRECTORIES "${IMGUI_INCLUDE_DIRS}" INTERFACE_LINK_LIBRARIES "stb;Vulkan::Vulkan")
 
-# One picture by many processes; only the program edgesplat knows of it.
+# MPI divides one picture among many processes; only the program edgesplat uses it.
 find_package(MPI QUIET COMPONENTS C)
 option(EDGESPLAT_MPI "Divide pictures among the processes of mpirun" ${MPI_C_FOUND})
 if(EDGESPLAT_MPI)

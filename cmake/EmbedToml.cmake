@@ -1,5 +1,5 @@
-# edgesplat_embed_toml(TARGET FOLDER HEADER NAMESPACE TYPE FUNCTION): puts every FOLDER/*.toml into the library, as what
-# the function FUNCTION of HEADER returns: a span of TYPE{name, text}. Programs find them wherever they are installed.
+# edgesplat_embed_toml(TARGET FOLDER HEADER NAMESPACE TYPE FUNCTION): embeds every FOLDER/*.toml in the library, so that
+# programs need no installed files. FUNCTION, declared in HEADER, returns them as a span of TYPE{name, text}.
 function(edgesplat_embed_toml target folder header namespace type function)
     file(GLOB files CONFIGURE_DEPENDS ${folder}/*.toml)
     set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${files})
@@ -14,7 +14,7 @@ function(edgesplat_embed_toml target folder header namespace type function)
     get_filename_component(from ${folder} NAME)
     set(source ${CMAKE_CURRENT_BINARY_DIR}/${function}.cpp)
     file(CONFIGURE OUTPUT ${source} CONTENT [=[
-// Made from @from@/*.toml.
+// Generated from @from@/*.toml.
 #include "@header@"
 
 #include <array>

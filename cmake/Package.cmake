@@ -1,4 +1,4 @@
-# Install rules and the package that find_package(edgesplat) finds: edgesplat::engine and what it stands on.
+# Install rules and the package for find_package(edgesplat): edgesplat::engine and the libraries below it.
 include(CMakePackageConfigHelpers)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/edgesplat)
 
@@ -10,7 +10,7 @@ endforeach()
 install(TARGETS edgesplat_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat COMPONENT edgesplat)
 install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_folder} COMPONENT dev)
 
-# The library's face; what only its own sources include stays at home.
+# Public headers. Headers that only the library's own sources include are not installed.
 install(DIRECTORY ${CMAKE_SOURCE_DIR}/engine ${CMAKE_SOURCE_DIR}/footprints
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/edgesplat COMPONENT dev FILES_MATCHING PATTERN "*.h"
     PATTERN gpu EXCLUDE PATTERN passes EXCLUDE PATTERN accuracy EXCLUDE PATTERN bench EXCLUDE PATTERN renderer EXCLUDE
@@ -27,7 +27,7 @@ write_basic_package_version_file(${CMAKE_BINARY_DIR}/edgesplatConfigVersion.cmak
 install(FILES ${CMAKE_BINARY_DIR}/edgesplatConfig.cmake ${CMAKE_BINARY_DIR}/edgesplatConfigVersion.cmake
     DESTINATION ${package_folder} COMPONENT dev)
 
-# A program of its own, built against an installed copy; sanitized libraries would ask the same of it.
+# Builds a separate program against an installed copy. Skipped for sanitized libraries, which need sanitized programs.
 if(EDGESPLAT_TESTS AND NOT EDGESPLAT_SANITIZE)
     add_test(NAME package.embed COMMAND ${CMAKE_COMMAND} -DBUILD=${CMAKE_BINARY_DIR} -DSOURCE=${CMAKE_SOURCE_DIR}
         -DGENERATOR=${CMAKE_GENERATOR} -DCONFIG=$<CONFIG> -P ${CMAKE_SOURCE_DIR}/tests/package/embed.cmake)

@@ -1,4 +1,4 @@
-# Manual pages and shell completion, written by the programs themselves and installed where shells look for them.
+# Manual pages and shell completions. The programs generate them; they are installed where man and shells find them.
 set(pages)
 foreach(program edgesplat edgesplat-fly)
     set(folder ${CMAKE_BINARY_DIR}/pages/${program})

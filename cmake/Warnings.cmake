@@ -1,5 +1,5 @@
-# Every target of ours is built with these; third-party headers come in as SYSTEM and are not judged. Errors they are
-# where CMAKE_COMPILE_WARNING_AS_ERROR is set, as ./dev does: a compiler newer than a release warns of what nobody knew.
+# Warnings of all own targets; third-party headers are SYSTEM and exempt. Warnings are errors only if
+# CMAKE_COMPILE_WARNING_AS_ERROR is set, as ./dev does: a newer compiler may add warnings after a release.
 add_library(edgesplat_warnings INTERFACE)
 target_compile_options(edgesplat_warnings INTERFACE
     -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wold-style-cast -Wcast-qual -Woverloaded-virtual
