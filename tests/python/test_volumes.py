@@ -168,7 +168,7 @@ def test_raw_files(tmp_path, ball):
 def test_missing_files(tmp_path):
     with pytest.raises(Error, match="no such file or folder"):
         Volume(tmp_path / "nothing.nrrd")
-    with pytest.raises(Error, match="did you mean|there are"):
+    with pytest.raises(Error, match="did you mean|expected one of"):
         Volume("builtin:spere")
     with pytest.raises(Error, match="origin: only for arrays"):
         Volume("builtin:sphere", origin=(0, 0, 0))
