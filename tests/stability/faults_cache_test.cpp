@@ -1,5 +1,5 @@
-// The cache folder in every state: read-only, missing, a file, damaged, used by several processes. The picture is the
-// same.
+// The cache folder of pipelines in every state: read-only, missing, a file, damaged, used by several processes. The
+// picture is the same, and no message is printed.
 #include <sys/stat.h>
 
 #include "tests/stability/faults_program.h"
@@ -8,8 +8,6 @@ namespace edgesplat {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::ContainsRegex;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr const char* kRender = "render builtin:torus:16 --size 24x24 --footprints table -q -o a.png";
@@ -47,12 +45,12 @@ class FaultsCache : public FaultsTest {
 
 TEST_F(FaultsCache, IsCreatedIfMissing) {
     EXPECT_THAT(run_with("deep/down/cache").err, IsEmpty());
-    EXPECT_EQ(files_of("deep/down/cache").size(), 2U);
+    EXPECT_EQ(files_of("deep/down/cache").size(), 1U);
 }
 
 TEST_F(FaultsCache, MayBeAFile) {
     std::ofstream(folder_ / "cache") << "a file";
-    EXPECT_THAT(run_with("cache").err, ContainsRegex("^edgesplat: cache[^\n]*; footprints are not cached\n$"));
+    EXPECT_THAT(run_with("cache").err, IsEmpty());
     EXPECT_EQ(text_of(folder_ / "cache"), "a file");
 }
 
@@ -70,23 +68,21 @@ TEST_F(FaultsCache, MayBeReadOnly) {
                    std::string(kRender) + "\"")
              : run_with("cache");
     EXPECT_EQ(result.status, 0);
-    EXPECT_THAT(result.err, ContainsRegex("^edgesplat: cache/[^\n]*: (Read-only file system|Permission denied); "
-                                          "footprints are not cached\n$"));
+    EXPECT_THAT(result.err, IsEmpty());
     EXPECT_TRUE(text_of(folder_ / "a.png") == picture_);
 }
 
 TEST_F(FaultsCache, MayBeUnset) {
-    EXPECT_THAT(run_with("", "env -u HOME -u XDG_CACHE_HOME ").err, HasSubstr("no cache folder is set"));
+    EXPECT_THAT(run_with("", "env -u HOME -u XDG_CACHE_HOME ").err, IsEmpty());
 }
 
 TEST_F(FaultsCache, IsRebuiltIfDamaged) {
     run_with("cache");
     const auto files = files_of("cache");
-    ASSERT_EQ(files.size(), 2U);
+    ASSERT_EQ(files.size(), 1U);
     for (const fs::path& file : files) {
         SCOPED_TRACE(file.filename());
         const std::string whole = text_of(file);
-        const bool table = file.filename().string().starts_with("footprints");
         std::map<std::string, std::string> damages{{"empty", ""},
                                                    {"cut in the header", whole.substr(0, 11)},
                                                    {"cut at the end", whole.substr(0, whole.size() - 1)},
@@ -106,17 +102,14 @@ TEST_F(FaultsCache, IsRebuiltIfDamaged) {
                 continue;
             std::ofstream(file, std::ios::binary | std::ios::trunc) << bytes;
             const ProgramRun result = run_with("cache");
-            if (table)
-                EXPECT_THAT(result.err, ContainsRegex("^edgesplat: [^\n]*; rebuilt\n$"));
-            else
-                EXPECT_THAT(result.err, IsEmpty());
+            EXPECT_THAT(result.err, IsEmpty());
             EXPECT_TRUE(text_of(file) == whole);
             EXPECT_EQ(files_of("cache"), files);
         }
     }
     fs::remove(files[0]);
     fs::create_directory(files[0]);
-    EXPECT_THAT(run_with("cache").err, HasSubstr("footprints are not cached"));
+    EXPECT_THAT(run_with("cache").err, IsEmpty());
 }
 
 TEST_F(FaultsCache, MayBeFilledByEightProcesses) {

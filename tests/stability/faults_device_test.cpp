@@ -82,7 +82,7 @@ TEST_F(FaultsDevice, DrawsTilesWithoutLayers) {
     EXPECT_EQ(tiles.status, 0) << tiles.err;
     EXPECT_EQ(text_of(folder_ / "a.png"), whole);
     set_old();
-    expect_refused(run_failing("layers", 0, std::string(kDeviceRender) + " --sheet-format float"),
+    expect_refused(run_failing("layers", 0, std::string(kDeviceRender) + " --sheet-format layers"),
                    "no shaderOutputLayer (each sheet is a layer of the target), expected `tiles`");
     expect_refused(
         run_failing("layers", 0,

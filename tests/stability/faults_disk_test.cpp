@@ -5,7 +5,6 @@
 namespace edgesplat {
 namespace {
 
-using testing::ContainsRegex;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
@@ -132,8 +131,7 @@ TEST_F(FaultsDisk, FullCacheIsNoError) {
         const ProgramRun result = run_on_full_disk(std::string(kPicture) + "--footprints table -o a.png", {}, pages);
         setenv("EDGESPLAT_CACHE", old.c_str(), 1);  // NOLINT(concurrency-mt-unsafe)
         EXPECT_EQ(result.status, 0) << result.err;
-        EXPECT_THAT(result.err, ContainsRegex("^edgesplat: disk/folder/.*: No space left on device; footprints are not "
-                                              "cached\n$"));
+        EXPECT_THAT(result.err, IsEmpty());
         EXPECT_EQ(text_of(folder_ / "a.png"), whole);
         EXPECT_THAT(temporaries(), IsEmpty());
     }
