@@ -69,7 +69,7 @@ void add_bench_command(CLI::App& app, const std::string& command_line, int& exit
     CLI::App& sub =
         *app.add_subcommand("bench", "Measure frame time, setup time, work and memory, compared with the ray caster");
     const auto command = std::make_shared<BenchCommand>();
-    sub.add_option("SUITE", command->suite, "standard, effects, scaling, full, or a file (.toml, docs/benchmarks.md)")
+    sub.add_option("SUITE", command->suite, "standard, scaling, full, or a file (.toml, docs/benchmarks.md)")
         ->type_name("")
         ->default_str("standard");
     sub.add_option("-o,--output", command->folder, "Folder for bench.json, bench.csv and plots (SVG)")

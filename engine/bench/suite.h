@@ -36,7 +36,7 @@ struct Suite {
 /// value, expectation.
 Suite parse_suite(std::string_view text, const std::string& file, const std::vector<std::filesystem::path>& folders);
 
-/// A suite by its name (standard, effects, scaling, full) or its file (.toml); the file's folder is searched for
+/// A suite by its name (standard, scaling, full) or its file (.toml); the file's folder is searched for
 /// volumes, too. Throws Error.
 Suite read_suite(const std::string& name_or_path);
 

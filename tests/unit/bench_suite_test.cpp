@@ -129,7 +129,7 @@ TEST(BenchSuite, ReadsEveryEmbeddedSuite) {
         EXPECT_FALSE(read.cases.empty()) << suite.name;
         names.emplace_back(suite.name);
     }
-    EXPECT_THAT(names, ::testing::UnorderedElementsAre("standard", "effects", "scaling", "full"));
+    EXPECT_THAT(names, ::testing::UnorderedElementsAre("standard", "scaling", "full"));
     EXPECT_THAT(refusal([] { (void)read_suite("standart"); }), HasSubstr("did you mean standard?"));
     EXPECT_THAT(refusal([] { (void)read_suite("none.toml"); }), HasSubstr("none.toml: no such file"));
 }
