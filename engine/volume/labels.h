@@ -11,6 +11,9 @@ namespace edgesplat {
 /// Maximum number of labels in a segmentation.
 inline constexpr std::size_t kMaxLabels = 256;
 
+/// Maximum number of labels whose numbers are kept although floats cannot represent them (Volume::labels).
+inline constexpr std::size_t kMaxRankedLabels = 1 << 20;
+
 /// The labels of a segmentation, ascending: 2 to kMaxLabels whole numbers without partial-volume values. The test for
 /// these: if the two outer voxels of three in a row differ by more than one step between values, the middle voxel
 /// almost never has a value between theirs. Empty for other volumes and for volumes that are not in memory.

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {

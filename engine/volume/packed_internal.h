@@ -1,7 +1,7 @@
 // Layout of a packed volume's file, shared by its writer and reader. Internal to engine/volume.
 #pragma once
 
-#include "engine/volume/hdf5_internal.h"
+#include "engine/volume/io/hdf5.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {

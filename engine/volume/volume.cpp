@@ -20,6 +20,10 @@ void check_geometry(const Volume& volume) {
 
 }  // namespace
 
+std::string LabelTable::number_of(const Label& label) const {
+    return is_signed ? fmt::format("{}", static_cast<std::int64_t>(label.id)) : fmt::format("{}", label.id);
+}
+
 namespace detail {
 
 void VolumeChecksum::add(double value) {
@@ -76,8 +80,14 @@ void finish_volume(Volume& volume) {
     volume.min_value = any ? low : 0.0F;
     volume.max_value = any ? high : 0.0F;
     if (bad > 0) {
-        for (float& value : volume.values)
-            if (!std::isfinite(value)) value = volume.min_value;
+        auto no_data = std::make_shared<std::vector<bool>>(volume.values.size());
+        if (volume.no_data) *no_data = *volume.no_data;
+        for (std::size_t i = 0; i < volume.values.size(); ++i) {
+            if (std::isfinite(volume.values[i])) continue;
+            (*no_data)[i] = true;
+            volume.values[i] = volume.min_value;
+        }
+        volume.no_data = std::move(no_data);
     }
 
     detail::VolumeChecksum checksum(volume.geometry);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,18 +37,41 @@ struct VolumeGeometry {
     glm::dvec3 center() const { return to_world((glm::dvec3(dims) - 1.0) / 2.0); }
 };
 
-/// A scalar volume. Every sample is finite: non-finite samples are replaced by `min_value` and counted.
+/// A label of a segmentation.
+struct Label {
+    std::uint64_t id = 0;             ///< the file's number; two's complement if the table is signed
+    float value = 0;                  ///< the sample that stands for it in `Volume::values`
+    std::string name;                 ///< empty: the file has none
+    std::optional<glm::dvec3> color;  ///< linear light; not set: the file has none
+};
+
+/// The labels of a segmentation. A sample is the label's number if all numbers are below 2^24 in magnitude, which
+/// floats represent exactly; otherwise it is the label's rank, from 0.
+struct LabelTable {
+    std::vector<Label> labels;  ///< ascending by `value`, which also ascends by number
+    bool is_signed = false;     ///< whether ids are signed numbers
+
+    /// The number as text, e.g. "312782546" or "-1".
+    std::string number_of(const Label& label) const;
+};
+
+/// A scalar volume. Every sample is finite: samples without data are replaced by `min_value`, counted and marked.
 struct Volume {
     VolumeGeometry geometry;
     std::vector<float> values;  ///< (dims.z, dims.y, dims.x), x fastest, in the file's unit after slope/intercept
     bool in_patient = false;    ///< the world axes are the patient's: +x left, +y back, +z up
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
-    std::size_t non_finite_count = 0;   ///< samples that were NaN or infinite
-    std::string name;                   ///< path, or "builtin:NAME"
-    std::string stored_type;            ///< component type in the file, e.g. "int16"
-    std::uint64_t checksum = 0;         ///< FNV-1a over dims, geometry and samples
-    std::vector<std::string> notes;     ///< assumptions, choices and corrections made while reading, one sentence each
+    std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite: they contain no data
+    /// Per sample whether it contains no data: NaN, infinite, or the fill value that the file declares. Not set: none.
+    std::shared_ptr<const std::vector<bool>> no_data;
+    std::shared_ptr<const LabelTable> labels;  ///< set if the samples are labels that the reader recognised
+    std::string geometry_source;     ///< the header's fields that define the geometry, e.g. "sform"; "none" if assumed
+    std::string length_unit;         ///< the file's unit of length as its header names it; empty: none, mm are assumed
+    std::string name;                ///< path, or "builtin:NAME"
+    std::string stored_type;         ///< component type in the file, e.g. "int16"
+    std::uint64_t checksum = 0;      ///< FNV-1a over dims, geometry and samples
+    std::vector<std::string> notes;  ///< assumptions, choices and corrections made while reading, one sentence each
     std::vector<std::string> warnings;  ///< data omitted or invented while reading, one sentence each
     /// If set, `values` is empty and samples are read from this file on demand (packed_volume.h).
     std::shared_ptr<const PackedVolume> packed;
@@ -61,7 +85,8 @@ struct Volume {
 };
 
 /// Completes a volume with given geometry and values: replaces non-finite samples by the smallest finite one (0 if
-/// there is none), counts them, and sets min, max and checksum. Throws Error if dims and values disagree.
+/// there is none), counts them and marks them in `no_data`; sets min, max and checksum. Throws Error if dims and values
+/// disagree.
 void finish_volume(Volume& volume);
 
 }  // namespace edgesplat

@@ -2,7 +2,7 @@
 // archives, and the checks of DICOM and netCDF files before their libraries read them. GDCM, libminc and OpenImageIO
 // themselves are not fuzzed.
 #include "engine/error.h"
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 #include "tests/fuzz/fuzz_file.h"
 
 using edgesplat::fuzz::load;

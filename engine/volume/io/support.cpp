@@ -13,7 +13,7 @@
 #include <mutex>
 #include <regex>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

@@ -1,5 +1,5 @@
 // Reads VTK's XML image data through VTK, if the build has it.
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 #ifdef EDGESPLAT_HAS_VTK
 #include <vtkCellData.h>

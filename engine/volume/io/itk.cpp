@@ -13,8 +13,8 @@
 #include <cmath>
 #include <exception>
 
-#include "engine/volume/load_internal.h"
-#include "engine/volume/load_itk.h"
+#include "engine/volume/io/itk.h"
+#include "engine/volume/io/readers.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {

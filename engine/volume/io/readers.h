@@ -103,6 +103,10 @@ Volume load_nrrd(const std::string& path, const LoadOptions& options);
 Volume load_nifti(const std::string& path, const LoadOptions& options);
 Volume load_meta(const std::string& path, const LoadOptions& options);
 Volume load_vti(const std::string& path, const LoadOptions& options);
+/// `head`: the file's first bytes.
+Volume load_vtk_legacy(const std::string& path, const std::string& head, const LoadOptions& options);
+Volume load_minc(const std::string& path, const LoadOptions& options);
+Volume load_gipl(const std::string& path, const LoadOptions& options);
 /// "64x64x64:uint8:little[:sx,sy,sz[:skip]]": dims, type, byte order, spacing in mm, bytes before the first voxel.
 Volume load_raw(const std::string& path, const LoadOptions& options);
 

@@ -8,7 +8,7 @@
 #include <span>
 
 #include "engine/files/picture_library_internal.h"
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

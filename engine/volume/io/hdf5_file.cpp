@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "engine/files/memory_file.h"
-#include "engine/volume/hdf5_internal.h"
+#include "engine/volume/io/hdf5.h"
 
 namespace edgesplat::detail {
 namespace {

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 

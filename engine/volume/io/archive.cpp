@@ -6,7 +6,7 @@
 #include <fstream>
 #include <memory>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

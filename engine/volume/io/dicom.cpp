@@ -10,8 +10,8 @@
 #include <fstream>
 #include <map>
 
-#include "engine/volume/load_internal.h"
-#include "engine/volume/load_itk.h"
+#include "engine/volume/io/itk.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

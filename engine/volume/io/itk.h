@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

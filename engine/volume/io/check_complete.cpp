@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <fstream>
 
-#include "engine/volume/load_internal.h"
+#include "engine/volume/io/readers.h"
 
 namespace edgesplat::detail {
 namespace {

@@ -3,7 +3,6 @@
 
 #include <glob.h>
 #include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -14,9 +13,9 @@
 #include <fstream>
 
 #include "engine/volume/analytic_volumes.h"
-#include "engine/volume/hdf5_internal.h"
+#include "engine/volume/io/hdf5.h"
+#include "engine/volume/io/readers.h"
 #include "engine/volume/labels.h"
-#include "engine/volume/load_internal.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
@@ -24,10 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using namespace detail;
-
-constexpr const char* kFormats =
-    "NRRD, MetaImage, NIfTI, Analyze, DICOM, MINC, legacy VTK image data, {}GIPL, TIFF and other images, packed "
-    "volumes, zip archives of one of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big";
 
 bool ends_with_any(const std::string& path, std::initializer_list<const char*> endings) {
     std::string lower;
@@ -53,61 +48,6 @@ std::string first_bytes(const std::string& path) {
     file.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
     bytes.resize(static_cast<std::size_t>(file.gcount()));
     return bytes;
-}
-
-Volume load_vtk(const std::string& path, const std::string& head, const LoadOptions& options) {
-    std::string upper;
-    for (const char c : head)
-        upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-    const auto at = upper.find("\nDATASET");
-    if (at != std::string::npos && upper.find("STRUCTURED_POINTS", at) == std::string::npos)
-        fail("{}: a VTK file, but not image data (DATASET STRUCTURED_POINTS)", path);
-    // ITK's reader leaves missing values of a short file uninitialised. The values begin after the line that names
-    // their lookup table, or after the line that names the values if there is no table.
-    std::size_t begin = 0;
-    for (const char* key : {"\nLOOKUP_TABLE", "\nSCALARS", "\nCOLOR_SCALARS", "\nVECTORS", "\nTENSORS"}) {
-        const auto found = upper.find(key);
-        if (found == std::string::npos) continue;
-        begin = upper.find('\n', found + 1);
-        break;
-    }
-    if (begin == 0 || begin == std::string::npos) fail("{}: a VTK file without values at its points", path);
-    const bool ascii = upper.find("\nASCII") != std::string::npos;
-    const auto check_data = [&](std::size_t bytes, std::size_t samples) {
-        const std::size_t stored = fs::file_size(path) - begin - 1;
-        if (!ascii && bytes > stored) fail("{}: truncated: {} of {} bytes of voxels", path, stored, bytes);
-        if (!ascii) return;
-        std::ifstream file(path);
-        file.seekg(static_cast<std::streamoff>(begin));
-        std::size_t found = 0;
-        for (std::string word; found < samples && file >> word;)
-            ++found;
-        if (found < samples) fail("{}: truncated: {} of {} values", path, found, samples);
-    };
-    return load_through_itk({.format = ItkFormat::Vtk, .path = path, .check_data = check_data}, options);
-}
-
-Volume load_minc(const std::string& path, const LoadOptions& options) {
-    check_netcdf_is_whole(path);
-    const std::lock_guard lock(hdf5_mutex());
-    return load_through_itk({.format = ItkFormat::Minc, .path = path, .stored_bytes = fs::file_size(path)}, options);
-}
-
-// ITK's reader reads missing voxels as 0.
-Volume load_gipl(const std::string& path, const LoadOptions& options) {
-    constexpr std::size_t kHeader = 256;
-    const auto check_data = [&](std::size_t bytes, std::size_t) {
-        const std::unique_ptr<gzFile_s, int (*)(gzFile)> file(gzopen(path.c_str(), "rb"), &gzclose);
-        std::vector<char> part(1 << 16);
-        std::size_t found = 0;
-        for (int count = 1; file && count > 0 && found < kHeader + bytes; found += static_cast<std::size_t>(count))
-            count = std::max(gzread(file.get(), part.data(), static_cast<unsigned>(part.size())), 0);
-        if (found < kHeader + bytes)
-            fail("{}: truncated: {} of {} bytes of voxels", path, found - std::min(found, kHeader), bytes);
-    };
-    return load_through_itk(
-        {.format = ItkFormat::Gipl, .path = path, .stored_bytes = fs::file_size(path), .check_data = check_data},
-        options);
 }
 
 bool is_hdf5(const std::string& path) {
@@ -138,28 +78,78 @@ Volume load_unpacked(const std::string& path, const LoadOptions& options) {
     return load_file(path, options);
 }
 
+// What detection sees of a file.
+struct Start {
+    const std::string& path;
+    const std::string& head;  // the first 1024 bytes
+    bool begins(std::string_view text) const { return head.starts_with(text); }
+    bool is_named(std::initializer_list<const char*> endings) const { return ends_with_any(path, endings); }
+};
+
+// A format of single files: its name in messages, how its files are recognised, its reader.
+struct Format {
+    std::string_view name;
+    bool (*recognises)(const Start& file);
+    Volume (*load)(const std::string& path, const LoadOptions& options);
+};
+
+// Signatures first, then names; the first format that recognises a file reads it.
+constexpr std::array kFormats{
+    Format{"NRRD", [](const Start& f) { return f.begins("NRRD0"); }, load_nrrd},
+    Format{"legacy VTK image data", [](const Start& f) { return f.begins("# vtk DataFile"); },
+           [](const std::string& path, const LoadOptions& options) {
+               return load_vtk_legacy(path, first_bytes(path), options);
+           }},
+    Format{"VTI", [](const Start& f) { return f.head.find("<VTKFile") != std::string::npos; }, load_vti},
+    Format{
+        "MINC",
+        [](const Start& f) {
+            return f.begins("CDF\x01") || f.begins("CDF\x02") || (f.begins("\x89HDF") && f.is_named({".mnc", ".mnc2"}));
+        },
+        load_minc},
+    Format{"NIfTI and Analyze",
+           [](const Start& f) {
+               return f.is_named({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"});
+           },
+           load_nifti},
+    Format{"MetaImage",
+           [](const Start& f) {
+               return f.is_named({".mha", ".mhd"});
+           },
+           load_meta},
+    Format{"GIPL",
+           [](const Start& f) {
+               return f.is_named({".gipl", ".gipl.gz"});
+           },
+           load_gipl},
+    Format{"DICOM", [](const Start& f) { return is_dicom(f.path); },
+           [](const std::string& path, const LoadOptions& options) { return load_dicom(path, {path}, options); }},
+};
+
+std::string format_names() {
+    std::string names;
+    for (const Format& format : kFormats)
+        names += fmt::format("{}, ", format.name);
+    return names;
+}
+
 Volume load_file(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) return load_raw(path, options);
-    const auto head = first_bytes(path);
-    const auto starts = [&](std::string_view text) { return head.compare(0, text.size(), text) == 0; };
+    const std::string head = first_bytes(path);
+    const Start start{path, head};
     if (is_archive(head)) return load_archive(path, options, load_unpacked);
-    if (starts("NRRD0")) return load_nrrd(path, options);
-    if (starts("# vtk DataFile")) return load_vtk(path, head, options);
-    if (head.find("<VTKFile") != std::string::npos) return load_vti(path, options);
-    if (starts("CDF\x01") || starts("CDF\x02") || (starts("\x89HDF") && ends_with_any(path, {".mnc", ".mnc2"})))
-        return load_minc(path, options);
-    if (ends_with_any(path, {".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}))
-        return load_nifti(path, options);
-    if (ends_with_any(path, {".mha", ".mhd"})) return load_meta(path, options);
-    if (ends_with_any(path, {".gipl", ".gipl.gz"})) return load_gipl(path, options);
-    if (is_dicom(path)) return load_dicom(path, {path}, options);
-    if (ends_with_any(path, {".raw", ".dat", ".bin", ".zraw", ".den"}))
+    for (const Format& format : kFormats)
+        if (format.recognises(start)) return format.load(path, options);
+    if (start.is_named({".raw", ".dat", ".bin", ".zraw", ".den"}))
         fail(
             "{}: has no header; open the header that belongs to it (.nhdr, .mhd), or describe it with "
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
     if (is_image_file(path)) return load_images(path, {path}, options);
-    fail("{}: unknown volume format. Supported are {}", path, fmt::format(kFormats, can_read_vti() ? "VTI, " : ""));
+    fail(
+        "{}: unknown volume format. Supported are {}TIFF and other images, packed volumes, zip archives of one of "
+        "these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
+        path, format_names());
 }
 
 Volume load_folder(const std::string& path, const LoadOptions& options) {
@@ -266,8 +256,10 @@ void detail::add_value_notes(Volume& volume) {
     const float largest = std::max(std::abs(volume.min_value), std::abs(volume.max_value));
     const bool wide =
         volume.stored_type.find("32") != std::string::npos || volume.stored_type.find("64") != std::string::npos;
-    if (volume.stored_type.find("int") != std::string::npos && wide && largest > 16777216.0F)
-        volume.notes.push_back("Samples beyond 2^24 are rounded to 24 significant bits.");
+    constexpr const char* kRounded = "Samples beyond 2^24 are rounded to 24 significant bits.";
+    if (volume.stored_type.find("int") != std::string::npos && wide && largest > 16777216.0F &&
+        std::ranges::find(volume.notes, kRounded) == volume.notes.end())
+        volume.notes.emplace_back(kRounded);
     if (volume.non_finite_count > 0)
         volume.notes.push_back(fmt::format("{} samples are not finite; {} replaces them.", volume.non_finite_count,
                                            static_cast<double>(volume.min_value)));
