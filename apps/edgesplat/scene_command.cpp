@@ -14,6 +14,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/load_volume.h"
 
 namespace {
 
@@ -29,7 +30,9 @@ struct NewOptions {
 /// The path relative to a scene file in `folder`; builtin, absolute and missing paths stay as they are.
 std::string path_in_scene(const std::string& path, const fs::path& folder) {
     std::error_code ignored;
-    if (edgesplat::is_builtin(path) || fs::path(path).is_absolute() || !fs::exists(path, ignored)) return path;
+    if (edgesplat::is_builtin(path) || fs::path(path).is_absolute() ||
+        !fs::exists(edgesplat::split_inner(path).file, ignored))
+        return path;
     return fs::proximate(path, folder.empty() ? "." : folder).string();
 }
 

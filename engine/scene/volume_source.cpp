@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 /// Whether the path can be opened; for a pattern of slices ("slice_%03d.tif", "*.dcm") only its folder is checked.
 bool may_be_opened(const fs::path& path) {
     std::error_code ignored;
-    if (fs::exists(path, ignored)) return true;
+    if (fs::exists(split_inner(path.string()).file, ignored)) return true;
     const bool pattern = path.filename().string().find_first_of("%*?") != std::string::npos;
     return pattern && fs::is_directory(path.has_parent_path() ? path.parent_path() : fs::path("."), ignored);
 }

@@ -6,6 +6,7 @@
 #include "engine/image/image_file.h"
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/load_volume.h"
 
 namespace edgesplat::viewer {
 namespace fs = std::filesystem;
@@ -17,7 +18,8 @@ void save_scene(SceneDocument document, const Volume& volume, const fs::path& pa
     if (!is_builtin(source) && !fs::path(source).is_absolute()) {
         std::error_code error;
         const fs::path folder = fs::absolute(path, error).parent_path();
-        if (fs::exists(volume.name, error)) source = fs::proximate(fs::absolute(volume.name), folder).string();
+        if (fs::exists(split_inner(volume.name).file, error))
+            source = fs::proximate(fs::absolute(volume.name), folder).string();
     }
     check_path_is_text(document);
     document.output.file.clear();

@@ -26,12 +26,23 @@ struct LoadOptions {
     std::optional<int> component;  ///< component of a vector or colour voxel, from 0
     std::optional<int> frame;      ///< frame of 4-D data, from 0 (5-D and above: all further axes combined)
     std::string series;            ///< series of a DICOM folder with several: its number (from 0) or UID
-    std::string raw;               ///< layout of a raw file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
-    bool resample = false;         ///< interpolates unevenly spaced DICOM slices at even positions
+    /// The part of the path after the colon: a name inside the file ("data.vti:density" gives "density"). `load_volume`
+    /// sets it; callers leave it empty.
+    std::string inner;
+    std::string raw;        ///< layout of a raw file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
+    bool resample = false;  ///< interpolates unevenly spaced DICOM slices at even positions
     std::optional<glm::dvec3> spacing;  ///< mm, replaces the file's spacing along i, j, k; directions are kept
     /// Progress callback with a fraction in [0, 1] and the current step. Called on the loading thread only.
     std::function<void(double fraction, std::string_view what)> progress;
 };
+
+/// A path and the name of something inside that file; `inner` is empty if there is none.
+struct InnerPath {
+    std::string file, inner;
+};
+/// Splits "scan.zip:head/ct.nrrd" into the file and the name inside. A path that exists is not split. Otherwise the
+/// file is the longest part before a colon that exists; a path without such a part is not split either.
+InnerPath split_inner(const std::string& path);
 
 /// Reads a volume and finishes it (see `finish_volume`). `path` is one of
 ///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, legacy VTK image data, GIPL, VTI (if built with VTK),

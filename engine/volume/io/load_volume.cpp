@@ -50,12 +50,20 @@ std::string first_bytes(const std::string& path) {
     return bytes;
 }
 
+// Fails if a name inside the file was given, for files and folders in which nothing has a name.
+void refuse_inner(const std::string& path, const LoadOptions& options, std::string_view what) {
+    if (!options.inner.empty())
+        fail("{}:{}: {} has no names inside; expected the path alone, without ':{}'", path, options.inner, what,
+             options.inner);
+}
+
 bool is_hdf5(const std::string& path) {
     std::error_code error;
     return fs::is_regular_file(path, error) && first_bytes(path).starts_with("\x89HDF\r\n\x1a\n");
 }
 
 Volume load_packed(const std::string& path, const LoadOptions& options) {
+    refuse_inner(path, options, "a packed volume");
     (void)chosen_component(path, options, 1);
     (void)chosen_frame(path, options, 1);
     if (options.spacing)
@@ -91,6 +99,7 @@ struct Format {
     std::string_view name;
     bool (*recognises)(const Start& file);
     Volume (*load)(const std::string& path, const LoadOptions& options);
+    bool takes_inner = false;  // whether the reader understands options.inner
 };
 
 // Signatures first, then names; the first format that recognises a file reads it.
@@ -134,17 +143,24 @@ std::string format_names() {
 }
 
 Volume load_file(const std::string& path, const LoadOptions& options) {
-    if (!options.raw.empty()) return load_raw(path, options);
+    if (!options.raw.empty()) {
+        refuse_inner(path, options, "a raw file");
+        return load_raw(path, options);
+    }
     const std::string head = first_bytes(path);
     const Start start{path, head};
     if (is_archive(head)) return load_archive(path, options, load_unpacked);
     for (const Format& format : kFormats)
-        if (format.recognises(start)) return format.load(path, options);
+        if (format.recognises(start)) {
+            if (!format.takes_inner) refuse_inner(path, options, fmt::format("a file of the format {}", format.name));
+            return format.load(path, options);
+        }
     if (start.is_named({".raw", ".dat", ".bin", ".zraw", ".den"}))
         fail(
             "{}: has no header; open the header that belongs to it (.nhdr, .mhd), or describe it with "
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
+    refuse_inner(path, options, "a file of this format");
     if (is_image_file(path)) return load_images(path, {path}, options);
     fail(
         "{}: unknown volume format. Supported are {}TIFF and other images, packed volumes, zip archives of one of "
@@ -154,6 +170,7 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
 
 Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
+    refuse_inner(path, options, "a folder of slices");
     std::vector<std::string> dicom, images;
     std::size_t others = 0, folders = 0;
     report(options, 0.0, "searching the folder");
@@ -267,9 +284,21 @@ void detail::add_value_notes(Volume& volume) {
         volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
 }
 
-Volume load_volume(const std::string& path, const LoadOptions& options) {
-    if (is_builtin(path)) return builtin_volume(path);
-    if (path.empty()) fail("no volume given");
+InnerPath split_inner(const std::string& path) {
+    std::error_code error;
+    if (fs::exists(path, error)) return {path, {}};
+    for (auto colon = path.rfind(':'); colon != std::string::npos && colon > 0; colon = path.rfind(':', colon - 1))
+        if (colon + 1 < path.size() && fs::exists(path.substr(0, colon), error))
+            return {path.substr(0, colon), path.substr(colon + 1)};
+    return {path, {}};
+}
+
+Volume load_volume(const std::string& full_path, const LoadOptions& given) {
+    if (is_builtin(full_path)) return builtin_volume(full_path);
+    if (full_path.empty()) fail("no volume given");
+    const auto [path, inner] = split_inner(full_path);
+    LoadOptions options = given;
+    options.inner = inner;
     std::error_code error;
     Volume volume;
     try {
@@ -290,6 +319,7 @@ Volume load_volume(const std::string& path, const LoadOptions& options) {
     } catch (const fs::filesystem_error& problem) {
         fail("{}: {}", path, problem.what());
     }
+    volume.name = full_path;
     apply_spacing(volume, options);
     report(options, 0.9, "checking voxels");
     finish_volume(volume);
