@@ -25,8 +25,10 @@ add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
 target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
 
-# Packed volumes. ITK's search has already run this CMake module.
+# Packed volumes and HDF5 files. ITK's search has already run this CMake module.
 find_package(HDF5 REQUIRED COMPONENTS C)
+# netCDF files; ITK's reader of MINC loads the library already.
+pkg_check_modules(NETCDF REQUIRED IMPORTED_TARGET netcdf)
 
 # For formats that ITK's readers lack: bzip2 in NRRD, and checks of (gzipped) NIfTI files before ITK reads them.
 find_package(ZLIB REQUIRED)

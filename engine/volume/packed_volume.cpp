@@ -51,8 +51,6 @@ double finite(const Hdf5File& file, const std::string& path, const std::string& 
 }
 
 void check_format(const Hdf5File& file, const std::string& path) {
-    if (!file.has_attribute("format"))
-        fail("{}: attribute format: missing; an HDF5 file, but not one that `edgesplat pack` wrote", path);
     const std::string format = file.text("format");
     if (format != kPackedFormat) fail("{}: attribute format: '{}', expected '{}'", path, format, kPackedFormat);
     const auto version = file.whole_number("version");

@@ -120,20 +120,28 @@ std::uint64_t padded(std::uint64_t count) {
 }
 
 std::uint64_t netcdf_type_size(std::uint64_t type) {
-    constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8};
-    if (type < 1 || type > 6) throw NotUnderstood{};
+    constexpr std::uint64_t kSizes[] = {0, 1, 1, 2, 4, 4, 8, 1, 2, 4, 8, 8};
+    if (type < 1 || type > 11) throw NotUnderstood{};
     return kSizes[type];
 }
 
-void skip_attributes(Bytes& bytes) {
-    bytes.skip(4);
-    const auto count = bytes.number(4, true);
-    for (std::uint64_t i = 0; i < count; ++i) {
-        bytes.skip(padded(bytes.number(4, true)));
-        const auto size = netcdf_type_size(bytes.number(4, true));
-        bytes.skip(padded(size * bytes.number(4, true)));
+// Counts in a classic netCDF header: 8 bytes in version 5, else 4.
+struct NetcdfHeader {
+    Bytes& bytes;
+    int version;
+    std::uint64_t count() { return bytes.number(version == 5 ? 8 : 4, true); }
+    void name() { bytes.skip(padded(count())); }
+    void attributes() {
+        bytes.skip(4);
+        for (auto left = count(); left > 0; --left) {
+            name();
+            const auto size = netcdf_type_size(bytes.number(4, true));
+            std::uint64_t total = 0;
+            if (__builtin_mul_overflow(size, count(), &total)) bytes.truncated();
+            bytes.skip(padded(total));
+        }
     }
-}
+};
 
 }  // namespace
 
@@ -207,34 +215,57 @@ void check_dicom_is_whole(const std::string& path) {
 void check_netcdf_is_whole(const std::string& path) {
     Bytes bytes(path);
     if (bytes.text(3) != "CDF") return;
-    const bool wide = bytes.number(1, true) == 2;
-    bytes.skip(4);
+    NetcdfHeader header{bytes, static_cast<int>(bytes.number(1, true))};
+    struct Place {
+        std::uint64_t begin, size;
+    };
+    std::vector<Place> records;
     try {
+        const auto record_count = header.count();
+        const auto all_ones = header.version == 5 ? ~std::uint64_t{0} : std::uint64_t{0xffffffff};
+        if (record_count == all_ones) throw NotUnderstood{};  // written as a stream
         bytes.skip(4);
-        const auto axes = bytes.number(4, true);
+        const auto axes = header.count();
         if (axes > bytes.left() / 8) bytes.truncated();  // each takes at least a name and a length
         std::vector<std::uint64_t> dims(axes);
         for (auto& dim : dims) {
-            bytes.skip(padded(bytes.number(4, true)));
-            dim = bytes.number(4, true);
+            header.name();
+            dim = header.count();
         }
-        skip_attributes(bytes);
+        header.attributes();
         bytes.skip(4);
-        const auto variables = bytes.number(4, true);
-        for (std::uint64_t i = 0; i < variables; ++i) {
-            bytes.skip(padded(bytes.number(4, true)));
+        for (auto variables = header.count(); variables > 0; --variables) {
+            header.name();
             std::uint64_t items = 1;
-            for (auto left = bytes.number(4, true); left > 0; --left) {
-                const auto id = bytes.number(4, true);
+            bool of_records = false;
+            for (auto left = header.count(); left > 0; --left) {
+                const auto id = header.count();
                 if (id >= dims.size()) throw NotUnderstood{};
-                if (__builtin_mul_overflow(items, dims[id], &items)) bytes.truncated();
+                of_records = of_records || dims[id] == 0;  // the axis that grows
+                if (dims[id] != 0 && __builtin_mul_overflow(items, dims[id], &items)) bytes.truncated();
             }
-            skip_attributes(bytes);
+            header.attributes();
             std::uint64_t size = 0;
             if (__builtin_mul_overflow(items, netcdf_type_size(bytes.number(4, true)), &size)) bytes.truncated();
-            bytes.skip(4);
-            const auto begin = bytes.number(wide ? 8 : 4, true);
-            if (begin > bytes.size() || size > bytes.size() - begin) bytes.truncated();
+            (void)header.count();
+            const auto begin = bytes.number(header.version == 1 ? 4 : 8, true);
+            if (of_records) {
+                if (record_count > 0) records.push_back({begin, size});
+            } else if (begin > bytes.size() || size > bytes.size() - begin) {
+                bytes.truncated();
+            }
+        }
+        // A record holds one piece of each such variable, padded unless there is only one.
+        std::uint64_t record = 0;
+        for (const Place& place : records)
+            if (__builtin_add_overflow(record, records.size() > 1 ? padded(place.size) : place.size, &record))
+                bytes.truncated();
+        for (const Place& place : records) {
+            std::uint64_t end = 0;
+            if (__builtin_mul_overflow(record, record_count - 1, &end) ||
+                __builtin_add_overflow(end, place.begin, &end) || __builtin_add_overflow(end, place.size, &end) ||
+                end > bytes.size())
+                bytes.truncated();
         }
     } catch (const NotUnderstood&) {
         return;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -46,7 +47,11 @@ using Hdf5Extent = std::vector<std::uint64_t>;
 class Hdf5Dataset {
   public:
     const Hdf5Extent& extent() const { return extent_; }
-    /// The stored type: int8 to float64, any byte order.
+    /// Bytes that its samples occupy in the file.
+    std::uint64_t stored_bytes() const;
+    /// Names of the axes (HDF5's dimension scales); empty texts where they have none.
+    std::vector<std::string> axis_names() const;
+    /// The stored type: int8 to float64, any byte order. Half floats are float32, enumerations and booleans integers.
     SampleType type() const { return type_; }
     /// Read or write a box. `low` and `size` have as many entries as the dataset has axes. Samples are converted from
     /// and to the type in memory.
@@ -95,6 +100,12 @@ class Hdf5File {
 
     /// Whether the group or dataset exists, e.g. "/levels/0/samples".
     bool has(const std::string& path) const;
+    /// Paths of all datasets of numbers, in order; those behind soft and external links are left out.
+    std::vector<std::string> datasets() const;
+    /// The numbers of an attribute of the object `path`; nullopt if it is missing or not numeric.
+    std::optional<std::vector<double>> find_numbers(const std::string& path, const std::string& name) const;
+    /// The text of an attribute, or all its texts joined; nullopt if it is missing or not a text.
+    std::optional<std::string> find_text(const std::string& path, const std::string& name) const;
     /// `cache`: bytes of unpacked chunks to keep for later reads; 0: HDF5's default.
     Hdf5Dataset dataset(const std::string& path, std::size_t cache = 0) const;
     /// Creates missing parent groups.

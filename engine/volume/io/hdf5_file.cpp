@@ -106,6 +106,14 @@ hid_t file_type(SampleType type) {
 /// False for unsupported types.
 bool sample_type_of(hid_t type, SampleType& result) {
     const H5T_class_t kind = H5Tget_class(type);
+    if (kind == H5T_ENUM) {
+        const Hdf5Id base(H5Tget_super(type), H5Tclose);
+        return base && sample_type_of(base.get(), result);
+    }
+    if (kind == H5T_FLOAT && H5Tget_size(type) == 2) {
+        result = SampleType::Float32;
+        return true;
+    }
     const bool is_signed = kind == H5T_INTEGER && H5Tget_sign(type) == H5T_SGN_2;
     const std::size_t bits = 8 * H5Tget_size(type);
     if (kind != H5T_INTEGER && kind != H5T_FLOAT) return false;
@@ -174,6 +182,29 @@ void Hdf5Dataset::write(const Hdf5Extent& low, const Hdf5Extent& size, SampleTyp
     const Hdf5Id to = selection(id_.get(), low, size), from = space(size);
     if (!to || H5Dwrite(id_.get(), memory_type(type), from.get(), to.get(), H5P_DEFAULT, data) < 0)
         fail("{}: {}: cannot be written: {}", file_, name_, reason());
+}
+
+std::uint64_t Hdf5Dataset::stored_bytes() const {
+    const Quiet quiet;
+    return H5Dget_storage_size(id_.get());
+}
+
+std::vector<std::string> Hdf5Dataset::axis_names() const {
+    const Quiet quiet;
+    std::vector<std::string> names(extent_.size());
+    if (H5Aexists(id_.get(), "DIMENSION_LABELS") <= 0) return names;
+    const Hdf5Id attribute(H5Aopen(id_.get(), "DIMENSION_LABELS", H5P_DEFAULT), H5Aclose);
+    const Hdf5Id type(H5Aget_type(attribute.get()), H5Tclose), extent(H5Aget_space(attribute.get()), H5Sclose);
+    if (!type || H5Tis_variable_str(type.get()) <= 0 ||
+        H5Sget_simple_extent_npoints(extent.get()) != static_cast<hssize_t>(names.size()))
+        return names;
+    std::vector<char*> texts(names.size(), nullptr);
+    const Hdf5Id memory(H5Tcopy(type.get()), H5Tclose);
+    if (H5Aread(attribute.get(), memory.get(), static_cast<void*>(texts.data())) < 0) return names;
+    for (std::size_t i = 0; i < names.size(); ++i)
+        if (texts[i] != nullptr) names[i] = texts[i];
+    H5Dvlen_reclaim(memory.get(), extent.get(), H5P_DEFAULT, static_cast<void*>(texts.data()));
+    return names;
 }
 
 void Hdf5Dataset::finish() const {
@@ -320,6 +351,71 @@ bool Hdf5File::has(const std::string& path) const {
         if (H5Lexists(id_.get(), path.substr(0, end).c_str(), H5P_DEFAULT) <= 0) return false;
         if (end == std::string::npos) return true;
     }
+}
+
+std::vector<std::string> Hdf5File::datasets() const {
+    const Quiet quiet;
+    std::vector<std::string> found;
+    const auto visit = [](hid_t file, const char* name, const H5O_info_t* info, void* data) -> herr_t {
+        if (info->type != H5O_TYPE_DATASET) return 0;
+        const Hdf5Id dataset(H5Dopen2(file, name, H5P_DEFAULT), H5Dclose);
+        if (!dataset) return 0;
+        const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose);
+        SampleType ignored{};
+        if (type && sample_type_of(type.get(), ignored))
+            static_cast<std::vector<std::string>*>(data)->push_back(std::string("/") + name);
+        return 0;
+    };
+#if H5_VERSION_GE(1, 12, 0)
+    const auto status = H5Ovisit3(id_.get(), H5_INDEX_NAME, H5_ITER_INC, visit, &found, H5O_INFO_BASIC);
+#else
+    const auto status = H5Ovisit2(id_.get(), H5_INDEX_NAME, H5_ITER_INC, visit, &found, H5O_INFO_BASIC);
+#endif
+    if (status < 0) fail("{}: its groups cannot be listed, the file is damaged: {}", path_, reason());
+    return found;
+}
+
+std::optional<std::vector<double>> Hdf5File::find_numbers(const std::string& path, const std::string& name) const {
+    const Quiet quiet;
+    if (H5Aexists_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
+    const Hdf5Id id(H5Aopen_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!id) return std::nullopt;
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    SampleType type{};
+    constexpr hssize_t kMost = 4096;
+    const auto count = H5Sget_simple_extent_npoints(extent.get());
+    if (!sample_type_of(stored.get(), type) || count < 1 || count > kMost) return std::nullopt;
+    std::vector<double> values(static_cast<std::size_t>(count));
+    if (H5Aread(id.get(), H5T_NATIVE_DOUBLE, values.data()) < 0) return std::nullopt;
+    return values;
+}
+
+std::optional<std::string> Hdf5File::find_text(const std::string& path, const std::string& name) const {
+    const Quiet quiet;
+    if (H5Aexists_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT) <= 0) return std::nullopt;
+    const Hdf5Id id(H5Aopen_by_name(id_.get(), path.c_str(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose);
+    if (!id) return std::nullopt;
+    const Hdf5Id stored(H5Aget_type(id.get()), H5Tclose), extent(H5Aget_space(id.get()), H5Sclose);
+    constexpr hssize_t kMost = 65536;
+    const auto count = H5Sget_simple_extent_npoints(extent.get());
+    if (H5Tget_class(stored.get()) != H5T_STRING || count < 1 || count > kMost) return std::nullopt;
+    std::string text;
+    if (H5Tis_variable_str(stored.get()) > 0) {
+        const Hdf5Id memory(H5Tcopy(stored.get()), H5Tclose);
+        std::vector<char*> texts(static_cast<std::size_t>(count), nullptr);
+        if (H5Aread(id.get(), memory.get(), static_cast<void*>(texts.data())) < 0) return std::nullopt;
+        for (const char* part : texts)
+            if (part != nullptr) text += part;
+        H5Dvlen_reclaim(memory.get(), extent.get(), H5P_DEFAULT, static_cast<void*>(texts.data()));
+        return text;
+    }
+    const std::size_t size = H5Tget_size(stored.get());
+    if (size < 1 || size > static_cast<std::size_t>(kMost)) return std::nullopt;
+    std::string raw(size * static_cast<std::size_t>(count), '\0');
+    if (H5Aread(id.get(), stored.get(), raw.data()) < 0) return std::nullopt;
+    for (const char c : raw)
+        if (c != '\0') text += c;
+    return text;
 }
 
 Hdf5Dataset Hdf5File::dataset(const std::string& path, std::size_t cache) const {

@@ -57,9 +57,12 @@ void refuse_inner(const std::string& path, const LoadOptions& options, std::stri
              options.inner);
 }
 
-bool is_hdf5(const std::string& path) {
+constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
+
+bool is_packed_volume(const std::string& path) {
     std::error_code error;
-    return fs::is_regular_file(path, error) && first_bytes(path).starts_with("\x89HDF\r\n\x1a\n");
+    return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5) &&
+           !ends_with_any(path, {".mnc", ".mnc2"}) && is_packed(path);
 }
 
 Volume load_packed(const std::string& path, const LoadOptions& options) {
@@ -110,12 +113,20 @@ constexpr std::array kFormats{
                return load_vtk_legacy(path, first_bytes(path), options);
            }},
     Format{"VTI", [](const Start& f) { return f.head.find("<VTKFile") != std::string::npos; }, load_vti},
-    Format{
-        "MINC",
-        [](const Start& f) {
-            return f.begins("CDF\x01") || f.begins("CDF\x02") || (f.begins("\x89HDF") && f.is_named({".mnc", ".mnc2"}));
-        },
-        load_minc},
+    Format{"MINC",
+           [](const Start& f) {
+               const bool netcdf = f.begins("CDF\x01") || f.begins("CDF\x02");
+               return (netcdf && (f.head.find("xspace") != std::string::npos || f.is_named({".mnc"}))) ||
+                      (f.begins(kHdf5) && f.is_named({".mnc", ".mnc2"}));
+           },
+           load_minc},
+    Format{"netCDF",
+           [](const Start& f) {
+               return f.begins("CDF\x01") || f.begins("CDF\x02") || f.begins("CDF\x05") ||
+                      (f.begins(kHdf5) && is_netcdf4(f.path));
+           },
+           load_netcdf, true},
+    Format{"HDF5", [](const Start& f) { return f.begins(kHdf5); }, load_hdf5, true},
     Format{"NIfTI and Analyze",
            [](const Start& f) {
                return f.is_named({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"});
@@ -302,8 +313,7 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
     std::error_code error;
     Volume volume;
     try {
-        if (options.raw.empty() && is_hdf5(path) && !ends_with_any(path, {".mnc", ".mnc2"}))
-            return load_packed(path, options);
+        if (options.raw.empty() && is_packed_volume(path)) return load_packed(path, options);
         if (fs::is_directory(path, error)) {
             volume = load_folder(path, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {

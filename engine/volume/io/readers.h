@@ -105,6 +105,14 @@ Volume load_meta(const std::string& path, const LoadOptions& options);
 Volume load_vti(const std::string& path, const LoadOptions& options);
 /// `head`: the file's first bytes.
 Volume load_vtk_legacy(const std::string& path, const std::string& head, const LoadOptions& options);
+/// Whether the HDF5 file is a packed volume.
+bool is_packed(const std::string& path);
+/// Any other HDF5 file; `options.inner` names the array.
+Volume load_hdf5(const std::string& path, const LoadOptions& options);
+/// netCDF, classic or of version 4, without MINC; `options.inner` names the variable.
+Volume load_netcdf(const std::string& path, const LoadOptions& options);
+/// Whether an HDF5 file was written by netCDF.
+bool is_netcdf4(const std::string& path);
 Volume load_minc(const std::string& path, const LoadOptions& options);
 Volume load_gipl(const std::string& path, const LoadOptions& options);
 /// "64x64x64:uint8:little[:sx,sy,sz[:skip]]": dims, type, byte order, spacing in mm, bytes before the first voxel.

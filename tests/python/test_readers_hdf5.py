@@ -1,0 +1,207 @@
+"""HDF5 and netCDF files against h5py and netCDF4: samples, places and values of generated files."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from edgesplat import Error, Volume
+
+MILLIMETRES = {"mm": 1.0, "um": 1e-3, "micron": 1e-3, "nm": 1e-6, "cm": 10.0, "m": 1000.0, "inch": 25.4}
+
+
+def read(path):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # samples without data
+        return Volume(path)
+
+
+def affine(volume):
+    """4 x 4, from (x, y, z, 1) of a voxel to mm."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = volume.direction * np.array(volume.spacing)
+    matrix[:3, 3] = volume.origin
+    return matrix
+
+
+def numbers(rng, dtype, shape):
+    dtype = np.dtype(dtype)
+    if dtype.kind == "b":
+        return rng.integers(0, 2, shape).astype(bool)
+    if dtype.kind in "iu":
+        limits = np.iinfo(dtype)
+        return rng.integers(max(limits.min, -(2**23)), min(limits.max, 2**23), shape).astype(dtype)
+    return rng.normal(0, 100, shape).astype(dtype)
+
+
+HDF5_TYPES = ["i1", "u1", "<i2", ">i2", "<u2", ">u2", "<i4", ">u4", "<i8", ">i8", "<f2", "<f4", ">f4", "<f8", ">f8", "?"]
+
+
+@pytest.mark.parametrize("seed", range(48))
+def test_hdf5(tmp_path, seed):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    rng = np.random.default_rng(seed)
+    shape = tuple(rng.integers(2, 7, 3))
+    array = numbers(rng, HDF5_TYPES[seed % len(HDF5_TYPES)], shape)
+    spacing = rng.uniform(0.1, 5, 3)  # z, y, x
+    kind = ["none", "attribute", "group", "itk", "vtk", "imaris"][seed % 6]
+    expected = np.eye(4)
+    path, name = str(tmp_path / "a.h5"), "/some/group/data"
+    storage = [{}, {"compression": "gzip", "shuffle": True}, {"chunks": (1, 2, 2)}][int(rng.integers(3))]
+    with h5py.File(path, "w") as file:
+        if kind == "itk":
+            name = "/ITKImage/0/VoxelData"
+            axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+            origin = rng.normal(0, 50, 3)
+            group = file.create_group("ITKImage/0")
+            group["Directions"], group["Origin"], group["Spacing"] = axes, origin, spacing
+            group["Dimension"] = np.array(shape[::-1], "u8")
+            expected[:3, :3], expected[:3, 3] = axes * spacing, origin
+        elif kind == "vtk":
+            name = "/VTKHDF/PointData/values"
+            axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+            origin, first = rng.normal(0, 50, 3), rng.integers(-5, 5, 3)
+            group = file.create_group("VTKHDF")
+            group.attrs["Type"] = np.bytes_("ImageData")
+            group.attrs["Spacing"], group.attrs["Origin"], group.attrs["Direction"] = spacing, origin, axes.ravel()
+            group.attrs["WholeExtent"] = np.ravel([(f, f + n - 1) for f, n in zip(first, shape[::-1])])
+            expected[:3, :3] = axes * spacing
+            expected[:3, 3] = origin + expected[:3, :3] @ first
+        elif kind == "imaris":
+            name = "/DataSet/ResolutionLevel 0/TimePoint 0/Channel 0/Data"
+            image = file.create_group("DataSetInfo/Image")
+            for axis in range(3):
+                low, high = 10.0 * axis, 10.0 * axis + spacing[2 - axis] * shape[2 - axis]
+                image.attrs[f"ExtMin{axis}"] = np.array(list(f"{low:.12g}"), "S1")
+                image.attrs[f"ExtMax{axis}"] = np.array(list(f"{high:.12g}"), "S1")
+                expected[axis, axis] = spacing[2 - axis] * 1e-3
+                expected[axis, 3] = (low + spacing[2 - axis] / 2) * 1e-3
+            image.attrs["Unit"] = np.array(list("um"), "S1")
+        file.create_dataset(name, data=array, **storage)
+        if kind in ("attribute", "group"):
+            holder = file[name] if kind == "attribute" else file["/some"]
+            unit = list(MILLIMETRES)[int(rng.integers(len(MILLIMETRES)))]
+            if rng.integers(2):
+                holder.attrs["element_size_um"], unit = spacing, "um"
+            else:
+                holder.attrs["voxel_size"], holder.attrs["unit"] = spacing, unit
+            expected[:3, :3] = np.diag(spacing[::-1]) * MILLIMETRES[unit]
+    volume = read(path)
+    with h5py.File(path) as file:
+        assert np.array_equal(volume.array, file[name][...].astype(np.float32))
+    np.testing.assert_allclose(affine(volume), expected, rtol=1e-9, atol=1e-9)
+    assert np.array_equal(read(f"{path}:{name}").array, volume.array)
+
+
+def test_hdf5_lists_what_there_is(tmp_path):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = str(tmp_path / "a.h5")
+    with h5py.File(path, "w") as file:
+        file["a"], file["b/c"] = np.zeros((2, 3, 4)), np.ones((3, 3, 3), "u1")
+    with pytest.raises(Error, match=r"2 arrays; name one(.|\n)*a\.h5:/a  \(4 x 3 x 2, float64\)(.|\n)*:/b/c"):
+        Volume(path)
+    assert Volume(f"{path}:b/c").max == 1
+    with pytest.raises(Error, match="no array 'd'"):
+        Volume(f"{path}:d")
+
+
+def test_hdf5_components_and_frames(tmp_path):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = str(tmp_path / "a.h5")
+    array = np.arange(2 * 5 * 6 * 7 * 3, dtype="f4").reshape(2, 5, 6, 7, 3)
+    with h5py.File(path, "w") as file:
+        file["a"] = array
+    with pytest.raises(Error, match="--component 0..2"):
+        Volume(path)
+    assert np.array_equal(Volume(path, component=1, frame=1).array, array[1, ..., 1])
+    with h5py.File(path, "w") as file:
+        file["a"] = array[0, ..., 0]
+        for axis, letter in enumerate("xyz"):
+            file["a"].dims[axis].label = letter
+    volume = Volume(path)  # z is the fastest axis
+    assert np.array_equal(volume.array, array[0, ..., 0])
+    np.testing.assert_allclose(volume.direction, np.eye(3)[:, ::-1])
+
+
+NETCDF_FORMATS = ["NETCDF3_CLASSIC", "NETCDF3_64BIT_OFFSET", "NETCDF3_64BIT_DATA", "NETCDF4", "NETCDF4_CLASSIC"]
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_netcdf(tmp_path, seed):
+    netCDF4 = pytest.importorskip("netCDF4", reason="python3-netcdf4 is missing")
+    rng = np.random.default_rng(seed)
+    kind = NETCDF_FORMATS[seed % len(NETCDF_FORMATS)]
+    types = ["i1", "i2", "i4", "f4", "f8"] + (["u1", "u2", "u4", "i8"] if kind in ("NETCDF4", "NETCDF3_64BIT_DATA") else [])
+    dtype = types[int(rng.integers(len(types)))]
+    shape = tuple(rng.integers(2, 7, 3))
+    order = ["zyx", "xyz", "yxz", "zxy"][int(rng.integers(4))]
+    named = rng.integers(2)  # by name, or by the attribute axis of another name
+    unit = list(MILLIMETRES)[int(rng.integers(len(MILLIMETRES)))]
+    step, first = rng.uniform(0.1, 3, 3) * rng.choice([-1, 1], 3), rng.normal(0, 20, 3)
+    time = int(rng.integers(3))  # frames; 0: no such axis
+    expected = np.zeros((4, 4))
+    expected[3, 3] = 1
+    path = str(tmp_path / "a.nc")
+    with netCDF4.Dataset(path, "w", format=kind) as file:
+        dims = []
+        if time:
+            file.createDimension("time", None if rng.integers(2) else time)
+            file.createVariable("time", "f8", ("time",)).units = "days since 2000-01-01"
+            dims.append("time")
+        for place, letter in enumerate(order):
+            dim = letter if named else f"axis_{letter}"
+            dims.append(dim)
+            file.createDimension(dim, shape[place])
+            axis = file.createVariable(dim, "f8", (dim,))
+            axis.units = unit
+            if not named:
+                axis.axis = letter.upper()
+            row = "xyz".index(letter)
+            axis[:] = first[row] + step[row] * np.arange(shape[place])
+            expected[row, 2 - place] = step[row] * MILLIMETRES[unit]
+            expected[row, 3] = first[row] * MILLIMETRES[unit]
+        fill = 7 if rng.integers(2) else None
+        value = file.createVariable("value", dtype, dims, fill_value=fill)
+        value.set_auto_maskandscale(False)
+        array = numbers(rng, dtype, ((time,) if time else ()) + shape)
+        array.flat[3] = 7
+        value[...] = array
+        if rng.integers(2):
+            value.scale_factor, value.add_offset = float(rng.uniform(0.1, 2)), float(rng.normal())
+        if time:
+            file["time"][:] = np.arange(time)
+    frame = int(rng.integers(time)) if time > 1 else None
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        volume = Volume(path, frame=frame)
+    with netCDF4.Dataset(path) as file:
+        masked = file["value"][...]
+        if time:
+            masked = masked[frame or 0]
+    data = np.ma.getdata(masked).astype(np.float64)
+    valid = ~np.broadcast_to(np.ma.getmaskarray(masked), data.shape)
+    np.testing.assert_allclose(volume.array[valid], data[valid].astype(np.float32), rtol=3e-7)
+    assert np.all(volume.array[~valid] == volume.min)
+    np.testing.assert_allclose(affine(volume), expected, rtol=1e-9, atol=1e-9)
+
+
+def test_netcdf_uneven_and_unitless(tmp_path):
+    netCDF4 = pytest.importorskip("netCDF4", reason="python3-netcdf4 is missing")
+    path = str(tmp_path / "a.nc")
+    with netCDF4.Dataset(path, "w") as file:
+        for name, units, values in [
+            ("lev", "hPa", [1000, 850, 700]),
+            ("lat", "degrees_north", [10, 20, 30]),
+            ("lon", "degrees_east", [0, 10, 20, 30]),
+        ]:
+            file.createDimension(name, len(values))
+            axis = file.createVariable(name, "f8", (name,))
+            axis.units, axis[:] = units, values
+        file.createVariable("t", "f4", ("lev", "lat", "lon"))[...] = np.arange(36).reshape(3, 3, 4)
+    volume = Volume(path)
+    assert volume.spacing == (1, 1, 1)
+    assert any("no common unit of length" in note for note in volume.notes)
+    with netCDF4.Dataset(path, "a") as file:
+        file["lev"][:] = [1000, 850, 500]
+    with pytest.raises(Error, match="lev: uneven coordinates"):
+        Volume(path)
