@@ -8,6 +8,7 @@
 #include "apps/edgesplat/renderer_option.h"
 #include "engine/error.h"
 #include "engine/scene/scene_file.h"
+#include "engine/scene/scene_keys.h"
 #include "engine/volume/packed_volume.h"
 
 using edgesplat::fail;
@@ -16,6 +17,25 @@ using edgesplat::SceneDocument;
 namespace {
 
 constexpr int kMaxFrames = 1'000'000;
+constexpr std::string_view kVolumeKeys = "volume.";
+
+SceneDocument document_at(const Film& film, double time) {
+    SceneDocument document = film.document;
+    for (const edgesplat::AnimatedParameter& parameter : film.animation)
+        animate_number(document, parameter.key, value_at(parameter, time));
+    return document;
+}
+
+/// Reads the volume that `document` shows, if the renderer holds another one.
+void show_volume(Film& film, edgesplat::Renderer& renderer, SceneDocument& document) {
+    if (document.volume == film.source) return;
+    film.source = document.volume;
+    document.volume.checksum.clear();  // that of the first frame
+    edgesplat::Volume volume = load_source(document.volume, film.folders, {});
+    recognise_labels(document, volume);
+    film.volume = std::make_shared<const edgesplat::Volume>(std::move(volume));
+    renderer.set_volume(film.volume);
+}
 
 }  // namespace
 
@@ -25,9 +45,19 @@ void check_film(const SceneDocument& document) {
         fail("a movie has no extra outputs and no comparisons; it needs --renderer splat or raycast");
 }
 
-Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> volume, std::optional<double> seconds) {
+void start_volume(SceneDocument& document) {
+    const auto& path = document.movie.path;
+    for (const edgesplat::AnimatedParameter& parameter : resolve_animation(document))
+        if (parameter.key.starts_with(kVolumeKeys))
+            animate_number(document, parameter.key, value_at(parameter, path.empty() ? 0.0 : path.front().time));
+}
+
+Film film_of(SceneDocument document, const std::vector<std::filesystem::path>& folders,
+             std::shared_ptr<const edgesplat::Volume> volume, std::optional<double> seconds) {
     Film film;
     film.document = std::move(document);
+    film.source = film.document.volume;
+    film.folders = folders;
     film.volume = std::move(volume);
     const edgesplat::RendererKind renderer = film.document.output.renderer;
     if (renderer != edgesplat::RendererKind::Splat)
@@ -51,15 +81,14 @@ Film film_of(SceneDocument document, std::shared_ptr<const edgesplat::Volume> vo
 }
 
 edgesplat::Scene scene_at(const Film& film, double time) {
-    SceneDocument document = film.document;
-    for (const edgesplat::AnimatedParameter& parameter : film.animation)
-        edgesplat::set_key(document, fmt::format("{}={}", parameter.key, value_at(parameter, time)));
-    return resolve_scene(document, *film.volume);
+    return resolve_scene(document_at(film, time), *film.volume);
 }
 
-edgesplat::RenderResult draw_frame(const Film& film, edgesplat::Renderer& renderer, int frame) {
+edgesplat::RenderResult draw_frame(Film& film, edgesplat::Renderer& renderer, int frame) {
     const double time = film.time_of(frame);
-    const edgesplat::Scene scene = scene_at(film, time);
+    SceneDocument document = document_at(film, time);
+    show_volume(film, renderer, document);
+    const edgesplat::Scene scene = resolve_scene(document, *film.volume);
     const edgesplat::Camera camera = camera_at(film.path, time);
     const edgesplat::OutputChoice& output = film.document.output;
     if (output.renderer == edgesplat::RendererKind::Raycast)

@@ -1,6 +1,7 @@
 // A movie: the scene and the camera at each time, from which the frames are drawn.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -11,6 +12,8 @@
 
 struct Film {
     edgesplat::SceneDocument document;
+    std::vector<std::filesystem::path> folders;  ///< where the volume is searched
+    edgesplat::VolumeSource source;              ///< of the volume that the renderer holds; changes if it is animated
     std::shared_ptr<const edgesplat::Volume> volume;
     edgesplat::CameraPath path;
     std::vector<edgesplat::AnimatedParameter> animation;
@@ -25,13 +28,18 @@ struct Film {
 /// Checks, before the volume is read, that outputs and renderer suit a movie. Throws edgesplat::Error.
 void check_film(const edgesplat::SceneDocument& document);
 
-/// Resolves a document to a movie. `seconds`: its duration; nullopt: until the camera path and all animations end.
-/// Throws edgesplat::Error.
-Film film_of(edgesplat::SceneDocument document, std::shared_ptr<const edgesplat::Volume> volume,
-             std::optional<double> seconds);
+/// Sets the keys of the volume that are animated, such as volume.frame, to their first values. Call it before the
+/// volume is read. Throws edgesplat::Error.
+void start_volume(edgesplat::SceneDocument& document);
+
+/// Resolves a document to a movie. `volume` was read for it from `folders`. `seconds`: its duration; nullopt: until the
+/// camera path and all animations end. Throws edgesplat::Error.
+Film film_of(edgesplat::SceneDocument document, const std::vector<std::filesystem::path>& folders,
+             std::shared_ptr<const edgesplat::Volume> volume, std::optional<double> seconds);
 
 /// The scene at `time` (s): the document with the animated values of that time.
 edgesplat::Scene scene_at(const Film& film, double time);
 
-/// Draws one frame. The renderer must hold the film's volume. Throws edgesplat::Error.
-edgesplat::RenderResult draw_frame(const Film& film, edgesplat::Renderer& renderer, int frame);
+/// Draws one frame. The renderer must hold the film's volume; if the frame shows another one, it is read and replaces
+/// that. Throws edgesplat::Error.
+edgesplat::RenderResult draw_frame(Film& film, edgesplat::Renderer& renderer, int frame);

@@ -113,7 +113,7 @@ nlohmann::ordered_json decisions(const Film& film, const edgesplat::DeviceInfo& 
 }
 
 /// Draws a frame; the writer encodes and stores it.
-void make_frame(const Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file, FrameWriter& writer) {
+void make_frame(Film& film, edgesplat::Renderer& renderer, int frame, const fs::path& file, FrameWriter& writer) {
     std::vector<RenderedFrame> frames(1);
     frames[0].settings = film.settings;
     frames[0].result = draw_frame(film, renderer, frame);
@@ -149,7 +149,7 @@ Missing missing_frames(const FrameRange& range, const fs::path& folder, const Fr
 }
 
 /// Renders the missing frames. Returns false if stopped.
-bool make_frames(const Film& film, edgesplat::Renderer& renderer, const fs::path& folder, const FramePattern& pattern,
+bool make_frames(Film& film, edgesplat::Renderer& renderer, const fs::path& folder, const FramePattern& pattern,
                  const Missing& to_make, const StopRequest& stop, bool quiet) {
     const auto& [there, missing] = to_make;
     const std::size_t all = there + missing.size();
@@ -208,9 +208,11 @@ void run(const MovieCommand& command, int& exit_status) {
     const Places places = places_of(command);
     std::vector<fs::path> folders;
     SceneDocument document = document_of(command, folders);
+    start_volume(document);
     edgesplat::Volume volume = load_with_progress(document.volume, folders, command.quiet);
     recognise_labels(document, volume);
-    Film film = film_of(document, std::make_shared<const edgesplat::Volume>(std::move(volume)), command.seconds);
+    Film film =
+        film_of(document, folders, std::make_shared<const edgesplat::Volume>(std::move(volume)), command.seconds);
     const FrameRange range = range_of(command, film);
     edgesplat::Renderer renderer(command.device);
     renderer.set_volume(film.volume);

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/error.h"
 #include "engine/image/image_file.h"
@@ -23,7 +24,8 @@ namespace fs = std::filesystem;
 constexpr std::array<std::string_view, 1> kSceneExtensions{".toml"};
 
 struct NewOptions {
-    std::string volume_path, output, look;
+    std::string source, output;  ///< a volume or a scene file; the new file
+    DocumentEdits edits;
     VolumeOptions volume;
 };
 
@@ -39,12 +41,12 @@ std::string path_in_scene(const std::string& path, const fs::path& folder) {
 void run_new(const NewOptions& options) {
     if (!options.output.empty()) edgesplat::check_output_path(options.output, kSceneExtensions);
     edgesplat::SceneDocument document;
-    document.volume.path = options.volume_path;
+    std::vector<fs::path> folders;
+    read_source(options.source, document, folders);
     apply(options.volume, document.volume);
-    if (!options.look.empty()) apply_look(document, options.look);
-    edgesplat::Volume volume = load_with_progress(document.volume, edgesplat::volume_folders({}), false);
+    options.edits.apply(document);
+    edgesplat::Volume volume = load_with_progress(document.volume, folders, false);
     recognise_labels(document, volume);
-    document.camera.view = "oblique";
     const edgesplat::Scene scene = resolve_scene(document, volume);
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
     write_out_materials(document, scene);
@@ -55,12 +57,12 @@ void run_new(const NewOptions& options) {
         document.transfer = scene.transfer;
         document.materials.clear();
     }
-    // Write the camera as numbers that can be edited. The target is as far away as the volume's centre.
-    const glm::dvec3 forward = glm::normalize(camera.direction);
-    const double distance = glm::dot(volume.geometry.center() - camera.eye, forward);
-    document.camera = {
-        .eye = camera.eye, .target = camera.eye + distance * forward, .up = camera.up, .fov = camera.fov_y};
-    document.volume.path = path_in_scene(options.volume_path, fs::path(options.output).parent_path());
+    // The same camera, bit for bit, as numbers that can be edited.
+    document.camera = {.eye = camera.eye, .direction = camera.direction, .up = camera.up, .fov = camera.fov_y};
+    const std::string found = edgesplat::is_builtin(document.volume.path)
+                                  ? document.volume.path
+                                  : edgesplat::find_volume(document.volume.path, folders);
+    document.volume.path = path_in_scene(found, fs::path(options.output).parent_path());
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
     if (options.output.empty()) {
@@ -103,12 +105,14 @@ void add_scene_command(CLI::App& app, int& exit_status) {
 
     CLI::App& make = *scene.add_subcommand("new", "Write a new scene file with every key explained");
     const auto options = std::make_shared<NewOptions>();
-    make.add_option("VOLUME", options->volume_path, "A volume file, a folder or pattern of slices, or builtin:NAME")
+    make.add_option(
+            "VOLUME", options->source,
+            "A volume file, a folder or pattern of slices, builtin:NAME, or a scene file (.toml). The options are "
+            "those of `edgesplat render`, which draws the same picture from the new file")
         ->required()
         ->type_name("");
     make.add_option("-o,--output", options->output, "The scene file, .toml; default: stdout")->type_name("FILE");
-    make.add_option("--look", options->look, "Look by name (`edgesplat scene presets`)")->type_name("NAME");
-    add_volume_options(make, options->volume);
+    add_document_options(make, options->edits, options->volume);
     make.callback([options] { run_new(*options); });
 
     CLI::App& check = *scene.add_subcommand("check", "Report every error in scene files");

@@ -206,7 +206,7 @@ class Checker {
         SceneDocument scratch = d_;
         try {
             for (const double value : animation.values)
-                set_number(scratch, animation.key, value);
+                animate_number(scratch, animation.key, value);
         } catch (const std::exception& error) {
             add(path + ".key", "{}", error.what());
         }

@@ -3,6 +3,7 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 #include <sstream>
@@ -330,6 +331,12 @@ void set_key(SceneDocument& document, std::string_view assignment) {
     if (!reader.problems().empty()) fail("{}", reader.problems().front().text);
     reader.apply();
     document = std::move(changed);
+}
+
+void animate_number(SceneDocument& document, std::string_view key, double value) {
+    const SceneKey* entry = find_key(key_address(key).path);
+    const bool whole = entry && (entry->type == KeyType::Integer || entry->type == KeyType::Integers);
+    set_key(document, fmt::format("{}={}", key, whole ? std::round(value) : value));
 }
 
 }  // namespace edgesplat

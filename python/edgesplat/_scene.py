@@ -10,6 +10,7 @@ from typing import Any, Iterator, Mapping, Sequence
 import numpy as np
 
 from . import _core
+from ._colors import linear_color, transfer_points
 from ._core import Error
 from ._volume import Volume
 
@@ -82,13 +83,76 @@ def _assignments(content: Mapping[str, Any], before: str = "") -> Iterator[tuple
             yield path, value
 
 
+# Names of the command line's options, and the keys that they set.
+_OPTIONS = {
+    "iso": "iso_values",
+    "transfer": "transfer",
+    "labels": "volume.labels",
+    "threshold": "volume.threshold",
+    "box_filter": "volume.box_filter",
+    "view": "camera.view",
+    "preset": "quality.preset",
+    "renderer": "output.renderer",
+    "size": "output.size",
+}
+
+
+def _with_names(content: Mapping[str, Any]) -> dict[str, Any]:
+    """The content with keys for option names, numbers for names of colours, and points for colour maps."""
+    found: dict[str, Any] = {}
+    for name, value in content.items():
+        if name in ("color", "extinction", "material") and value is not None:
+            _per_material(found, "preset" if name == "material" else name, value)
+        elif name == "transfer" and isinstance(value, str):
+            found["transfer_preset"] = value
+        elif name == "transfer" and isinstance(value, Mapping) and "map" in value:
+            found["transfer"] = transfer_points(value)
+        elif name == "iso" and value is not None:
+            found["iso_values"] = np.atleast_1d(np.asarray(value, dtype=float)).tolist()
+        elif name in found or name not in _OPTIONS:
+            found[name] = value
+        else:
+            found[_OPTIONS[name]] = value
+    return {name: _with_colors(name, value) for name, value in found.items()}
+
+
+def _per_material(found: dict[str, Any], key: str, value: Any) -> None:
+    """Adds a value, or one for each material, to the list of materials."""
+    several = isinstance(value, (list, tuple, np.ndarray)) and (
+        key != "color" or any(isinstance(v, (str, list, tuple, np.ndarray)) for v in value)
+    )
+    values = list(value) if several else [value]
+    materials = found.setdefault("materials", [{} for _ in values])
+    if len(materials) != len(values):
+        raise Error(f"{key}: {len(values)} values: expected {len(materials)}, as many as of the others")
+    for material, one in zip(materials, values):
+        material[key] = one
+
+
+def _with_colors(path: str, value: Any) -> Any:
+    """The value with [red, green, blue] for each name of a colour."""
+    leaf = path.rpartition(".")[2]
+    if isinstance(value, str) and (leaf == "color" or leaf.startswith("background")):
+        return linear_color(value, path)
+    if isinstance(value, Mapping):
+        return {k: _with_colors(f"{path}.{k}", v) for k, v in value.items()}
+    if isinstance(value, (list, tuple)) and any(isinstance(v, Mapping) for v in value):
+        return [_with_colors(path, v) for v in value]
+    return value
+
+
 class Scene:
     """A scene: surfaces, camera, effects, accuracy and outputs, with the same keys as a scene file.
 
     source: a dict of keys (nested, or with dots: ``{"effects.fog.density": 0.01}``), the path of a scene file (a text
         that ends in ``.toml``, or a Path), TOML text, or another Scene, which is copied.
     keys: keys as keywords, which override `source`: ``Scene(iso_values=[300], camera={"view": "back"})``. None leaves a
-        key unchanged.
+        key unchanged. Names of command-line options work too: ``iso=300``, ``look="ct-bone"``, ``labels=False``,
+        ``view="back"``, ``color="tomato"``, ``extinction=8``, ``transfer="ct-muscle-bone"``.
+
+    A colour is three numbers in linear light, a name of CSS or ``"#rrggbb"``. A transfer function is a list of points, a
+    preset's name, or a colour map: ``transfer={"map": "viridis", "range": (0, 500), "extinction": (0, 2)}``, where the map is
+    one of Matplotlib's, by name or as an object; colours and extinctions run evenly over the range.
 
     `scene_keys()` lists the keys with units. Values that are left open are chosen from the volume when a picture is
     drawn. Raises Error (SceneError for files and texts) naming the key, the value and the expected form.
@@ -111,8 +175,12 @@ class Scene:
     def update(self, content: Mapping[str, Any] | None = None, /, **keys: Any) -> None:
         """Sets keys. If one of them is invalid, none is set."""
         changed = self._core.copy()
-        # The preset comes first, because the other keys override its settings.
-        wanted = sorted(_assignments({**(content or {}), **keys}), key=lambda one: one[0] != "quality.preset")
+        everything = {**(content or {}), **keys}
+        # The look and the preset come first, because the other keys override them.
+        look = everything.pop("look", None)
+        if look is not None:
+            changed.apply_look(look)
+        wanted = sorted(_assignments(_with_names(everything)), key=lambda one: one[0] != "quality.preset")
         for path, value in wanted:
             changed.set(f"{path}={_toml(value, path)}")
         self._core = changed

@@ -172,7 +172,7 @@ Movie movie(SharedRenderer& self, const Document& document, const SharedVolume& 
     Movie made{{}, volume, {}};
     self.use([&](Renderer& renderer) {
         check_film(scene);
-        made.film = film_of(scene, volume.volume, seconds);
+        made.film = film_of(scene, document.folders, volume.volume, seconds);
         const double start = made.film.time_of(0);
         renderer.set_volume(volume.volume);
         made.choice = apply_max_error(scene.quality.max_error, renderer, *volume.volume, scene_at(made.film, start),
@@ -182,18 +182,19 @@ Movie movie(SharedRenderer& self, const Document& document, const SharedVolume& 
 }
 
 Picture frame_of(SharedRenderer& self, const Movie& movie, int frame) {
-    const Film& film = movie.film;
+    Film film = movie.film;
     const double time = film.time_of(frame);
     Picture picture;
     picture.document = film.document;
     picture.volume = movie.volume;
     picture.choice = movie.choice;
     self.use([&](Renderer& renderer) {
-        picture.scene = scene_at(film, time);
         picture.camera = camera_at(film.path, time);
         renderer.set_volume(film.volume);
         picture.frames.push_back({film.settings.edges != EdgeEstimator::Off ? "edges" : "plain", film.settings,
                                   draw_frame(film, renderer, frame)});
+        picture.volume.volume = film.volume;  // another one if volume.frame is animated
+        picture.scene = scene_at(film, time);
         picture.device = device_text(renderer.device());
     });
     return picture;

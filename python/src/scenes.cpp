@@ -2,6 +2,7 @@
 #include "engine/error.h"
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
+#include "engine/scene/scene_presets.h"
 #include "python/src/bindings.h"
 
 namespace edgesplat::python {
@@ -87,6 +88,7 @@ void add_scenes(py::module_& module) {
         .def("copy", [](const Document& self) { return self; })
         .def("set", [](Document& self, const std::string& assignment) { set_key(self.scene, assignment); })
         .def("get", value_at)
+        .def("apply_look", [](Document& self, const std::string& name) { apply_look(self.scene, name); })
         .def("clear_camera", [](Document& self) { self.scene.camera = {}; })
         .def("text", [](const Document& self,
                         bool comments) { return comments ? commented_scene_text(self.scene) : scene_text(self.scene); })

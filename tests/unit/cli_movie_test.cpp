@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <thread>
 
@@ -196,6 +197,31 @@ values = [0, 0.05]
     EXPECT_EQ(pixels("f/0.png"), pixels("first.png"));
     EXPECT_EQ(pixels("f/2.png"), pixels("third.png"));
     EXPECT_NE(pixels("f/2.png"), pixels("first.png"));
+}
+
+// Two balls of different size, one per frame of the file.
+TEST_F(CliMovie, AnimatesTheFileAsWholeNumbers) {
+    std::string voxels;
+    for (const int radius : {2, 4})
+        for (int i = 0; i < 10 * 10 * 10; ++i) {
+            const int x = i % 10 - 5, y = i / 10 % 10 - 5, z = i / 100 - 5;
+            voxels += static_cast<char>(x * x + y * y + z * z <= radius * radius ? 100 : 0);
+        }
+    std::ofstream(folder_ / "two.nrrd", std::ios::binary)
+        << "NRRD0004\ntype: uint8\ndimension: 4\nspace dimension: 3\nsizes: 10 10 10 2\nspace directions: (1,0,0) "
+           "(0,1,0) "
+           "(0,0,1) none\nkinds: space space space time\nencoding: raw\n\n" +
+               voxels;
+    std::ofstream(folder_ / "two.toml")
+        << "iso_values = [50]\n[volume]\npath = \"two.nrrd\"\n[camera]\nview = \"front\"\n[output]\nsize = [24, 24]\n"
+           "[movie]\nfps = 25\n[[movie.animate]]\nkey = \"volume.frame\"\ntimes = [0, 0.12]\nvalues = [0, 1]\n";
+    good("movie two.toml -o f/%d.png --seconds 0.16");
+    good("render two.toml --frame 0 -o 0.png");
+    EXPECT_EQ(frames("f").size(), 4U);
+    const auto pixels = [&](const char* name) { return read_image(folder_ / name).image.pixels; };
+    EXPECT_EQ(pixels("f/0.png"), pixels("0.png"));
+    EXPECT_EQ(pixels("f/1.png"), pixels("0.png")) << "frame 0.3 is frame 0";
+    EXPECT_NE(pixels("f/3.png"), pixels("0.png"));
 }
 
 TEST_F(CliMovie, RefusesInvalidMovies) {
