@@ -4,12 +4,10 @@
 #include <itkMINCImageIO.h>
 #include <itkMetaDataObject.h>
 #include <itkMetaImageIO.h>
-#include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <exception>
 
@@ -26,8 +24,6 @@ const char* name_of(ItkFormat format) {
             return "NRRD";
         case ItkFormat::Meta:
             return "MetaImage";
-        case ItkFormat::Nifti:
-            return "NIfTI or Analyze";
         case ItkFormat::Vtk:
             return "legacy VTK image data";
         case ItkFormat::Minc:
@@ -44,12 +40,6 @@ itk::ImageIOBase::Pointer image_io(ItkFormat format) {
             return itk::NrrdImageIO::New().GetPointer();
         case ItkFormat::Meta:
             return itk::MetaImageIO::New().GetPointer();
-        case ItkFormat::Nifti: {
-            auto io = itk::NiftiImageIO::New();
-            // Without this, ITK reads an Analyze file but prints a warning.
-            io->SetLegacyAnalyze75Mode(itk::NiftiImageIOEnums::Analyze75Flavor::AnalyzeITK4);
-            return io.GetPointer();
-        }
         case ItkFormat::Vtk:
             return itk::VTKImageIO::New().GetPointer();
         case ItkFormat::Minc:
@@ -87,15 +77,6 @@ void guarded(const ItkRequest& request, bool strict, Call&& call) {
         for (auto at = text.find(request.read_path); at != std::string::npos; at = text.find(request.read_path))
             text.replace(at, request.read_path.size(), "the file");
     fail("{}: cannot be read as {}: {}", request.path, name_of(request.format), text);
-}
-
-template <typename Bits, typename Float>
-void floats_from_bits(const ItkRequest& request, const void* source, std::vector<float>& values) {
-    const Bits* bits = static_cast<const Bits*>(source);
-    for (std::size_t i = 0; i < values.size(); ++i) {
-        const Float value = std::bit_cast<Float>(bits[i]);
-        values[i] = static_cast<float>(request.slope * static_cast<double>(value) + request.intercept);
-    }
 }
 
 }  // namespace
@@ -169,7 +150,7 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
 static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
     std::string space;
     itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "NRRD_space", space);
-    return format == ItkFormat::Nifti || format == ItkFormat::Minc || space.find("left") != std::string::npos ||
+    return format == ItkFormat::Minc || space.find("left") != std::string::npos ||
            space.find("right") != std::string::npos;
 }
 
@@ -235,7 +216,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
         volume.values.resize(volume.geometry.voxel_count());
         set_full_region(*io);
         report(options, 0.05, "reading voxels");
-        const bool direct = type == SampleType::Float32 && components == 1 && frames == 1 && !request.bits_are_floats;
+        const bool direct = type == SampleType::Float32 && components == 1 && frames == 1;
         if (direct) {
             guarded(request, true, [&] { io->Read(volume.values.data()); });
         } else {
@@ -243,12 +224,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
             guarded(request, true, [&] { io->Read(buffer.get()); });
             report(options, 0.7, "converting voxels");
             const std::size_t first = frame * volume.values.size() * components + component;
-            if (request.bits_are_floats && size_of(type) == 4)
-                floats_from_bits<std::uint32_t, float>(request, buffer.get(), volume.values);
-            else if (request.bits_are_floats)
-                floats_from_bits<std::uint64_t, double>(request, buffer.get(), volume.values);
-            else
-                convert_samples(type, buffer.get(), first, components, volume.values.size(), volume.values.data());
+            convert_samples(type, buffer.get(), first, components, volume.values.size(), volume.values.data());
         }
     } catch (const std::bad_alloc&) {
         fail("{}: not enough memory for {} voxels", path, volume.geometry.voxel_count());

@@ -129,9 +129,25 @@ constexpr std::array kFormats{
     Format{"HDF5", [](const Start& f) { return f.begins(kHdf5); }, load_hdf5, true},
     Format{"NIfTI and Analyze",
            [](const Start& f) {
-               return f.is_named({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"});
+               return f.is_named({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}) || is_nifti(f.path);
            },
            load_nifti},
+    Format{"MGH and MGZ",
+           [](const Start& f) {
+               return f.is_named({".mgh", ".mgz", ".mgh.gz"}) || is_mgh(f.path);
+           },
+           load_mgh},
+    Format{"MRC and CCP4 maps",
+           [](const Start& f) {
+               return f.is_named({".mrc", ".mrcs", ".ccp4", ".rec", ".mrc.gz", ".ccp4.gz", ".rec.gz"}) ||
+                      is_mrc(f.path) || (f.is_named({".map", ".st", ".ali", ".preali"}) && !is_dicom(f.path));
+           },
+           load_mrc},
+    Format{"NumPy .npy and .npz",
+           [](const Start& f) {
+               return f.is_named({".npy"}) || is_npy(f.path);
+           },
+           load_npy},
     Format{"MetaImage",
            [](const Start& f) {
                return f.is_named({".mha", ".mhd"});
@@ -160,6 +176,7 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
     }
     const std::string head = first_bytes(path);
     const Start start{path, head};
+    if (is_archive(head) && start.is_named({".npz"})) return load_npz(path, "", options);
     if (is_archive(head)) return load_archive(path, options, load_unpacked);
     for (const Format& format : kFormats)
         if (format.recognises(start)) {
@@ -316,6 +333,8 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
         if (options.raw.empty() && is_packed_volume(path)) return load_packed(path, options);
         if (fs::is_directory(path, error)) {
             volume = load_folder(path, options);
+        } else if (const auto array = npz_member(path); array && !fs::exists(path, error)) {
+            volume = load_npz(array->first, array->second, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {
             volume = load_pattern(path, options);
         } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {

@@ -1,19 +1,8 @@
-// Reads NIfTI-1/2 and Analyze through ITK. ITK gets a temporary copy with an edited header, to work around three bugs:
-//  - ITK does not detect missing voxels at the end of a file. The copy counts the bytes.
-//  - Its NIfTI library silently replaces NaN and infinity by 0. Floats are passed as integers of the same size and
-//    converted back here; then slope and intercept are applied.
-//  - ITK writes beyond its buffers if a header has a vector intent and a slope (heap corruption, ITK 5.2.1), and reads
-//    4-D files whole. Only the chosen 3-D block of data with more than three axes is copied.
-#include <zlib.h>
-
-#include <algorithm>
-#include <array>
+// Reads NIfTI-1, NIfTI-2 and Analyze 7.5.
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <limits>
+#include <optional>
 
-#include "engine/volume/io/readers.h"
+#include "engine/volume/io/binary_file.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -21,112 +10,253 @@ namespace {
 namespace fs = std::filesystem;
 
 // Byte offsets of the fields, named as in nifti1.h and nifti2.h.
-struct Layout {
-    std::size_t header_size, dim, dim_size, intent_code, intent_size, datatype, vox_offset, scl_slope, scl_inter,
-        pixdim, qform_code, quatern_b, srow_x;
+struct NiftiLayout {
+    std::size_t header_size, dim, intent_code, datatype, bitpix, vox_offset, scl_slope, scl_inter, pixdim, qform_code,
+        sform_code, quatern_b, srow_x, magic;
     bool wide;  // 64-bit offset, scale and places, 32-bit codes (NIfTI-2)
 };
-constexpr Layout kNifti1{348, 40, 2, 68, 2, 70, 108, 112, 116, 76, 252, 256, 280, false};
-constexpr Layout kNifti2{540, 16, 8, 504, 4, 12, 168, 176, 184, 104, 344, 352, 400, true};
+constexpr NiftiLayout kNifti1{348, 40, 68, 70, 72, 108, 112, 116, 76, 252, 254, 256, 280, 344, false};
+constexpr NiftiLayout kNifti2{540, 16, 504, 12, 14, 168, 176, 184, 104, 344, 348, 352, 400, 4, true};
 
-struct Header {
-    std::vector<unsigned char> bytes;
-    const Layout* layout = nullptr;
-    bool swapped = false;
-    bool analyze = false;
-    bool single_file = false;
-    std::array<long long, 8> dim{};
-    int datatype = 0;
-    double slope = 1, intercept = 0;
-    std::size_t offset = 0;
-
-    template <typename T>
-    T get(std::size_t at) const {
-        std::array<unsigned char, sizeof(T)> raw{};
-        std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(at), sizeof(T), raw.begin());
-        if (swapped) std::reverse(raw.begin(), raw.end());
-        T value;
-        std::memcpy(&value, raw.data(), sizeof(T));
-        return value;
-    }
-    template <typename T>
-    void set(std::size_t at, T value) {
-        std::array<unsigned char, sizeof(T)> raw{};
-        std::memcpy(raw.data(), &value, sizeof(T));
-        if (swapped) std::reverse(raw.begin(), raw.end());
-        std::copy(raw.begin(), raw.end(), bytes.begin() + static_cast<std::ptrdiff_t>(at));
-    }
+struct NiftiType {
+    int code;
+    const char* name;
+    SampleType sample;
+    std::size_t components;
+    bool is_color = false;
 };
+constexpr std::array kNiftiTypes{
+    NiftiType{2, "uint8", SampleType::UInt8, 1},           NiftiType{4, "int16", SampleType::Int16, 1},
+    NiftiType{8, "int32", SampleType::Int32, 1},           NiftiType{16, "float32", SampleType::Float32, 1},
+    NiftiType{32, "complex64", SampleType::Float32, 2},    NiftiType{64, "float64", SampleType::Float64, 1},
+    NiftiType{128, "rgb24", SampleType::UInt8, 3, true},   NiftiType{256, "int8", SampleType::Int8, 1},
+    NiftiType{512, "uint16", SampleType::UInt16, 1},       NiftiType{768, "uint32", SampleType::UInt32, 1},
+    NiftiType{1024, "int64", SampleType::Int64, 1},        NiftiType{1280, "uint64", SampleType::UInt64, 1},
+    NiftiType{1792, "complex128", SampleType::Float64, 2}, NiftiType{2304, "rgba32", SampleType::UInt8, 4, true}};
 
-// Reads through zlib, which also reads uncompressed files.
-class Stream {
-  public:
-    Stream(const std::string& name, const std::string& file) : name_(name), file_(gzopen(file.c_str(), "rb")) {
-        if (file_ == nullptr) fail("{}: {} cannot be opened", name, file);
-        gzbuffer(file_, 1 << 18);
-    }
-    ~Stream() { gzclose(file_); }
-    Stream(const Stream&) = delete;
-    Stream& operator=(const Stream&) = delete;
-    std::size_t read(void* target, std::size_t count) {
-        const int got = gzread(file_, target, static_cast<unsigned>(count));
-        if (got < 0) {
-            int code = 0;
-            const char* text = gzerror(file_, &code);
-            fail("{}: damaged gzip data: {}", name_, text);
-        }
-        return static_cast<std::size_t>(got);
-    }
-    void skip_to(std::size_t offset) {
-        if (gzseek(file_, static_cast<z_off_t>(offset), SEEK_SET) < 0)
-            fail("{}: truncated: no data at byte {}", name_, offset);
-    }
-
-    // Reads the rest of a gzip file to verify its final checksum.
-    void check_end() {
-        std::vector<char> rest(1 << 18);
-        if (gzdirect(file_) != 0) return;
-        while (read(rest.data(), rest.size()) > 0) {
-        }
-        int code = Z_OK;
-        (void)gzerror(file_, &code);
-        if (code == Z_BUF_ERROR) fail("{}: truncated: its gzip data are incomplete", name_);
-    }
-
-  private:
-    std::string name_;
-    gzFile file_;
-};
-
-// Checks the position fields: ITK's linear algebra aborts the program if a number is not finite as a float.
-void check_place(const std::string& path, const Header& header) {
-    const Layout& at = *header.layout;
-    const auto check = [&](const char* field, std::size_t first, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i) {
-            const double value =
-                at.wide ? header.get<double>(first + 8 * i) : static_cast<double>(header.get<float>(first + 4 * i));
-            if (!(std::abs(value) < 1e15))
-                fail("{}: {} in its header: {}, expected a length in mm", path, field, value);
-        }
-    };
-    const auto code = [&](std::size_t which) {
-        return at.wide ? header.get<std::int32_t>(at.qform_code + 4 * which)
-                       : header.get<std::int16_t>(at.qform_code + 2 * which);
-    };
-    check("pixdim", at.pixdim, 4);
-    if (header.analyze) return;
-    if (code(0) != 0) check("quatern and qoffset", at.quatern_b, 6);
-    if (code(1) != 0) check("srow", at.srow_x, 12);
+const NiftiType& nifti_type(const std::string& path, int datatype) {
+    for (const NiftiType& type : kNiftiTypes)
+        if (type.code == datatype) return type;
+    const char* reason = "expected a datatype of nifti1.h";
+    if (datatype == 0) reason = "the type of the voxels is unknown";
+    if (datatype == 1) reason = "voxels of 1 bit are not read";
+    if (datatype == 1536 || datatype == 2048) reason = "its 16 bytes per number differ from machine to machine";
+    fail("{}: datatype {} in its header: {}", path, datatype, reason);
 }
 
-Header parse(const std::string& path, const std::string& header_file) {
-    Header header;
+struct NiftiHeader : BinaryHeader {
+    const NiftiLayout* layout = nullptr;
+    bool analyze = false;
+    bool single_file = false;  // the voxels follow the header
+    std::array<std::int64_t, 8> dim{};
+
+    // Fields whose size depends on the version.
+    double real(std::size_t at, std::size_t index = 0) const {
+        return layout->wide ? get<double>(at + 8 * index) : static_cast<double>(get<float>(at + 4 * index));
+    }
+    std::int64_t code(std::size_t at) const { return layout->wide ? get<std::int32_t>(at) : get<std::int16_t>(at); }
+    std::size_t voxels_along(std::size_t axis) const { return static_cast<std::size_t>(dim[axis]); }
+    int units() const { return layout->wide ? get<std::int32_t>(500) : get<std::uint8_t>(123); }
+};
+
+// Position of voxels in the file's unit: right, anterior, superior, or along the stored axes if there is no code.
+struct NiftiPlace {
+    glm::dmat3 axes{1};
+    glm::dvec3 origin{0};
+    std::string source;
+    std::string problem;  // why it cannot be used
+};
+
+NiftiPlace sform_of(const NiftiHeader& header) {
+    NiftiPlace place;
+    place.source = fmt::format("sform (code {})", header.code(header.layout->sform_code));
+    double product = 1;
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 4; ++column) {
+            const double value = header.real(header.layout->srow_x, static_cast<std::size_t>(4 * row + column));
+            (column < 3 ? place.axes[column] : place.origin)[row] = value;
+            if (!(std::abs(value) < 1e15))
+                place.problem =
+                    fmt::format("srow_{}[{}] in its header: {}, expected a length", "xyz"[row], column, value);
+        }
+    for (int axis = 0; axis < 3; ++axis)
+        product *= glm::length(place.axes[axis]);
+    if (place.problem.empty() && !(std::abs(glm::determinant(place.axes)) > 1e-6 * product))
+        place.problem =
+            "srow_x, srow_y, srow_z in its header: the three axes lie in one plane, expected a matrix "
+            "with an inverse";
+    return place;
+}
+
+// The lengths of a voxel. A zero along an axis of one voxel is 1.
+glm::dvec3 pixdim_of(const NiftiHeader& header, bool is_replaced, NiftiPlace& place) {
+    glm::dvec3 lengths(1);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto index = static_cast<std::size_t>(axis + 1);
+        const double value = header.real(header.layout->pixdim, index);
+        if (value != 0 && std::abs(value) < 1e15)
+            lengths[axis] = std::abs(value);
+        else if (!is_replaced && !(value == 0 && header.dim[index] == 1))
+            place.problem =
+                fmt::format("pixdim[{}] in its header: {}, expected a length above 0; give --spacing", index, value);
+    }
+    return lengths;
+}
+
+NiftiPlace qform_of(const NiftiHeader& header, bool is_replaced) {
+    NiftiPlace place;
+    place.source = fmt::format("qform (code {})", header.code(header.layout->qform_code));
+    glm::dvec3 lengths = pixdim_of(header, is_replaced, place);
+    std::array<double, 6> q{};
+    for (std::size_t i = 0; i < q.size(); ++i) {
+        q[i] = header.real(header.layout->quatern_b, i);
+        if (!(std::abs(q[i]) < 1e15))
+            place.problem = fmt::format(
+                "{} in its header: {}, expected a number",
+                std::array{"quatern_b", "quatern_c", "quatern_d", "qoffset_x", "qoffset_y", "qoffset_z"}[i], q[i]);
+    }
+    const double qfac = header.real(header.layout->pixdim);
+    if (std::isnan(qfac)) place.problem = "pixdim[0] (qfac) in its header: nan, expected -1 or 1";
+    glm::dvec3 v(q[0], q[1], q[2]);
+    const double rest = 1 - glm::dot(v, v);
+    // The fields are rounded: of a rotation by 180 degrees the square sum may exceed 1.
+    if (rest < -1e-4)
+        place.problem = fmt::format(
+            "quatern_b, quatern_c, quatern_d in its header: {} {} {}, expected a sum of squares of at most 1", v.x, v.y,
+            v.z);
+    if (!place.problem.empty()) return place;
+    if (rest < 0) v = glm::normalize(v);
+    const double a = std::sqrt(std::max(rest, 0.0)), b = v.x, c = v.y, d = v.z;
+    if (qfac < 0) lengths.z = -lengths.z;
+    place.axes[0] = glm::dvec3(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)) * lengths.x;
+    place.axes[1] = glm::dvec3(2 * (b * c - a * d), a * a + c * c - b * b - d * d, 2 * (c * d + a * b)) * lengths.y;
+    place.axes[2] = glm::dvec3(2 * (b * d + a * c), 2 * (c * d - a * b), a * a + d * d - b * b - c * c) * lengths.z;
+    place.origin = {q[3], q[4], q[5]};
+    return place;
+}
+
+// SPM stores the origin, as a voxel numbered from 1, where Analyze 7.5 has free text. The bounds are SPM's own.
+std::optional<glm::dvec3> spm_origin(const NiftiHeader& header) {
+    constexpr std::size_t kOriginator = 253;
+    glm::dvec3 voxel(0);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto index = static_cast<std::size_t>(axis);
+        const int value = header.get<std::int16_t>(kOriginator + 2 * index);
+        if (value <= -header.dim[index + 1] || value >= 2 * header.dim[index + 1]) return std::nullopt;
+        voxel[axis] = value;
+    }
+    if (voxel == glm::dvec3(0)) return std::nullopt;
+    return voxel - 1.0;
+}
+
+NiftiPlace place_without_code(const NiftiHeader& header, bool is_replaced) {
+    NiftiPlace place;
+    place.source = header.analyze ? "pixdim (Analyze has no orientation)" : "pixdim (sform and qform code 0)";
+    const glm::dvec3 lengths = pixdim_of(header, is_replaced, place);
+    for (int axis = 0; axis < 3; ++axis)
+        place.axes[axis][axis] = lengths[axis];
+    if (const auto voxel = spm_origin(header); header.analyze && voxel) {
+        place.origin = -(*voxel * lengths);
+        place.source = "pixdim and originator (Analyze has no orientation)";
+    }
+    return place;
+}
+
+// The largest distance between a corner's two positions.
+double corner_distance(const NiftiPlace& one, const NiftiPlace& other, const glm::ivec3& dims) {
+    double most = 0;
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 index((corner & 1) * (dims.x - 1), (corner >> 1 & 1) * (dims.y - 1),
+                               (corner >> 2) * (dims.z - 1));
+        most = std::max(most, glm::length(one.axes * index + one.origin - other.axes * index - other.origin));
+    }
+    return most;
+}
+
+void set_nifti_place(const NiftiHeader& header, const LoadOptions& options, Volume& volume) {
+    const NiftiLayout& at = *header.layout;
+    const std::string& path = volume.name;
+    const bool is_replaced = options.spacing.has_value();
+    const bool has_sform = !header.analyze && header.code(at.sform_code) > 0;
+    const bool has_qform = !header.analyze && header.code(at.qform_code) > 0;
+
+    double millimetres = 1;
+    if (header.analyze) {
+        const std::string unit = header.bytes.substr(56, 4).c_str();  // vox_units, up to its 0
+        if (const auto known = millimetres_in(unit)) {
+            volume.length_unit = trimmed(unit);
+            millimetres = *known;
+        }
+    } else {
+        constexpr std::array<const char*, 4> kNames{"", "m", "mm", "um"};
+        constexpr std::array<double, 4> kMillimetres{1, 1e3, 1, 1e-3};
+        const auto unit = static_cast<std::size_t>(header.units() & 7);
+        if (unit < kNames.size()) {
+            volume.length_unit = kNames[unit];
+            millimetres = kMillimetres[unit];
+        } else {
+            volume.warnings.push_back(
+                fmt::format("xyzt_units {}: no unit of length is defined for it; mm are assumed.", unit));
+        }
+    }
+
+    NiftiPlace place = has_sform   ? sform_of(header)
+                       : has_qform ? qform_of(header, is_replaced)
+                                   : place_without_code(header, is_replaced);
+    if (!place.problem.empty()) fail("{}: {}", path, place.problem);
+    if (has_sform && has_qform) {
+        const NiftiPlace other = qform_of(header, false);
+        const double apart = corner_distance(place, other, volume.geometry.dims) * millimetres;
+        const double voxel = std::cbrt(std::abs(glm::determinant(place.axes))) * millimetres;
+        if (!other.problem.empty())
+            volume.notes.push_back(fmt::format("{} is used; the qform is not valid: {}.", place.source, other.problem));
+        else if (apart > 0.1 * voxel)
+            volume.notes.push_back(fmt::format("{} is used; {} puts a corner of the volume up to {:.4g} mm elsewhere.",
+                                               place.source, other.source, apart));
+    }
+    if (!has_sform)
+        for (std::size_t axis = 1; axis <= 3; ++axis)
+            if (const double value = header.real(at.pixdim, axis); value < 0)
+                volume.warnings.push_back(
+                    fmt::format("pixdim[{}] is {}: a length has no sign; its absolute value is used.", axis, value));
+
+    volume.in_patient = has_sform || has_qform;
+    if (volume.in_patient) {  // from right-anterior-superior to left-posterior-superior
+        const glm::dmat3 flip(-1, 0, 0, 0, -1, 0, 0, 0, 1);
+        place.axes = flip * place.axes;
+        place.origin = flip * place.origin;
+    } else {
+        volume.notes.emplace_back(
+            header.analyze ? "Analyze files do not define which side is left: the axes are used as stored."
+                           : "sform_code and qform_code are 0: which side is left is not defined, and the axes are "
+                             "used as stored.");
+    }
+    set_place(volume, place.axes, place.origin, millimetres, place.source);
+}
+
+void read_dims(const std::string& path, NiftiHeader& header) {
+    const NiftiLayout& at = *header.layout;
+    auto& dim = header.dim;
+    for (std::size_t axis = 0; axis < 8; ++axis)
+        dim[axis] = at.wide ? header.get<std::int64_t>(at.dim + axis * 8) : header.get<std::int16_t>(at.dim + axis * 2);
+    if (dim[0] < 1 || dim[0] > 7) fail("{}: its header says {} axes (dim[0]), expected 1 to 7", path, dim[0]);
+    if (dim[1] == -1) fail("{}: dim[1] = -1 in its header: FreeSurfer's data on a surface, not on a grid", path);
+    if (dim[0] == 1) fail("{}: its data have 1 axis; a volume needs 3, or 2 for a single slice", path);
+    for (std::size_t axis = 1; axis < 8; ++axis) {
+        if (static_cast<std::int64_t>(axis) > dim[0]) dim[axis] = 1;
+        if (axis > 3 && dim[axis] == 0) dim[axis] = 1;  // some Analyze writers leave them 0
+        if (dim[axis] < 1 || dim[axis] > std::numeric_limits<std::int32_t>::max())
+            fail("{}: its header says dim[{}] = {}, expected at least 1", path, axis, dim[axis]);
+    }
+}
+
+NiftiHeader nifti_header(const std::string& path, const std::string& header_file) {
+    NiftiHeader header;
     header.bytes.resize(kNifti2.header_size);
-    Stream stream(path, header_file);
-    header.bytes.resize(stream.read(header.bytes.data(), header.bytes.size()));
+    header.bytes.resize(PlainOrGzip(path, header_file).read(header.bytes.data(), header.bytes.size()));
     if (header.bytes.size() < kNifti1.header_size)
         fail("{}: {} bytes are too few for a NIfTI or Analyze header (348)", path, header.bytes.size());
-    for (const bool swapped : {false, true}) {
+    for (const bool swapped : {true, false}) {
         header.swapped = swapped;
         const auto size = header.get<std::int32_t>(0);
         if (size == 348) header.layout = &kNifti1;
@@ -135,201 +265,148 @@ Header parse(const std::string& path, const std::string& header_file) {
     }
     if (header.layout == nullptr)
         fail("{}: not a NIfTI or Analyze file: its header begins with neither 348 nor 540", path);
-    const Layout& at = *header.layout;
-    header.bytes.resize(at.header_size);
-    const char* magic = reinterpret_cast<const char*>(header.bytes.data()) + (at.wide ? 4 : 344);
-    header.single_file = magic[0] == 'n' && magic[1] == '+';
-    header.analyze = !(magic[0] == 'n' && (magic[1] == '+' || magic[1] == 'i'));
-    for (std::size_t axis = 0; axis < 8; ++axis)
-        header.dim[axis] =
-            at.wide ? header.get<std::int64_t>(at.dim + axis * 8) : header.get<std::int16_t>(at.dim + axis * 2);
-    header.datatype = header.get<std::int16_t>(at.datatype);
-    if (!header.analyze) {
-        header.slope =
-            at.wide ? header.get<double>(at.scl_slope) : static_cast<double>(header.get<float>(at.scl_slope));
-        header.intercept =
-            at.wide ? header.get<double>(at.scl_inter) : static_cast<double>(header.get<float>(at.scl_inter));
-    }
-    const double offset = at.wide ? static_cast<double>(header.get<std::int64_t>(at.vox_offset))
-                                  : static_cast<double>(header.get<float>(at.vox_offset));
-    if (!(offset >= 0 && offset < 1e15)) fail("{}: vox_offset {} in its header is not a valid offset", path, offset);
-    header.offset = static_cast<std::size_t>(offset);
-    if (header.dim[0] < 1 || header.dim[0] > 7)
-        fail("{}: its header says {} axes, expected 1 to 7", path, header.dim[0]);
-    for (std::size_t axis = 1; axis < 8; ++axis) {
-        if (static_cast<long long>(axis) > header.dim[0]) header.dim[axis] = 1;
-        if (axis > 3 && header.dim[axis] == 0) header.dim[axis] = 1;  // some Analyze writers leave them 0
-        if (axis > 3 && header.dim[axis] > 65535)
-            fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
-        if (header.dim[axis] < 1) fail("{}: its header says dim[{}] = {}", path, axis, header.dim[axis]);
-    }
-    check_place(path, header);
+    const NiftiLayout& at = *header.layout;
+    const std::string magic = header.bytes.substr(at.magic, at.wide ? 8 : 3);
+    const std::string version = at.wide ? std::string("2\0\r\n\x1a\n", 6) : "1";
+    header.single_file = magic == "n+" + version;
+    const bool is_pair = magic == "ni" + version;
+    header.analyze = !at.wide && magic[0] != 'n';
+    if (!header.single_file && !is_pair && !header.analyze)
+        fail("{}: the magic of its header ({} bytes) is neither n+{} nor ni{}: not a NIfTI file, or damaged", path,
+             at.header_size, version[0], version[0]);
+    if (const auto code = header.code(at.intent_code); !header.analyze && code >= 3000 && code < 3100)
+        fail("{}: intent_code {} in its header: a CIFTI matrix, not a volume", path, code);
+    read_dims(path, header);
     return header;
 }
 
-// Converts a NIfTI-2 header to NIfTI-1, the only version that ITK's NIfTI library reads. Positions become floats, and
-// an axis has at most 32767 voxels.
-Header as_nifti1(const std::string& path, const Header& wide) {
-    Header header = wide;
-    header.layout = &kNifti1;
-    header.bytes.assign(kNifti1.header_size, 0);
-    header.set<std::int32_t>(0, static_cast<std::int32_t>(kNifti1.header_size));
-    for (std::size_t axis = 1; axis <= 3; ++axis)
-        if (wide.dim[axis] > std::numeric_limits<std::int16_t>::max())
-            fail("{}: its header says dim[{}] = {}; NIfTI-2 is read up to 32767 voxels along an axis", path, axis,
-                 wide.dim[axis]);
-    const Layout &from = kNifti2, &to = kNifti1;
-    const auto floats = [&](std::size_t first, std::size_t target, std::size_t count) {
-        for (std::size_t i = 0; i < count; ++i)
-            header.set<float>(target + 4 * i, static_cast<float>(wide.get<double>(first + 8 * i)));
-    };
-    floats(from.pixdim, to.pixdim, 8);
-    floats(from.scl_slope, to.scl_slope, 2);
-    floats(from.quatern_b, to.quatern_b, 6);
-    floats(from.srow_x, to.srow_x, 12);
-    for (std::size_t which = 0; which < 2; ++which)
-        header.set<std::int16_t>(to.qform_code + 2 * which,
-                                 static_cast<std::int16_t>(wide.get<std::int32_t>(from.qform_code + 4 * which)));
-    header.set<std::int16_t>(to.datatype, static_cast<std::int16_t>(wide.datatype));
-    header.set<std::int16_t>(to.datatype + 2, wide.get<std::int16_t>(from.datatype + 2));            // bitpix
-    header.set<unsigned char>(123, static_cast<unsigned char>(wide.get<std::int32_t>(500) & 0xff));  // xyzt_units
-    std::memcpy(&header.bytes[344], wide.single_file ? "n+1" : "ni1", 4);
-    return header;
+bool has_ending(const std::string& path, const std::string& ending) {
+    std::string end = path.substr(path.size() - std::min(path.size(), ending.size()));
+    std::ranges::transform(end, end.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return end == ending;
 }
 
-struct VoxelType {
-    int code;
-    const char* name;
-    std::size_t bytes;
-};
-constexpr std::array<VoxelType, 12> kVoxelTypes{{{2, "uint8", 1},
-                                                 {4, "int16", 2},
-                                                 {8, "int32", 4},
-                                                 {16, "float32", 4},
-                                                 {32, "complex64", 8},
-                                                 {64, "float64", 8},
-                                                 {128, "rgb24", 3},
-                                                 {256, "int8", 1},
-                                                 {512, "uint16", 2},
-                                                 {768, "uint32", 4},
-                                                 {1024, "int64", 8},
-                                                 {1280, "uint64", 8}}};
-
-const VoxelType& voxel_type(const std::string& path, int datatype) {
-    for (const VoxelType& type : kVoxelTypes)
-        if (type.code == datatype) return type;
-    fail("{}: voxels of NIfTI type {} cannot be read", path, datatype);
-}
-
-// "x.hdr.gz", ".hdr" -> "x.img.gz", ".img": the existing file of the pair.
-std::string partner(const std::string& path, const std::string& from, const std::string& to) {
-    const auto at = path.rfind(from);
-    const std::string stem = path.substr(0, at) + to;
-    for (const std::string& name : {stem, stem + ".gz"})
+// "x.hdr.gz", "x.HDR" -> the existing one of "x.img", "x.img.gz", "x.IMG", ...
+std::string partner(const std::string& path, const std::string& ending) {
+    const std::string stem = path.substr(0, path.size() - (has_ending(path, ".gz") ? 7 : 4));
+    std::string upper = ending;
+    std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
+    for (const std::string& name : {stem + ending, stem + ending + ".gz", stem + upper, stem + upper + ".GZ"})
         if (fs::is_regular_file(name)) return name;
-    fail("{}: its second file {} (or {}.gz) is missing", path, stem, stem);
+    fail("{}: its second file {}{} (or {}{}.gz) is missing", path, stem, ending, stem, ending);
 }
 
-bool has_extension(const std::string& path, const std::string& extension) {
-    return path.ends_with(extension) || path.ends_with(extension + ".gz");
+bool is_named_as(const std::string& path, const std::string& ending) {
+    return has_ending(path, ending) || has_ending(path, ending + ".gz");
+}
+
+// Where the voxels begin. Some writers leave vox_offset 0, or forget the 4 bytes that say whether extensions follow:
+// then the file's size must tell. `bytes`: of all voxels.
+std::size_t voxel_offset(const NiftiHeader& header, const std::string& file, std::size_t bytes, Volume& volume) {
+    const NiftiLayout& at = *header.layout;
+    const std::string& path = volume.name;
+    const double offset =
+        at.wide ? static_cast<double>(header.get<std::int64_t>(at.vox_offset)) : header.real(at.vox_offset);
+    if (!(offset >= 0 && offset < 1e15) || offset != std::floor(offset))
+        fail("{}: vox_offset {} in its header: expected a whole number of bytes", path, offset);
+    const auto stated = static_cast<std::size_t>(offset);
+    const std::size_t least = at.header_size + 4;
+    if (!header.single_file || stated >= least) return stated;
+    if (stated != 0 && stated != at.header_size)
+        fail("{}: vox_offset {} in its header points into the header, expected at least {}", path, stated, least);
+    const std::size_t size = PlainOrGzip(path, file).read_rest();
+    for (const std::size_t begin : {least, at.header_size})
+        if (size - std::min(size, begin) == bytes) {
+            volume.notes.push_back(fmt::format(
+                "vox_offset is {}; the voxels begin at byte {}, as the size of the file says.", stated, begin));
+            return begin;
+        }
+    fail("{}: vox_offset {} in its header points into the header, expected at least {}; its {} bytes are not {} + {}",
+         path, stated, least, size, least, bytes);
+}
+
+// Scale of the samples; SPM stores it in a field that Analyze 7.5 leaves free.
+void set_nifti_scale(const NiftiHeader& header, StoredSamples& stored, Volume& volume) {
+    const double slope = header.real(header.layout->scl_slope), intercept = header.real(header.layout->scl_inter);
+    if (!std::isfinite(slope) || slope == 0) return;
+    if (header.analyze) {
+        if (slope == 1 || std::abs(slope) < 1e-30 || std::abs(slope) > 1e30) return;
+        stored.slope = slope;
+        volume.notes.push_back(fmt::format("Values are multiplied by {}, the scale of SPM's Analyze files.", slope));
+        return;
+    }
+    if (!std::isfinite(intercept))
+        fail("{}: scl_inter in its header: {} with scl_slope {}, expected a number", volume.name, intercept, slope);
+    stored.slope = slope;
+    stored.intercept = intercept;
 }
 
 }  // namespace
 
+bool is_nifti(const std::string& path) {
+    using namespace std::string_view_literals;
+    const std::string bytes = first_unpacked_bytes(path, kNifti1.header_size);
+    if (bytes.size() < kNifti1.header_size) return false;
+    const std::string_view head = bytes, size = head.substr(0, 4);
+    const std::string_view one = head.substr(kNifti1.magic, 3), two = head.substr(kNifti2.magic, 3);
+    if (size == "\x5c\1\0\0"sv || size == "\0\0\1\x5c"sv) return one == "n+1" || one == "ni1";
+    return (size == "\x1c\2\0\0"sv || size == "\0\0\2\x1c"sv) && (two == "n+2" || two == "ni2");
+}
+
 Volume load_nifti(const std::string& path, const LoadOptions& options) {
     std::string header_file = path, data_file = path;
-    if (has_extension(path, ".img")) header_file = partner(path, ".img", ".hdr");
-    if (has_extension(path, ".hdr")) data_file = partner(path, ".hdr", ".img");
-    Header header = parse(path, header_file);
-    if (header.layout->wide) header = as_nifti1(path, header);
+    if (is_named_as(path, ".img")) header_file = partner(path, ".hdr");
+    if (is_named_as(path, ".hdr")) data_file = partner(path, ".img");
+    NiftiHeader header = nifti_header(path, header_file);
     if (header.single_file) data_file = header_file;
-    const auto& dim = header.dim;
-    const auto unsigned_dim = [&](std::size_t axis) { return static_cast<std::size_t>(dim[axis]); };
+    if (!header.single_file && data_file == header_file) {
+        if (header.analyze) fail("{}: an Analyze header without voxels; expected a pair .hdr and .img", path);
+        header.single_file = true;  // "ni1" in a file that is no .hdr
+    }
 
-    // Axis 5 is components; the other axes beyond the third are frames.
-    const std::vector<std::size_t> block{unsigned_dim(1), unsigned_dim(2), unsigned_dim(3)};
-    // Size from the data type, as the NIfTI library does it; it ignores bitpix.
-    const VoxelType& type = voxel_type(path, header.datatype);
-    const std::size_t bytes = checked_bytes(path, block, type.bytes);
-    const std::size_t stored = fs::file_size(data_file);
-    check_stored_size(path, bytes, stored);
-    const bool more_axes = std::max({dim[4], dim[5], dim[6], dim[7]}) > 1;
-    const bool floats = header.datatype == 16 || header.datatype == 64;
-    ItkRequest request{.format = ItkFormat::Nifti,
-                       .path = path,
-                       .read_path = header_file,
-                       .stored_type = type.name,
-                       .stored_bytes = stored};
+    Volume volume;
+    volume.name = path;
+    const NiftiType& type = nifti_type(path, header.get<std::int16_t>(header.layout->datatype));
+    volume.stored_type = type.name;
+    const auto along = [&](std::size_t axis) { return header.voxels_along(axis); };
+    const std::size_t voxel_bytes = type.components * size_of(type.sample);
+    const std::size_t bytes = checked_bytes(path, {along(1), along(2), along(3)}, voxel_bytes);
+    volume.geometry.dims = glm::ivec3(header.dim[1], header.dim[2], header.dim[3]);
+    if (header.dim[0] == 2)
+        volume.notes.emplace_back("The file holds a 2-D image: it is read as a volume of one slice.");
+    const int bitpix = header.get<std::int16_t>(header.layout->bitpix);
+    if (bitpix != 0 && static_cast<std::size_t>(bitpix) != 8 * voxel_bytes)
+        volume.notes.push_back(
+            fmt::format("bitpix {} contradicts datatype {} ({}), which is used.", bitpix, type.code, type.name));
+    set_nifti_place(header, options, volume);
 
-    LoadOptions rest = options;
-    std::size_t index = 0;
-    if (more_axes) {
-        const std::size_t frames = unsigned_dim(4) * unsigned_dim(6) * unsigned_dim(7);
-        std::size_t frame = 0;
-        if (dim[5] > 1 || frames == 1) {
-            index = chosen_component(path, options, unsigned_dim(5));
-            rest.component.reset();
-        }
-        frame = chosen_frame(path, options, frames);
-        rest.frame.reset();
-        const std::size_t t = frame % unsigned_dim(4), rest_of_frame = frame / unsigned_dim(4);
-        index = t + unsigned_dim(4) * (index + unsigned_dim(5) * rest_of_frame);
-    }
-    // Also prevents an overflow of the product below.
-    if (static_cast<double>(index) * static_cast<double>(bytes) > 1040.0 * static_cast<double>(stored) + 4096)
-        fail("{}: truncated: the chosen frame lies beyond the end of the file", path);
-    const Layout& at = *header.layout;
-    const std::size_t data_offset = header.single_file ? at.header_size + 4 : 0;
-    for (std::size_t axis = 0; axis < 8; ++axis)
-        header.set<std::int16_t>(at.dim + axis * 2, static_cast<std::int16_t>(axis == 0   ? 3
-                                                                              : axis <= 3 ? dim[axis]
-                                                                                          : 1));
-    header.set<float>(at.vox_offset, static_cast<float>(data_offset));
-    if (!header.analyze) header.set<std::int16_t>(at.intent_code, 0);
-    // The standard defines no scale for colours, and ITK overruns its buffers if one is given.
-    if (!header.analyze && (floats || header.datatype == 128)) {
-        header.set<float>(at.scl_slope, 0);
-        header.set<float>(at.scl_inter, 0);
-    }
-    if (floats) {
-        header.set<std::int16_t>(at.datatype, header.datatype == 16 ? 8 : 1024);
-        request.bits_are_floats = true;
-        const bool scaled = std::isfinite(header.slope) && header.slope != 0 && std::isfinite(header.intercept);
-        request.slope = scaled ? header.slope : 1;
-        request.intercept = scaled ? header.intercept : 0;
-    }
-    const TemporaryFolder folder;
-    const auto head_path = folder.path() / (header.single_file ? "block.nii" : "block.hdr");
-    std::ofstream head(head_path, std::ios::binary);
-    head.write(reinterpret_cast<const char*>(header.bytes.data()), static_cast<std::streamsize>(header.bytes.size()));
-    std::ofstream body;
-    if (header.single_file)
-        head.write("\0\0\0\0", 4);
-    else
-        body.open(folder.path() / "block.img", std::ios::binary);
-    std::ofstream& out = header.single_file ? head : body;
-    Stream data(path, data_file);
-    data.skip_to(header.offset + index * bytes);
-    std::vector<char> buffer(1 << 20);
-    for (std::size_t done = 0; done < bytes;) {
-        const std::size_t want = std::min(buffer.size(), bytes - done);
-        const std::size_t got = data.read(buffer.data(), want);
-        if (got == 0)
-            fail("{}: truncated: {} of {} bytes of voxels{}", path, done, bytes,
-                 more_axes ? " of the chosen frame" : "");
-        out.write(buffer.data(), static_cast<std::streamsize>(got));
-        done += got;
-        report(options, 0.5 * static_cast<double>(done) / static_cast<double>(bytes), "reading voxels");
-    }
-    data.check_end();
-    head.close();
-    if (body.is_open()) body.close();
-    if (!head || (!header.single_file && !body)) fail("{}: cannot write a temporary file of {} bytes", path, bytes);
-    request.read_path = head_path.string();
-    request.stored_bytes = 0;
-    auto volume = load_through_itk(request, rest);
-    if (header.analyze)
-        volume.notes.push_back("Analyze files do not define which side is left: the axes are used as stored.");
+    // Axis 5 is components, as are the parts of colours and complex numbers. The other axes are frames.
+    std::size_t frames = 1, blocks = 1;
+    for (const std::size_t axis : {4, 5, 6, 7})
+        if (__builtin_mul_overflow(blocks, along(axis), &blocks) || blocks > std::size_t{1} << 40)
+            fail("{}: dim[4] to dim[7] in its header: {} {} {} {}, more than 2^40 blocks", path, along(4), along(5),
+                 along(6), along(7));
+    frames = blocks / along(5);
+    const std::size_t component = chosen_component(path, options, along(5) * type.components);
+    const std::size_t frame = chosen_frame(path, options, frames);
+    const std::size_t index =
+        frame % along(4) + along(4) * (component / type.components + along(5) * (frame / along(4)));
+    const std::size_t all = block_offset(path, 0, blocks, bytes);
+
+    const std::size_t first = voxel_offset(header, data_file, all, volume);
+    const auto data = read_block({.path = path,
+                                  .file = data_file,
+                                  .offset = block_offset(path, first, index, bytes),
+                                  .bytes = bytes,
+                                  .after = (blocks - 1 - index) * bytes},
+                                 options, volume.notes);
+    StoredSamples stored{.type = type.sample,
+                         .data = data.data() + component % type.components * size_of(type.sample),
+                         .stride = type.components,
+                         .swapped = header.swapped};
+    if (!type.is_color) set_nifti_scale(header, stored, volume);
+    report(options, 0.7, "converting voxels");
+    take_samples(stored, volume);
     return volume;
 }
 

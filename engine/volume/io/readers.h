@@ -81,7 +81,7 @@ class OutputCapture {
     int file_ = -1, saved_out_ = -1, saved_err_ = -1;
 };
 
-enum class ItkFormat { Nrrd, Meta, Nifti, Vtk, Minc, Gipl };
+enum class ItkFormat { Nrrd, Meta, Vtk, Minc, Gipl };
 /// Input of `load_through_itk`.
 struct ItkRequest {
     ItkFormat format = ItkFormat::Nrrd;
@@ -92,15 +92,29 @@ struct ItkRequest {
     std::size_t stored_ratio = kBestDeflateRatio;  ///< see check_stored_size
     /// Called before reading, with the bytes and samples to be read; may throw.
     std::function<void(std::size_t bytes, std::size_t samples)> check_data;
-    bool bits_are_floats = false;     ///< the integers are bit patterns of floats (see load_nifti.cpp)
-    double slope = 1, intercept = 0;  ///< applied to those floats
 };
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options);
 /// Reads the header only. Returns the sample type, or nullopt if the file is not one scalar volume.
 std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description);
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options);
+/// The signature of NIfTI-1 or NIfTI-2, in a plain or gzip file. Analyze has none.
+bool is_nifti(const std::string& path);
+/// NIfTI-1, NIfTI-2, Analyze: also a pair .hdr and .img, by either name.
 Volume load_nifti(const std::string& path, const LoadOptions& options);
+/// FreeSurfer's .mgh and .mgz.
+bool is_mgh(const std::string& path);
+Volume load_mgh(const std::string& path, const LoadOptions& options);
+/// MRC and CCP4 maps. Files of before the year 2000 have no signature.
+bool is_mrc(const std::string& path);
+Volume load_mrc(const std::string& path, const LoadOptions& options);
+/// NumPy's .npy: samples without geometry.
+bool is_npy(const std::string& path);
+Volume load_npy(const std::string& path, const LoadOptions& options);
+/// One array of a .npz. `member`: its name; empty: the only one.
+Volume load_npz(const std::string& path, const std::string& member, const LoadOptions& options);
+/// Splits "file.npz:name"; nullopt if the path does not name an array of an existing file.
+std::optional<std::pair<std::string, std::string>> npz_member(const std::string& path);
 Volume load_meta(const std::string& path, const LoadOptions& options);
 Volume load_vti(const std::string& path, const LoadOptions& options);
 /// `head`: the file's first bytes.
