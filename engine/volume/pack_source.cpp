@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "engine/volume/analytic_volumes.h"
+#include "engine/volume/io/samples.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -91,11 +92,16 @@ class FileSource final : public PackSource {
         const int rows = whole_rows ? size.y : 1;  // contiguous in the file
         const auto run = static_cast<std::size_t>(size.x) * static_cast<std::size_t>(rows);
         std::vector<char> bytes(run * size_of(layout_.type));
+        const StoredSamples stored{.type = layout_.type,
+                                   .data = bytes.data(),
+                                   .swapped = layout_.swapped,
+                                   .slope = layout_.slope,
+                                   .intercept = layout_.intercept};
         float* to = out.data();
         for (int z = low.z; z < low.z + size.z; ++z)
             for (int y = low.y; y < low.y + size.y; y += rows) {
                 fill(bytes, static_cast<std::size_t>((z * dims.y + y) * dims.x + low.x));
-                convert_samples(layout_.type, bytes.data(), 0, 1, run, to);
+                convert_stored(stored, run, to);
                 to += run;
             }
     }
@@ -111,9 +117,6 @@ class FileSource final : public PackSource {
             if (count == 0) fail("{}: truncated: it ends at byte {}", layout_.file, begin + done);
             done += static_cast<std::size_t>(count);
         }
-        for (std::size_t i = 0; layout_.swapped && i < bytes.size(); i += item)
-            std::reverse(bytes.begin() + static_cast<std::ptrdiff_t>(i),
-                         bytes.begin() + static_cast<std::ptrdiff_t>(i + item));
     }
 
     FileLayout layout_;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -31,6 +32,8 @@ struct FileLayout {
     std::size_t offset = 0;  ///< bytes before the first sample
     SampleType type = SampleType::UInt8;
     bool swapped = false;  ///< stored in the other byte order than this machine's
+    /// A sample is slope * stored + intercept.
+    double slope = 1, intercept = 0;
 };
 
 /// Layout of a file that --raw describes; fills `description`.

@@ -1,10 +1,6 @@
 // Reads one file through an ITK ImageIO, without ITK's pixel-type templates and factories: the ImageIO reads header and
 // data, and the voxels are converted to float here.
-#include <itkGiplImageIO.h>
 #include <itkMINCImageIO.h>
-#include <itkMetaDataObject.h>
-#include <itkMetaImageIO.h>
-#include <itkNrrdImageIO.h>
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
@@ -13,39 +9,26 @@
 
 #include "engine/volume/io/itk.h"
 #include "engine/volume/io/readers.h"
-#include "engine/volume/packed_volume.h"
 
 namespace edgesplat::detail {
 namespace {
 
 const char* name_of(ItkFormat format) {
     switch (format) {
-        case ItkFormat::Nrrd:
-            return "NRRD";
-        case ItkFormat::Meta:
-            return "MetaImage";
         case ItkFormat::Vtk:
             return "legacy VTK image data";
         case ItkFormat::Minc:
             return "MINC";
-        case ItkFormat::Gipl:
-            return "GIPL";
     }
     return "";
 }
 
 itk::ImageIOBase::Pointer image_io(ItkFormat format) {
     switch (format) {
-        case ItkFormat::Nrrd:
-            return itk::NrrdImageIO::New().GetPointer();
-        case ItkFormat::Meta:
-            return itk::MetaImageIO::New().GetPointer();
         case ItkFormat::Vtk:
             return itk::VTKImageIO::New().GetPointer();
         case ItkFormat::Minc:
             return itk::MINCImageIO::New().GetPointer();
-        case ItkFormat::Gipl:
-            return itk::GiplImageIO::New().GetPointer();
     }
     return {};
 }
@@ -146,12 +129,9 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
     return geometry;
 }
 
-/// Whether the file defines the patient's axes; ITK then converts to LPS.
-static bool in_patient(const itk::ImageIOBase& io, ItkFormat format) {
-    std::string space;
-    itk::ExposeMetaData<std::string>(io.GetMetaDataDictionary(), "NRRD_space", space);
-    return format == ItkFormat::Minc || space.find("left") != std::string::npos ||
-           space.find("right") != std::string::npos;
+/// Whether the format defines the patient's axes; ITK then converts to LPS.
+static bool in_patient(ItkFormat format) {
+    return format == ItkFormat::Minc;
 }
 
 /// An ImageIO that has read the file's header.
@@ -162,27 +142,6 @@ static itk::ImageIOBase::Pointer header_of(const ItkRequest& request) {
         io->ReadImageInformation();
     });
     return io;
-}
-
-std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description) {
-    const auto io = header_of(request);
-    auto dims = dims_of(*io);
-    while (dims.size() > 3 && dims.back() == 1)
-        dims.pop_back();
-    if (dims.size() != 3 || io->GetNumberOfComponents() != 1) return std::nullopt;
-    std::size_t voxels = 1;
-    for (const std::size_t n : dims) {
-        if (n < 1 || n > kMaxPackedVoxelsPerAxis || n > kMaxPackedVoxels / voxels)
-            fail("{}: dims {}: expected 1 to {} along each axis, and at most 2^40 in all", request.path,
-                 fmt::join(dims, " x "), kMaxPackedVoxelsPerAxis);
-        voxels *= n;
-    }
-    const SampleType type = sample_type_of(*io, request.path);
-    description.name = request.path;
-    description.stored_type = name_of(type);
-    description.geometry = geometry_of(*io);
-    description.in_patient = in_patient(*io, request.format);
-    return type;
 }
 
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
@@ -208,7 +167,7 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
         frames *= dims[axis];
     const std::size_t frame = chosen_frame(path, options, frames);
     volume.geometry = geometry_of(*io);
-    volume.in_patient = in_patient(*io, request.format);
+    volume.in_patient = in_patient(request.format);
     if (dims.size() == 2)
         volume.notes.push_back("The file holds a 2-D image: it is read as a volume of one slice, 1 mm thick.");
 

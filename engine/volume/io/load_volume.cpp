@@ -107,7 +107,11 @@ struct Format {
 
 // Signatures first, then names; the first format that recognises a file reads it.
 constexpr std::array kFormats{
-    Format{"NRRD", [](const Start& f) { return f.begins("NRRD0"); }, load_nrrd},
+    Format{"NRRD",
+           [](const Start& f) {
+               return f.begins("NRRD0") || (f.begins("\x1f\x8b") && f.is_named({".nrrd.gz", ".nhdr.gz"}));
+           },
+           load_nrrd},
     Format{"legacy VTK image data", [](const Start& f) { return f.begins("# vtk DataFile"); },
            [](const std::string& path, const LoadOptions& options) {
                return load_vtk_legacy(path, first_bytes(path), options);
@@ -150,7 +154,7 @@ constexpr std::array kFormats{
            load_npy},
     Format{"MetaImage",
            [](const Start& f) {
-               return f.is_named({".mha", ".mhd"});
+               return f.is_named({".mha", ".mhd", ".mha.gz", ".mhd.gz"});
            },
            load_meta},
     Format{"GIPL",

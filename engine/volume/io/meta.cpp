@@ -1,241 +1,378 @@
-// Reads MetaImage files through ITK, after checking the header: MetaIO accepts contradictory headers silently.
-// Compressed voxels are unpacked here: MetaIO stops at CompressedDataSize, which is too small in some files (VTK's
-// frogtissue.mhd), and leaves the remaining voxels uninitialised.
-#include <zlib.h>
-
+// Reads MetaImage files. Place, units and the scale of values come from the header as MetaIO defines its keys; world
+// axes are the patient's (left, back, up), as ITK, Slicer and VTK use the format, if AnatomicalOrientation agrees.
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cctype>
+#include <charconv>
+#include <cmath>
 #include <fstream>
+#include <map>
 #include <sstream>
 
-#include "engine/volume/pack_source_internal.h"
+#include "engine/volume/io/samples.h"
+#include "engine/volume/io/stored_data.h"
 
 namespace edgesplat::detail {
 namespace {
 
 namespace fs = std::filesystem;
 
-// Data files after "LIST", without trailing blank lines.
-struct ListedFiles {
-    std::size_t count = 0;
-    std::size_t first_bad = std::string::npos, bad_length = 0;  // first line that is blank or too long
-
-    void add(std::size_t line, std::size_t length) {
-        if (length > 0) count = line + 1;
-        if (first_bad != std::string::npos || (length > 0 && length <= 1000)) return;
-        first_bad = line;
-        bad_length = length;
-    }
-};
-
-// Checks a list or pattern of data files. MetaIO copies each word into 80 bytes, counts words by blanks, and copies a
-// line of a list into 1024 bytes. It passes the pattern to printf unchecked, and silently reads fewer files than there
-// are slices.
-void check_several(const std::string& path, const std::string& value, const ListedFiles& listed, std::size_t slices) {
-    std::istringstream fits(value);
-    for (std::string word; fits >> word;)
-        if (word.size() > 79)
-            fail("{}: ElementDataFile: a word of {} characters, expected at most 79", path, word.size());
-    if (value.find("  ") != std::string::npos)
-        fail("{}: ElementDataFile '{}': expected single blanks between its words", path, value);
-    std::size_t files = listed.count;
-    if (listed.first_bad < std::min(files, slices))
-        fail("{}: ElementDataFile: line {} of the list has {} characters, expected 1 to 1000", path,
-             listed.first_bad + 1, listed.bad_length);
-    if (value.rfind("LIST", 0) != 0) {
-        std::istringstream words(value);
-        std::string pattern;
-        long long first = 0, last = 0, step = 0;
-        // MetaIO treats a missing or invalid step as 0 and divides by it.
-        const bool numbers = static_cast<bool>(words >> pattern >> first >> last >> step);
-        const auto percent = pattern.find('%');
-        auto end = percent + 1;
-        while (end < pattern.size() && std::isdigit(static_cast<unsigned char>(pattern[end])) != 0)
-            ++end;
-        if (end >= pattern.size() || end - percent > 4 || (pattern[end] != 'd' && pattern[end] != 'u') ||
-            pattern.find('%', end) != std::string::npos || !numbers || !(words >> std::ws).eof() || step < 1 ||
-            last < first || last - first > 1'000'000)
-            fail("{}: ElementDataFile '{}': expected a name with one number like %03d, then first, last and step", path,
-                 value);
-        files = static_cast<std::size_t>((last - first) / step + 1);
-    }
-    if (files != slices) fail("{}: {} data files for {} slices", path, files, slices);
-}
+constexpr std::size_t kMaxMetaLine = 65536, kMaxMetaLines = 100'000;
 
 struct MetaHeader {
-    std::vector<std::string> lines;  // all lines except compression and data file
-    std::vector<std::size_t> dims;
-    std::size_t axes = 0, spacings = 0, channels = 1;
-    bool compressed = false, in_patient = false;
-    std::string data_file;
-    ListedFiles listed;
-    std::size_t data_offset = 0;  // offset of data in the header's own file
-    bool big_endian = false;
-    bool plain = true;  // true: voxels are stored contiguously and unmodified
+    std::string path;
+    std::map<std::string, std::string> values;  // by key in lower case
+    std::vector<std::string> listed_files;      // lines after "ElementDataFile = LIST"
+    std::size_t bytes = 0;                      // offset of data in the header's own file
+    bool continues = false;                     // keys follow after ElementDataFile, which MetaIO ignores
+
+    bool has(const std::string& key) const { return values.count(key) > 0; }
+    std::string value(const std::string& key) const {
+        const auto found = values.find(key);
+        return found == values.end() ? "" : found->second;
+    }
+    [[noreturn]] void refuse(std::string_view key, const std::string& reason) const {
+        fail("{}: MetaImage key {}: {}", path, key, reason);
+    }
+    std::vector<double> numbers(const std::string& key) const {
+        std::istringstream words(value(key));
+        std::vector<double> out;
+        for (std::string word; words >> word;) {
+            const std::string_view digits = word.starts_with('+') ? std::string_view(word).substr(1) : word;
+            double number = 0;
+            const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+            if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number))
+                refuse(key, fmt::format("'{}' is not a number", word));
+            out.push_back(number);
+        }
+        return out;
+    }
+    double number(const std::string& key, double otherwise) const {
+        if (!has(key)) return otherwise;
+        const auto found = numbers(key);
+        if (found.size() != 1) refuse(key, fmt::format("{} numbers, expected 1", found.size()));
+        return found[0];
+    }
+    long long whole(const std::string& key, long long otherwise) const {
+        const double found = number(key, static_cast<double>(otherwise));
+        if (found != std::round(found) || std::abs(found) > 1e15)
+            refuse(key, fmt::format("'{}' is not a whole number", value(key)));
+        return static_cast<long long>(found);
+    }
+    bool yes(const std::string& key) const {
+        const char first = has(key) && !value(key).empty() ? value(key)[0] : 'F';
+        return first == 'T' || first == 't' || first == '1' || first == 'Y' || first == 'y';
+    }
 };
 
-// MetaIO copies keys and values into fixed buffers without checking their length.
-void check_line(const std::string& path, int number, const std::string& line) {
-    const auto equals = line.find('=');
-    const bool blank = line.find_first_not_of(" \t\r") == std::string::npos;
-    const bool text = std::ranges::all_of(
-        line, [](char c) { return static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\r'; });
-    if (!text || (!blank && (equals > 80 || line.size() - equals > 4000)))
-        fail("{}: not a MetaImage header: line {} is no 'key = value' of at most 80 and 4000 characters", path, number);
-}
-
-MetaHeader meta_header(const std::string& path) {
+MetaHeader meta_header(const std::string& path, const std::string& file) {
     MetaHeader header;
-    std::ifstream file(path, std::ios::binary);
-    int number = 0;
-    for (std::string line; std::getline(file, line) && line.size() < 65536 && header.lines.size() < 10000;) {
-        check_line(path, ++number, line);
-        const auto equals = line.find('=');
-        const auto key = trimmed(line.substr(0, equals));
-        const auto value = equals == std::string::npos ? "" : trimmed(line.substr(equals + 1));
-        std::istringstream words(value);
-        if (key == "ElementDataFile") {
-            header.data_file = value;
-            header.data_offset = file.good() ? static_cast<std::size_t>(file.tellg()) : 0;
-            if (value.rfind("LIST", 0) == 0)
-                for (std::size_t i = 0; std::getline(file, line); ++i)
-                    header.listed.add(i, trimmed(line).size());
-            return header;
+    header.path = path;
+    std::ifstream in(file, std::ios::binary);
+    const auto buffer = std::make_unique_for_overwrite<char[]>(kMaxMetaLine);
+    for (std::size_t number = 1; number <= kMaxMetaLines && in.getline(buffer.get(), kMaxMetaLine); ++number) {
+        const std::string line(buffer.get(), static_cast<std::size_t>(in.gcount()) - (in.eof() ? 0 : 1));
+        const auto equals = line.find_first_of("=:");
+        const bool text = std::ranges::all_of(
+            line, [](char c) { return static_cast<unsigned char>(c) >= ' ' || c == '\t' || c == '\r'; });
+        const bool blank = trimmed(line).empty();
+        if (!text || (!blank && (equals == std::string::npos || equals > 80)))
+            fail("{}: not a MetaImage header: line {} is no 'key = value'", path, number);
+        if (blank) continue;
+        std::string key = trimmed(line.substr(0, equals));
+        std::ranges::transform(key, key.begin(), [](unsigned char c) { return std::tolower(c); });
+        const std::string value = trimmed(line.substr(equals + 1));
+        const auto [entry, is_new] = header.values.emplace(key, value);
+        if (!is_new && entry->second != value && key != "comment")
+            header.refuse(key, "it occurs twice, with different values");
+        if (key != "elementdatafile") continue;
+        header.bytes = in.eof() ? 0 : static_cast<std::size_t>(in.tellg());
+        const bool list = value.starts_with("LIST");
+        const bool local = value == "LOCAL" || value == "Local" || value == "local";
+        for (; !local && number <= kMaxMetaLines && in.getline(buffer.get(), kMaxMetaLine); ++number) {
+            const std::string more = trimmed(buffer.get());
+            if (more.empty()) continue;
+            if (list) header.listed_files.push_back(more);
+            if (more.find('=') != std::string::npos) header.continues = true;
         }
-        if (key == "NDims") words >> header.axes;
-        if (key == "ElementNumberOfChannels") words >> header.channels;
-        if (key == "DimSize")
-            for (std::size_t n = 0; words >> n;)
-                header.dims.push_back(n);
-        if (key == "ElementSpacing")
-            for (std::string word; words >> word;)
-                ++header.spacings;
-        if (key == "AnatomicalOrientation") header.in_patient = value.find_first_of("LRlr") != std::string::npos;
-        const bool yes = !value.empty() && (value[0] == 'T' || value[0] == 't' || value[0] == '1');
-        if (key == "BinaryDataByteOrderMSB" || key == "ElementByteOrderMSB") header.big_endian = yes;
-        if ((key == "BinaryData" && !yes) || (key == "HeaderSize" && value != "0") ||
-            key.starts_with("ElementToIntensity"))
-            header.plain = false;
-        if (key == "CompressedData") header.compressed = yes;
-        if (key != "CompressedData" && key != "CompressedDataSize") header.lines.push_back(line);
+        return header;
     }
     fail("{}: not a MetaImage header: it has no line 'ElementDataFile = ...'", path);
 }
 
-// Unpacks zlib or gzip data, at most `limit` bytes.
-void inflate_file(const std::string& path, const fs::path& source, std::size_t offset, std::size_t limit,
-                  const fs::path& target, const LoadOptions& options) {
-    std::ifstream in(source, std::ios::binary);
-    std::ofstream out(target, std::ios::binary);
-    in.seekg(static_cast<std::streamoff>(offset));
-    z_stream stream{};
-    if (inflateInit2(&stream, 15 + 32) != Z_OK) fail("{}: zlib cannot be started", path);
-    const std::unique_ptr<z_stream, int (*)(z_stream*)> owner(&stream, &inflateEnd);
-    std::vector<char> packed(1 << 16), unpacked(1 << 18);
-    const auto size = static_cast<double>(fs::file_size(source));
-    std::size_t taken = 0, total = 0;
-    int status = Z_OK;
-    while (status == Z_OK && total < limit) {
-        in.read(packed.data(), static_cast<std::streamsize>(packed.size()));
-        stream.avail_in = static_cast<unsigned>(in.gcount());
-        if (stream.avail_in == 0) break;
-        taken += stream.avail_in;
-        stream.next_in = reinterpret_cast<Bytef*>(packed.data());
-        do {
-            stream.avail_out = static_cast<unsigned>(unpacked.size());
-            stream.next_out = reinterpret_cast<Bytef*>(unpacked.data());
-            status = inflate(&stream, Z_NO_FLUSH);
-            if (status != Z_OK && status != Z_STREAM_END && status != Z_BUF_ERROR)
-                fail("{}: damaged compressed data: {}", path, stream.msg == nullptr ? "unknown" : stream.msg);
-            const auto count = unpacked.size() - stream.avail_out;
-            out.write(unpacked.data(), static_cast<std::streamsize>(count));
-            total += count;
-        } while (stream.avail_out == 0 && status == Z_OK && total < limit);
-        if (status == Z_BUF_ERROR) status = Z_OK;
-        report(options, std::min(0.5, 0.5 * static_cast<double>(taken) / size), "unpacking voxels");
+SampleType meta_type(const MetaHeader& header) {
+    std::string name = header.value("elementtype");
+    if (name.ends_with("_ARRAY")) name.resize(name.size() - 6);
+    using T = SampleType;
+    // MetaIO's long has 4 bytes on every machine.
+    static const std::map<std::string, SampleType> types = {
+        {"MET_CHAR", T::Int8},         {"MET_UCHAR", T::UInt8},   {"MET_SHORT", T::Int16},
+        {"MET_USHORT", T::UInt16},     {"MET_INT", T::Int32},     {"MET_UINT", T::UInt32},
+        {"MET_LONG", T::Int32},        {"MET_ULONG", T::UInt32},  {"MET_LONG_LONG", T::Int64},
+        {"MET_ULONG_LONG", T::UInt64}, {"MET_FLOAT", T::Float32}, {"MET_DOUBLE", T::Float64}};
+    const auto found = types.find(name);
+    if (found == types.end())
+        header.refuse("ElementType",
+                      fmt::format("'{}', expected MET_UCHAR, MET_SHORT, MET_FLOAT or another type of number",
+                                  header.value("elementtype")));
+    return found->second;
+}
+
+struct MetaFile {
+    Volume volume;  // everything except samples
+    StoredData data;
+    StoredSelection selection;
+    std::vector<std::size_t> dims;  // with channels last
+};
+
+/// The first of several spellings that the header has; empty: none. Fails if two of them differ.
+std::string meta_key(const MetaHeader& header, std::initializer_list<const char*> keys) {
+    std::string found;
+    for (const char* key : keys) {
+        if (!header.has(key)) continue;
+        if (!found.empty() && header.numbers(found) != header.numbers(key))
+            header.refuse(key, fmt::format("it contradicts {}", found));
+        if (found.empty()) found = key;
     }
-    if (status == Z_OK && total < limit)
-        fail("{}: truncated: its compressed data stop after {} bytes of voxels", path, total);
-    if (!out.flush()) fail("{}: cannot write a temporary file of {} bytes", path, total);
+    return found;
 }
 
-bool is_local(const MetaHeader& header) {
-    return header.data_file == "LOCAL" || header.data_file == "Local" || header.data_file == "local";
+void take_meta_data(const MetaHeader& header, const std::string& file, MetaFile& out) {
+    StoredData& data = out.data;
+    data.path = header.path;
+    data.type = meta_type(header);
+    const auto bits = header.whole("elementnbits", static_cast<long long>(8 * size_of(data.type)));
+    if (bits != static_cast<long long>(8 * size_of(data.type)))
+        header.refuse("ElementNBits", fmt::format("{} contradicts {}", bits, header.value("elementtype")));
+    const bool binary = !header.has("binarydata") || header.yes("binarydata");
+    const bool compressed = header.yes("compresseddata");
+    if (compressed && !binary) header.refuse("CompressedData", "text cannot be compressed");
+    data.encoding = !binary ? StoredEncoding::Text : compressed ? StoredEncoding::Deflate : StoredEncoding::Raw;
+    const bool both = header.has("binarydatabyteordermsb") && header.has("elementbyteordermsb");
+    if (both && header.yes("binarydatabyteordermsb") != header.yes("elementbyteordermsb") && size_of(data.type) > 1)
+        header.refuse("ElementByteOrderMSB", "it contradicts BinaryDataByteOrderMSB");
+    const bool big = header.yes("binarydatabyteordermsb") || header.yes("elementbyteordermsb");
+    data.swapped = big != (std::endian::native == std::endian::big);
+    if (!both && !header.has("binarydatabyteordermsb") && !header.has("elementbyteordermsb") && binary &&
+        size_of(data.type) > 1)
+        out.volume.notes.emplace_back("The header has no byte order: little endian is assumed.");
+    data.slope = header.number("elementtointensityfunctionslope", 1);
+    data.intercept = header.number("elementtointensityfunctionoffset", 0);
+    if (data.slope == 0) header.refuse("ElementToIntensityFunctionSlope", "0, expected another number");
+
+    const std::string value = header.value("elementdatafile");
+    const bool local = value == "LOCAL" || value == "Local" || value == "local";
+    const auto folder = fs::path(header.path).parent_path();
+    if (header.continues && !local && !value.starts_with("LIST"))
+        out.volume.warnings.emplace_back("Keys after ElementDataFile have no effect: it must be the last one.");
+    const auto skip = header.whole("headersize", 0);
+    if (skip < -1) header.refuse("HeaderSize", fmt::format("{}, expected -1 or a count of bytes", skip));
+    if (skip == -1 && !binary) header.refuse("HeaderSize", "-1 is defined for binary data only");
+    // MetaIO ignores -1 for compressed data; a size counts from the beginning of the file.
+    data.at_end = skip == -1 && !compressed;
+    if (skip > 0) data.offset = static_cast<std::size_t>(skip);
+    if (!local) data.header = file;
+    if (local) {
+        if (header.bytes == 0) fail("{}: truncated: no data follow the header", header.path);
+        if (skip > 0 && data.offset < header.bytes)
+            header.refuse("HeaderSize", fmt::format("{} points into the header of {} bytes", skip, header.bytes));
+        data.offset = std::max(data.offset, header.bytes);
+        data.files = {file};
+        return;
+    }
+    const std::size_t axes = out.dims.size();
+    const auto slices_of = [&](long long per_file) {
+        std::size_t slices = 1;
+        for (auto axis = static_cast<std::size_t>(std::max(per_file, 1LL)); axis < axes; ++axis)
+            slices *= out.dims[axis];
+        return slices;
+    };
+    // "LIST 2" and a fifth word of a pattern give the axes that each file has; without it, all except the last.
+    auto per_file = static_cast<long long>(axes) - 1;
+    std::vector<std::string> names;
+    if (value.starts_with("LIST")) {
+        names = header.listed_files;
+        const std::string rest = trimmed(value.substr(4));
+        if (!rest.empty() && std::isdigit(static_cast<unsigned char>(rest[0])) != 0) per_file = rest[0] - '0';
+    } else if (value.find('%') != std::string::npos) {
+        std::istringstream words(value);
+        std::string pattern;
+        long long first = 0, last = 0, step = 1;
+        words >> pattern >> first >> last;
+        const bool good = static_cast<bool>(words);
+        if (!(words >> step)) step = 1;
+        if (!good)
+            header.refuse("ElementDataFile", fmt::format("'{}', expected a name with one number like %03d, then "
+                                                         "first, last and step",
+                                                         value));
+        names = names_of_pattern(header.path, "MetaImage key ElementDataFile", pattern, first, last, step);
+    } else {
+        data.files = {folder / value};
+        return;
+    }
+    // MetaIO reads the needed number of names; blank lines and comments are no names.
+    if (names.size() != slices_of(per_file))
+        fail("{}: {} data files for {} slices", header.path, names.size(), slices_of(per_file));
+    for (const auto& name : names)
+        data.files.push_back(folder / name);
 }
 
-bool has_several_files(const MetaHeader& header) {
-    return header.data_file.rfind("LIST", 0) == 0 || header.data_file.find('%') != std::string::npos;
+/// Whether the letters of AnatomicalOrientation, such as RAI, name the sides from which the axes come.
+bool letters_match(std::string letters, const glm::dmat3& axes) {
+    std::ranges::transform(letters, letters.begin(), [](unsigned char c) { return std::toupper(c); });
+    static constexpr std::array<std::string_view, 3> from_low = {"R", "A", "I"}, from_high = {"L", "P", "S"};
+    for (int axis = 0; axis < 3; ++axis) {
+        const glm::dvec3 size = glm::abs(axes[axis]);
+        const int main = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const auto& expected = axes[axis][main] > 0 ? from_low : from_high;
+        if (expected[static_cast<std::size_t>(main)] != letters.substr(static_cast<std::size_t>(axis), 1)) return false;
+    }
+    return true;
 }
 
-// Checks that the number of dims matches the axes: otherwise MetaIO reads uninitialised memory. It supports at most ten
-// axes.
-void check_axes(const std::string& path, const MetaHeader& header) {
-    if (header.axes < 1 || header.axes > 10) fail("{}: NDims = {}, expected 1 to 10", path, header.axes);
-    if (header.dims.size() != header.axes)
-        fail("{}: NDims = {} and DimSize with {} numbers, expected as many", path, header.axes, header.dims.size());
-    checked_bytes(path, header.dims, 1);
+void take_meta_place(const MetaHeader& header, const std::vector<std::size_t>& dims, Volume& volume) {
+    const std::size_t count = dims.size(), in_space = std::min<std::size_t>(count, 3);
+    volume.geometry.dims = glm::ivec3(1);
+    for (std::size_t i = 0; i < in_space; ++i)
+        volume.geometry.dims[static_cast<int>(i)] = static_cast<int>(dims[i]);
+
+    glm::dvec3 spacing(1.0), origin(0.0);
+    std::string key = header.has("elementspacing") ? "elementspacing" : header.has("elementsize") ? "elementsize" : "";
+    if (!key.empty()) {
+        const auto numbers = header.numbers(key);
+        if (numbers.size() < in_space)
+            header.refuse(key, fmt::format("{} numbers, expected {}", numbers.size(), count));
+        if (numbers.size() != count)
+            volume.notes.push_back(fmt::format("The header says NDims = {} but gives {} spacings; NDims was used.",
+                                               count, numbers.size()));
+        for (std::size_t i = 0; i < in_space; ++i) {
+            if (!(numbers[i] > 0)) header.refuse(key, fmt::format("{}, expected a length above 0", numbers[i]));
+            spacing[static_cast<int>(i)] = numbers[i];
+        }
+    } else {
+        volume.notes.emplace_back("The header has no spacing: 1 mm is assumed.");
+    }
+    const std::string place = meta_key(header, {"offset", "position", "origin"});
+    if (!place.empty()) {
+        const auto numbers = header.numbers(place);
+        if (numbers.size() < in_space)
+            header.refuse(place, fmt::format("{} numbers, expected {}", numbers.size(), count));
+        for (std::size_t i = 0; i < in_space; ++i)
+            origin[static_cast<int>(i)] = numbers[i];
+    }
+    // Row i is the direction of axis i.
+    glm::dmat3 directions(1.0);
+    const std::string matrix = meta_key(header, {"transformmatrix", "rotation", "orientation"});
+    if (!matrix.empty()) {
+        const auto numbers = header.numbers(matrix);
+        if (numbers.size() != count * count)
+            header.refuse(matrix, fmt::format("{} numbers, expected {}", numbers.size(), count * count));
+        for (std::size_t i = 0; i < count; ++i)
+            for (std::size_t j = 0; j < count; ++j) {
+                const double number = numbers[i * count + j];
+                if (i < 3 && j < 3)
+                    directions[static_cast<int>(i)][static_cast<int>(j)] = number;
+                else if (i != j && number != 0)
+                    header.refuse(matrix, fmt::format("axis {} runs through space and time", std::min(i, j)));
+            }
+    }
+    const auto center = header.has("centerofrotation") ? header.numbers("centerofrotation") : std::vector<double>();
+    if (std::ranges::any_of(center, [](double c) { return c != 0; }) && directions != glm::dmat3(1.0))
+        volume.notes.emplace_back("CenterOfRotation was not used: Offset is the place of the first voxel.");
+
+    double millimetres = 1;
+    if (const std::string unit = header.value("distanceunits"); !unit.empty() && unit != "?") {
+        const auto known = millimetres_in(unit);
+        if (known) volume.length_unit = unit;
+        millimetres = known.value_or(1);
+        if (!known) volume.warnings.push_back(fmt::format("The unit '{}' is no known length: mm are assumed.", unit));
+    }
+    glm::dmat3 axes(0.0);
+    for (int i = 0; i < 3; ++i)
+        axes[i] = directions[i] * spacing[i] * millimetres;
+    if (count == 2) {
+        const glm::dvec3 normal = glm::cross(axes[0], axes[1]);
+        axes[2] = glm::length(normal) > 0 ? glm::normalize(normal) : glm::dvec3(0, 0, 1);
+        volume.notes.emplace_back("The file holds a 2-D image: it is read as a volume of one slice, 1 mm thick.");
+    }
+    const char* source = key == "elementspacing" ? matrix.empty() ? "ElementSpacing" : "TransformMatrix"
+                         : key == "elementsize"  ? "ElementSize"
+                                                 : "none: 1 mm assumed";
+    set_place(volume, axes, origin * millimetres, 1, source);
+
+    const std::string letters = header.value("anatomicalorientation");
+    const bool named = letters.size() == 3 && letters.find_first_not_of("RLAPSIrlapsi") == std::string::npos;
+    if (!named) return;
+    // Many programs write RAI, the letters of LPS axes, whatever the directions are.
+    volume.in_patient = letters_match(letters, glm::dmat3(1.0)) || letters_match(letters, axes);
+    if (!volume.in_patient)
+        volume.warnings.push_back(fmt::format(
+            "AnatomicalOrientation = {} contradicts the directions of the axes, which were used; left and right of the "
+            "patient are not certain.",
+            letters));
+}
+
+MetaFile meta_file(const std::string& path, const std::string& file, const LoadOptions& options) {
+    const auto header = meta_header(path, file);
+    MetaFile out;
+    out.volume.name = path;
+    if (header.has("objecttype") && header.value("objecttype") != "Image")
+        header.refuse("ObjectType", fmt::format("'{}', expected Image", header.value("objecttype")));
+    const auto axes = header.whole("ndims", 0);
+    if (axes < 2 || axes > 4)
+        fail("{}: NDims = {}, expected 2 to 4{}", path, header.value("ndims"),
+             axes == 1 ? ": its data have 1 axis" : "");
+    const auto sizes = header.numbers("dimsize");
+    if (static_cast<long long>(sizes.size()) != axes)
+        fail("{}: NDims = {} and DimSize with {} numbers, expected as many", path, axes, sizes.size());
+    for (const double size : sizes) {
+        if (size != std::round(size) || size < 1 || size > static_cast<double>(kMaxPackedVoxelsPerAxis))
+            header.refuse("DimSize", fmt::format("{}: expected 1 to {} along each axis, and at most 2^40 in all", size,
+                                                 kMaxPackedVoxelsPerAxis));
+        out.dims.push_back(static_cast<std::size_t>(size));
+    }
+    const auto channels = header.whole("elementnumberofchannels", 1);
+    if (channels < 1 || channels > 65535)
+        header.refuse("ElementNumberOfChannels", fmt::format("{}, expected 1 to 65535", channels));
+    take_meta_data(header, file, out);
+    out.volume.stored_type = name_of(out.data.type);
+    take_meta_place(header, out.dims, out.volume);
+
+    auto& step = out.selection.step;
+    step[0] = static_cast<std::size_t>(channels);
+    for (std::size_t i = 1; i < 3; ++i)
+        step[i] = step[i - 1] * out.dims[i - 1];
+    out.data.samples = static_cast<std::size_t>(channels);
+    for (const std::size_t n : out.dims)
+        if (__builtin_mul_overflow(out.data.samples, n, &out.data.samples) || out.data.samples > kMaxPackedVoxels)
+            header.refuse("DimSize", fmt::format("'{}': at most 2^40 samples can be read", header.value("dimsize")));
+    if (out.dims.size() == 4)
+        out.selection.first = chosen_frame(path, options, out.dims[3]) * step[2] * out.dims[2];
+    else
+        (void)chosen_frame(path, options, 1);
+    out.selection.first += chosen_component(path, options, static_cast<std::size_t>(channels));
+    out.dims.push_back(static_cast<std::size_t>(channels));
+    if (out.dims.size() == 3) out.dims.insert(out.dims.begin() + 2, 1);
+    return out;
 }
 
 }  // namespace
 
 std::optional<FileLayout> meta_layout(const std::string& path, Volume& description) {
-    const auto header = meta_header(path);
-    check_axes(path, header);
-    const bool plain = header.plain && !header.compressed && !has_several_files(header) && header.dims.size() == 3 &&
-                       (header.spacings == 0 || header.spacings == header.axes);
-    if (!plain) return std::nullopt;
-    const auto type = describe_through_itk({.format = ItkFormat::Meta, .path = path}, description);
-    if (!type) return std::nullopt;
-    description.in_patient = header.in_patient;
-    const auto data = is_local(header) ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
-    return FileLayout{data.string(), is_local(header) ? header.data_offset : 0, *type,
-                      header.big_endian != (std::endian::native == std::endian::big)};
+    MetaFile file = meta_file(path, path, {});
+    auto layout = layout_of_stored(file.data, file.selection, file.volume);
+    if (layout) description = std::move(file.volume);
+    return layout;
 }
 
 Volume load_meta(const std::string& path, const LoadOptions& options) {
-    const auto header = meta_header(path);
-    const bool local = is_local(header), several = has_several_files(header);
-    const auto data = local ? fs::path(path) : fs::path(path).parent_path() / header.data_file;
-    ItkRequest request{.format = ItkFormat::Meta, .path = path};
-    check_axes(path, header);
-    if (several) {
-        // "LIST 3" gives the number of axes per file; without a number each file has all axes except the last.
-        std::size_t axes = header.axes - 1, slices = 1;
-        if (header.data_file.rfind("LIST", 0) == 0) std::istringstream(header.data_file.substr(4)) >> axes;
-        for (std::size_t axis = std::max<std::size_t>(axes, 2); axis < header.axes; ++axis)
-            slices *= header.dims[axis];
-        check_several(path, header.data_file, header.listed, slices);
-    }
-    if (!several) {
-        std::error_code error;
-        if (!fs::is_regular_file(data, error))
-            fail("{}: its data file {} {}", path, data.string(), error ? error.message() : "is not a file");
-        request.stored_bytes = fs::file_size(data);
-        if (!header.compressed) request.stored_ratio = kPlainRatio;
-    }
+    report(options, 0.0, "reading header");
     std::optional<TemporaryFolder> folder;
-    if (header.compressed && !several) {
-        const auto limit = checked_bytes(path, header.dims, 8 * std::clamp<std::size_t>(header.channels, 1, 64));
-        // at least one byte per voxel
-        check_stored_size(path, checked_bytes(path, header.dims, 1), request.stored_bytes);
-        folder.emplace();
-        inflate_file(path, data, local ? header.data_offset : 0, limit, folder->path() / "data.raw", options);
-        const auto patched = folder->path() / "header.mhd";
-        std::ofstream out(patched);
-        for (const auto& line : header.lines)
-            out << line << '\n';
-        out << "ElementDataFile = data.raw\n";
-        if (!out.flush()) fail("{}: cannot write a temporary file", path);
-        request.read_path = patched.string();
-        request.stored_bytes = fs::file_size(folder->path() / "data.raw");
-    }
-    auto volume = load_through_itk(request, options);
-    volume.in_patient = header.in_patient;
-    if (header.axes > 0 && header.spacings > 0 && header.spacings != header.axes)
-        volume.notes.push_back(fmt::format("The header says NDims = {} but gives {} spacings; NDims was used.",
-                                           header.axes, header.spacings));
-    return volume;
+    MetaFile read = meta_file(path, without_gzip(path, folder), options);
+    checked_bytes(path, read.dims, size_of(read.data.type));
+    read_stored(read.data, read.selection, read.volume, options);
+    return std::move(read.volume);
 }
 
 }  // namespace edgesplat::detail

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 
-#include "engine/volume/pack_source_internal.h"
+#include "engine/volume/io/samples.h"
+#include "engine/volume/io/stored_data.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -34,6 +36,7 @@ struct RawForm {
     SampleType type = SampleType::UInt8;
     bool swapped = false;
     glm::dvec3 spacing{1};
+    bool has_spacing = false;
     std::size_t skip = 0;
 };
 
@@ -53,12 +56,13 @@ RawForm form_of(const std::string& path, const LoadOptions& options) {
         fail("--raw {}: byte order '{}' is neither little nor big", options.raw, parts[2]);
     form.swapped = (parts[2] == "little") != (std::endian::native == std::endian::little);
     if (parts.size() > 3) {
+        form.has_spacing = true;
         const auto lengths = split(parts[3], ',');
         if (lengths.size() != 3) fail("--raw {}: '{}' is not three spacings; {}", options.raw, parts[3], kForm);
         for (int axis = 0; axis < 3; ++axis) {
             form.spacing[axis] = parsed<double>(lengths[static_cast<std::size_t>(axis)], options.raw);
-            if (!(form.spacing[axis] > 0))
-                fail("--raw {}: spacing {} must be above 0", options.raw, form.spacing[axis]);
+            if (!(form.spacing[axis] > 0) || !std::isfinite(form.spacing[axis]))
+                fail("--raw {}: spacing {} must be a length above 0", options.raw, form.spacing[axis]);
         }
     }
     if (parts.size() > 4) form.skip = parsed<std::size_t>(parts[4], options.raw);
@@ -69,7 +73,7 @@ RawForm form_of(const std::string& path, const LoadOptions& options) {
 }
 
 /// `bytes`: size of all voxels.
-FileLayout layout_of(const RawForm& form, std::size_t bytes, const std::string& path, const LoadOptions& options,
+StoredData stored_of(const RawForm& form, std::size_t bytes, const std::string& path, const LoadOptions& options,
                      Volume& volume) {
     const std::size_t size = std::filesystem::file_size(path);
     if (form.skip > size || size - form.skip < bytes)
@@ -84,9 +88,22 @@ FileLayout layout_of(const RawForm& form, std::size_t bytes, const std::string& 
     volume.name = path;
     volume.stored_type = name_of(form.type);
     volume.geometry.dims = glm::ivec3(form.dims[0], form.dims[1], form.dims[2]);
+    glm::dmat3 axes(1.0);
     for (int axis = 0; axis < 3; ++axis)
-        volume.geometry.index_to_world_axes[axis][axis] = form.spacing[axis];
-    return {path, form.skip, form.type, form.swapped};
+        axes[axis][axis] = form.spacing[axis];
+    set_place(volume, axes, glm::dvec3(0.0), 1, form.has_spacing ? "--raw" : "none: 1 mm assumed");
+    StoredData data;
+    data.path = path;
+    data.files = {path};
+    data.type = form.type;
+    data.swapped = form.swapped;
+    data.offset = form.skip;
+    data.samples = bytes / size_of(form.type);
+    return data;
+}
+
+StoredSelection selection_of(const RawForm& form) {
+    return {.first = 0, .step = {1, form.dims[0], form.dims[0] * form.dims[1]}};
 }
 
 }  // namespace
@@ -100,22 +117,18 @@ FileLayout raw_layout(const std::string& path, const LoadOptions& options, Volum
                  form.dims[0], form.dims[1], form.dims[2], kMaxPackedVoxelsPerAxis);
         voxels *= side;
     }
-    return layout_of(form, voxels * size_of(form.type), path, options, description);
+    const auto data = stored_of(form, voxels * size_of(form.type), path, options, description);
+    return *layout_of_stored(data, selection_of(form), description);
 }
 
 Volume load_raw(const std::string& path, const LoadOptions& options) {
     const RawForm form = form_of(path, options);
     Volume volume;
-    const auto layout = layout_of(form, checked_bytes(path, form.dims, size_of(form.type)), path, options, volume);
-    volume.values.resize(volume.geometry.voxel_count());
-    const auto source = file_source(layout, volume);
-    const glm::ivec3& dims = volume.geometry.dims;
-    const std::size_t slice = form.dims[0] * form.dims[1];
-    for (int z = 0; z < dims.z; ++z) {
-        report(options, 0.9 * z / dims.z, "reading voxels");
-        source->read({0, 0, z}, {dims.x, dims.y, 1},
-                     std::span(volume.values).subspan(static_cast<std::size_t>(z) * slice, slice));
-    }
+    const auto data = stored_of(form, checked_bytes(path, form.dims, size_of(form.type)), path, options, volume);
+    // The spare bytes are named above.
+    auto warnings = volume.warnings;
+    read_stored(data, selection_of(form), volume, options);
+    volume.warnings = std::move(warnings);
     return volume;
 }
 

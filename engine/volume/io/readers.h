@@ -81,10 +81,10 @@ class OutputCapture {
     int file_ = -1, saved_out_ = -1, saved_err_ = -1;
 };
 
-enum class ItkFormat { Nrrd, Meta, Vtk, Minc, Gipl };
+enum class ItkFormat { Vtk, Minc };
 /// Input of `load_through_itk`.
 struct ItkRequest {
-    ItkFormat format = ItkFormat::Nrrd;
+    ItkFormat format = ItkFormat::Minc;
     std::string path;                              ///< the user's path, used in messages
     std::string read_path;                         ///< the file that ITK opens; empty: `path`
     std::string stored_type;                       ///< empty: as ITK says
@@ -94,8 +94,6 @@ struct ItkRequest {
     std::function<void(std::size_t bytes, std::size_t samples)> check_data;
 };
 Volume load_through_itk(const ItkRequest& request, const LoadOptions& options);
-/// Reads the header only. Returns the sample type, or nullopt if the file is not one scalar volume.
-std::optional<SampleType> describe_through_itk(const ItkRequest& request, Volume& description);
 
 Volume load_nrrd(const std::string& path, const LoadOptions& options);
 /// The signature of NIfTI-1 or NIfTI-2, in a plain or gzip file. Analyze has none.
