@@ -17,13 +17,18 @@ pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 
 # Named components: otherwise ITK loads every module of its build.
-set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOGDCM ITKIOVTK
+set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK
     ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)
 find_package(ITK REQUIRED COMPONENTS ${EDGESPLAT_ITK_COMPONENTS})
 # ITK's use file registers factories per directory. An interface target holds its settings instead.
 add_library(edgesplat_itk INTERFACE)
 target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
 target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
+
+# Compressed pixels of DICOM files.
+find_package(GDCM REQUIRED)
+target_include_directories(edgesplat_itk SYSTEM INTERFACE ${GDCM_INCLUDE_DIRS})
+target_link_libraries(edgesplat_itk INTERFACE gdcmMSFF gdcmDSED gdcmCommon)
 
 # Packed volumes and HDF5 files. ITK's search has already run this CMake module.
 find_package(HDF5 REQUIRED COMPONENTS C)

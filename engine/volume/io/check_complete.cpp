@@ -50,70 +50,8 @@ class Bytes {
     std::string path_;
 };
 
-constexpr std::uint32_t kUndefined = 0xffffffff;
-constexpr std::uint32_t kItem = 0xfffee000, kItemEnd = 0xfffee00d, kSequenceEnd = 0xfffee0dd;
 // Thrown for a file of unknown structure, which is left to GDCM.
 struct NotUnderstood {};
-
-struct Dataset {
-    Bytes& bytes;
-    bool big, explicit_vr;
-
-    std::uint32_t tag() {
-        const auto group = bytes.number(2, big);
-        return static_cast<std::uint32_t>(group << 16 | bytes.number(2, big));
-    }
-    // Length of the value after the tag; `vr` is empty if there is none.
-    std::uint32_t length(std::string& vr) {
-        vr.clear();
-        if (!explicit_vr) return static_cast<std::uint32_t>(bytes.number(4, big));
-        vr = bytes.text(2);
-        for (const char c : vr)
-            if (c < 'A' || c > 'Z') throw NotUnderstood{};
-        static constexpr std::string_view kLong = "OB OW OF OD OL OV SQ UT UN UC UR SV UV";
-        if (kLong.find(vr) == std::string_view::npos) return static_cast<std::uint32_t>(bytes.number(2, big));
-        bytes.skip(2);
-        return static_cast<std::uint32_t>(bytes.number(4, big));
-    }
-    // Skips elements up to `end` or the end-of-item tag.
-    void elements(std::uint64_t end, int depth) {
-        std::string vr;
-        while (bytes.at() < end) {
-            const auto here = tag();
-            if (here == kItemEnd) {
-                bytes.skip(4);
-                return;
-            }
-            const auto count = length(vr);
-            if (count != kUndefined)
-                bytes.skip(count);
-            else
-                items(here == 0x7fe00010, depth + 1);
-        }
-    }
-    // Skips the items of a sequence of undefined length, or the fragments of compressed pixels.
-    void items(bool fragments, int depth) {
-        if (depth > 32) throw NotUnderstood{};
-        while (true) {
-            const auto here = tag();
-            const auto count = static_cast<std::uint32_t>(bytes.number(4, big));
-            if (here == kSequenceEnd) return;
-            if (here != kItem || (fragments && count == kUndefined)) throw NotUnderstood{};
-            if (count != kUndefined)
-                bytes.skip(count);
-            else
-                elements(bytes.size(), depth + 1);
-        }
-    }
-};
-
-/// Whether the first element of a file without preamble has a value representation.
-bool has_representations(Bytes& bytes) {
-    bytes.skip(4);
-    const std::string vr = bytes.text(2);
-    bytes.rewind();
-    return std::ranges::all_of(vr, [](char c) { return c >= 'A' && c <= 'Z'; });
-}
 
 std::uint64_t padded(std::uint64_t count) {
     return (count + 3) / 4 * 4;
@@ -144,73 +82,6 @@ struct NetcdfHeader {
 };
 
 }  // namespace
-
-bool begins_with_dicom_elements(const std::string& path) {
-    Bytes bytes(path);
-    if (bytes.size() < 8) return false;
-    try {
-        Dataset data{bytes, false, has_representations(bytes)};
-        std::uint32_t before = 0;
-        std::string vr;
-        for (int i = 0; i < 4; ++i) {
-            const std::uint32_t tag = data.tag(), group = tag >> 16U;
-            if (tag <= before || (i == 0 && group != 2 && group != 8) || group > 0x7fe0) return false;
-            const std::uint32_t count = data.length(vr);
-            if (count == kUndefined) return i > 0;
-            bytes.skip(count);
-            before = tag;
-        }
-        return true;
-    } catch (const NotUnderstood&) {
-        return false;
-    } catch (const Error&) {
-        return false;
-    }
-}
-
-void check_dicom_is_whole(const std::string& path) {
-    Bytes bytes(path);
-    const bool preamble = bytes.size() >= 132 && (bytes.skip(128), bytes.text(4)) == "DICM";
-    if (!preamble) {
-        bytes.rewind();
-        // Old files begin with the data set.
-        if (bytes.size() >= 8 && bytes.number(2, false) != 2) {
-            bytes.rewind();
-            try {
-                Dataset data{bytes, false, has_representations(bytes)};
-                data.elements(bytes.size(), 0);
-            } catch (const NotUnderstood&) {
-            }
-            return;
-        }
-        bytes.rewind();
-    }
-    try {
-        Dataset meta{bytes, false, true};
-        std::string vr, syntax;
-        while (bytes.left() > 0) {
-            const auto start = bytes.at();
-            const auto group = bytes.number(2, false), element = bytes.number(2, false);
-            if (group != 2) {
-                Bytes rest(path);
-                rest.skip(start);
-                const bool big = syntax == "1.2.840.10008.1.2.2";
-                if (syntax.empty() || syntax == "1.2.840.10008.1.2.1.99") return;  // unknown, or deflated
-                Dataset data{rest, big, syntax != "1.2.840.10008.1.2"};
-                data.elements(rest.size(), 0);
-                return;
-            }
-            const auto count = meta.length(vr);
-            if (count == kUndefined) return;
-            auto value = bytes.text(count);
-            while (!value.empty() && (value.back() == '\0' || value.back() == ' '))
-                value.pop_back();
-            if (element == 0x10) syntax = value;
-        }
-    } catch (const NotUnderstood&) {
-        return;
-    }
-}
 
 void check_netcdf_is_whole(const std::string& path) {
     Bytes bytes(path);

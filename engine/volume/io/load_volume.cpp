@@ -200,6 +200,26 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
         path, format_names());
 }
 
+/// DICOM files in the folders inside: a study often has a folder per series.
+std::vector<std::string> dicom_files_below(const std::string& path) {
+    constexpr int kDeepest = 6;
+    constexpr std::size_t kMostFiles = 65535;
+    std::vector<std::string> found;
+    std::size_t looked_at = 0;
+    std::error_code error;
+    for (auto at = fs::recursive_directory_iterator(path, fs::directory_options::skip_permission_denied, error);
+         !error && at != fs::recursive_directory_iterator(); at.increment(error)) {
+        if (at.depth() >= kDeepest) at.disable_recursion_pending();
+        const std::string name = at->path().filename().string();
+        if (!at->is_regular_file(error) || name.starts_with(".") || name == "DICOMDIR") continue;
+        if (++looked_at > kMostFiles)
+            fail("{}: its folders have more than {} files; give the folder of one series", path, kMostFiles);
+        if (at->file_size(error) > 0 && is_dicom(at->path().string())) found.push_back(at->path().string());
+    }
+    std::ranges::sort(found);
+    return found;
+}
+
 Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
     refuse_inner(path, options, "a folder of slices");
@@ -233,11 +253,12 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     } else if (!images.empty()) {
         images = ordered_slices(path, images, notes);
         volume = load_images(path, images, options);
+    } else if (const auto below = folders > 0 ? dicom_files_below(path) : std::vector<std::string>(); !below.empty()) {
+        volume = load_dicom(path, below, options);
     } else {
         fail(
             "{}: no DICOM files and no images in this folder ({} other files, {} folders inside); give a file or one "
-            "of "
-            "its folders",
+            "of its folders",
             path, others, folders);
     }
     volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());

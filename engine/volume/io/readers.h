@@ -33,9 +33,6 @@ void check_stored_size(const std::string& path, std::size_t needed, std::size_t 
                        std::size_t ratio = kBestDeflateRatio);
 
 /// Fails with "truncated" if the file's structure continues beyond its end. Files with unknown structure pass.
-void check_dicom_is_whole(const std::string& path);
-/// Whether a file without DICOM preamble begins with DICOM elements: group 2 or 8, in order.
-bool begins_with_dicom_elements(const std::string& path);
 void check_netcdf_is_whole(const std::string& path);
 
 /// The component and frame to read. Fails with the option to use if the file has several and none is chosen.
@@ -135,6 +132,8 @@ Volume load_raw(const std::string& path, const LoadOptions& options);
 std::vector<float> resampled_slices(const std::vector<float>& slices, const std::vector<double>& heights,
                                     std::size_t count);
 
+/// Whether a file without DICOM preamble begins with DICOM elements: group 2 or 8, in order.
+bool begins_with_dicom_elements(const std::string& path);
 bool is_dicom(const std::string& path);
 Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);
 
