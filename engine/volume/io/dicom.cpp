@@ -193,7 +193,9 @@ bool is_dicom(const std::string& path) {
     return begins_with_dicom_elements(path);
 }
 
-Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options) {
+Volume load_dicom(const std::string& name, const std::vector<std::string>& unsorted, const LoadOptions& options) {
+    std::vector<std::string> files = unsorted;  // folders list them in any order, but numbers of series must stay
+    std::ranges::sort(files);
     std::vector<DicomImage> images;
     std::vector<std::string> segmentations, warnings;
     LeftOut left_out;

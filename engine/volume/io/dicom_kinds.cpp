@@ -94,21 +94,21 @@ std::vector<std::string> files_of_dicom_directory(const std::string& path, std::
     for (const DicomItem& record : file.data().items(0x00041220)) {
         const std::string id = record.text(0x00041500);
         if (id.empty()) continue;
-        // On a disk for Linux, names are often in lower case.
-        fs::path found;
-        for (const std::string& spelled : {id, dicom_lower_case(id)}) {
-            fs::path at = folder;
-            bool inside = true;
-            for (std::size_t from = 0; from <= spelled.size();) {
-                const std::size_t to = std::min(spelled.find('\\', from), spelled.size());
-                const std::string part = trimmed(spelled.substr(from, to - from));
-                inside = inside && part != ".." && part.find('/') == std::string::npos;
-                at /= part;
-                from = to + 1;
-            }
-            std::error_code error;
-            if (inside && found.empty() && fs::is_regular_file(at, error)) found = at;
+        fs::path found = folder;
+        std::error_code error;
+        for (std::size_t from = 0; from <= id.size();) {
+            const std::size_t to = std::min(id.find('\\', from), id.size());
+            const std::string part = trimmed(id.substr(from, to - from));
+            from = to + 1;
+            if (found.empty()) continue;
+            if (part.empty() || part == ".." || part.find('/') != std::string::npos)
+                found.clear();
+            else if (fs::exists(found / part, error))
+                found /= part;
+            else  // copied from a disk, names are often in lower case
+                found /= dicom_lower_case(part);
         }
+        if (!fs::is_regular_file(found, error)) found.clear();
         if (!found.empty()) {
             files.push_back(found.string());
             continue;
