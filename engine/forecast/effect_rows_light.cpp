@@ -32,8 +32,20 @@ std::string numbers(const Elements& elements, const Is& is) {
     return text;
 }
 
+Light one_light() {
+    return directional_light({-1, -1, 1});
+}
+
 void light(FrameRequest& request) {
-    request.scene.lights = {directional_light({-1, -1, 1})};
+    if (request.scene.lights.empty()) request.scene.lights = {one_light()};
+}
+
+void shadow(FrameRequest& request) {
+    light(request);
+    // A headlight casts no visible shadows.
+    Light& first = request.scene.lights[0];
+    if (first.kind == Light::Kind::Headlight) first = one_light();
+    first.shadows = true;
 }
 
 std::string shadow_reason(const FrameRequest& r) {
@@ -90,7 +102,7 @@ std::vector<Effect> light_effects() {
                     .help = "matter between a light and a surface darkens the surface",
                     .call = "lights[].shadows",
                     .reason = shadow_reason,
-                    .turn_on = [](FrameRequest& r) { light(r), r.scene.lights[0].shadows = true; },
+                    .turn_on = shadow,
                     .base = light,
                     .passes = {"2c_sweep_light", "2d_shadow_splats"},
                     .resources = {"splat shadows"},
@@ -121,7 +133,7 @@ std::vector<Effect> light_effects() {
                             second.kind = Light::Kind::Point;
                             second.position = r.camera.eye;
                             second.color = {1, 0.6, 0.4};
-                            if (r.scene.lights.empty()) light(r);
+                            light(r);
                             r.scene.lights.push_back(second);
                         },
                     .base = light,

@@ -18,12 +18,6 @@ using Access = vk::AccessFlagBits2;
 
 }  // namespace
 
-Groups groups_for(std::uint64_t count, std::uint32_t local) {
-    const std::uint64_t groups = std::max<std::uint64_t>((count + local - 1) / local, 1);
-    const std::uint64_t rows = (groups + 65534) / 65535;
-    return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
-}
-
 Commands::Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set)
     : device_(&device),
       pipelines_(&pipelines),
@@ -87,6 +81,12 @@ void Commands::bind_pipeline(vk::PipelineBindPoint point, vk::Pipeline pipeline,
 void Commands::dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups) {
     bind_pipeline(vk::PipelineBindPoint::eCompute, pipelines_->compute(shader, constants), number);
     buffer_.dispatch(groups.x, groups.y, groups.z);
+}
+
+Groups Commands::groups_for(std::uint64_t count, std::uint32_t local) const {
+    const std::uint64_t groups = std::max<std::uint64_t>((count + local - 1) / local, 1);
+    const std::uint64_t rows = (groups + most_groups_ - 1) / most_groups_;
+    return {static_cast<std::uint32_t>((groups + rows - 1) / rows), static_cast<std::uint32_t>(rows), 1};
 }
 
 void Commands::barrier() {

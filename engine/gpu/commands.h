@@ -21,15 +21,14 @@ struct Groups {
     std::uint32_t x = 1, y = 1, z = 1;
 };
 
-/// Groups of `local` invocations for at least `count` invocations; above 65535, every device's limit, they use y, too.
-Groups groups_for(std::uint64_t count, std::uint32_t local);
-
 /// Commands on the device's queue. Images stay in layout GENERAL and every barrier is global: each pass depends on the
 /// whole of the one before, so finer barriers save nothing.
 class Commands {
   public:
     /// Time limit of a run, ns: a software device may need minutes for a huge frame.
     static constexpr std::uint64_t kTimeout = 600'000'000'000;
+    /// Workgroups of a dispatch along an axis that every device allows.
+    static constexpr std::uint32_t kMostGroups = 65535;
 
     Commands(const Device& device, Pipelines& pipelines, const DescriptorSet& set);
     ~Commands();
@@ -47,6 +46,11 @@ class Commands {
     /// The descriptor set of the following dispatches of this run; the default is the constructor's.
     void bind_compute_set(const DescriptorSet& set);
     void dispatch(const char* shader, const Specialization& constants, std::uint32_t number, Groups groups);
+    /// Groups of `local` invocations for at least `count` invocations. More than kMostGroups are folded into rows along
+    /// y; the shader numbers them by shaders/common/groups.glsl.
+    Groups groups_for(std::uint64_t count, std::uint32_t local) const;
+    /// Replaces kMostGroups: a test folds short dispatches, too.
+    void fold_above(std::uint32_t groups) { most_groups_ = groups; }
     /// Makes all earlier writes visible to all later commands and to the host.
     void barrier();
     /// Transitions new images to layout GENERAL.
@@ -108,6 +112,7 @@ class Commands {
     vk::raii::Fence fence_ = nullptr;
     bool busy_ = false;  ///< a list was submitted and its fence not yet waited for
     std::uint64_t timeout_ = kTimeout;
+    std::uint32_t most_groups_ = kMostGroups;
     vk::raii::QueryPool queries_ = nullptr;
     std::vector<std::string> span_names_;
     vk::raii::QueryPool statistics_ = nullptr, samples_ = nullptr;  ///< a query per counted draw; null: no counting

@@ -13,7 +13,7 @@ void mark_buried(gpu::Commands& commands, const glm::ivec3& dims, std::uint32_t 
     const std::uint32_t lines[3] = {n.y * n.z, n.x * n.z, n.x * n.y};
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
         commands.dispatch("1a_mark_buried.comp", mark_constants(axis, iso_count, clip), 0,
-                          gpu::groups_for(lines[axis], 64));
+                          commands.groups_for(lines[axis], 64));
         commands.barrier();
     }
 }

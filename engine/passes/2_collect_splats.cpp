@@ -7,7 +7,7 @@ namespace {
 
 void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool write) {
     commands.dispatch("2_collect_splats.comp", collect_constants(in), write ? 1U : 0U,
-                      gpu::groups_for(collect_runs(in.core_size), 64));
+                      commands.groups_for(collect_runs(in.core_size), 64));
     commands.barrier();
 }
 
@@ -36,7 +36,7 @@ void count_splats(gpu::Commands& commands, const CollectSplats& in) {
 void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count) {
     dispatch_collect(commands, in, true);
     if (!in.edges || count == 0) return;
-    commands.dispatch("2a_finish_splats.comp", finish_constants(in), 0, gpu::groups_for(count, 64));
+    commands.dispatch("2a_finish_splats.comp", finish_constants(in), 0, commands.groups_for(count, 64));
     commands.barrier();
 }
 

@@ -10,7 +10,7 @@ gpu::Specialization occlude_constants(const OccludeAmbient& in) {
 }
 
 void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in) {
-    commands.dispatch("2b_occlude_ambient.comp", occlude_constants(in), 0, gpu::groups_for(in.splat_count, 64));
+    commands.dispatch("2b_occlude_ambient.comp", occlude_constants(in), 0, commands.groups_for(in.splat_count, 64));
     commands.barrier();
 }
 

@@ -11,7 +11,7 @@ void sweep_light(gpu::Commands& commands, const glm::ivec2& size, std::uint32_t 
 void shadow_splats(gpu::Commands& commands, std::uint64_t splat_count, const ClipCount& clip, std::uint32_t channel) {
     commands.dispatch("2d_shadow_splats.comp",
                       {{shader::SPEC_CLIP_KEEP, clip.keep}, {shader::SPEC_CLIP_REMOVE, clip.remove}}, channel,
-                      gpu::groups_for(splat_count, 64));
+                      commands.groups_for(splat_count, 64));
     commands.barrier();
 }
 

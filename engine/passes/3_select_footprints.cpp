@@ -17,7 +17,7 @@ gpu::Specialization select_constants(const DrawVariant& variant) {
 }
 
 void select_footprints(gpu::Commands& commands, std::uint64_t slots, const DrawVariant& variant) {
-    commands.dispatch("3_select_footprints.comp", select_constants(variant), 0, gpu::groups_for(slots, 64));
+    commands.dispatch("3_select_footprints.comp", select_constants(variant), 0, commands.groups_for(slots, 64));
     commands.barrier();
 }
 

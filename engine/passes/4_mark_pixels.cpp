@@ -14,7 +14,7 @@ gpu::Specialization mark_pixels_constants(const DrawVariant& variant, TileDraw h
 
 void mark_pixels(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
                  std::uint32_t round) {
-    commands.dispatch("4h_mark_pixels.comp", mark_pixels_constants(variant, how), round, gpu::groups_for(tiles, 1));
+    commands.dispatch("4h_mark_pixels.comp", mark_pixels_constants(variant, how), round, commands.groups_for(tiles, 1));
     commands.barrier();
 }
 

@@ -39,7 +39,7 @@ std::uint32_t prepared_slots(std::uint64_t entries) {
 }
 
 void prepare_splats(gpu::Commands& commands, const DrawVariant& variant, std::uint32_t chunk, std::uint32_t count) {
-    commands.dispatch("4g_prepare_splats.comp", draw_constants(variant), chunk, gpu::groups_for(count, 64));
+    commands.dispatch("4g_prepare_splats.comp", draw_constants(variant), chunk, commands.groups_for(count, 64));
     commands.barrier();
 }
 

@@ -31,8 +31,8 @@ void sort_sheets(gpu::Commands& commands, const DrawVariant& variant, const shad
         commands.barrier();
     };
     if (side_by_side(variant, commands.profile())) {
-        dispatch(0, 0, gpu::groups_for(params.slot_count, 64));
-        dispatch(1, 0, gpu::groups_for(params.sheet_count, 1));
+        dispatch(0, 0, commands.groups_for(params.slot_count, 64));
+        dispatch(1, 0, commands.groups_for(params.sheet_count, 1));
         dispatch(2, 0, {1});
         dispatch(3, 0, {shader::SORT_BLOCKS});
         return;

@@ -23,14 +23,14 @@ void sort_tiles(gpu::Commands& commands, const gpu::Buffer& counters, const shad
     if (commands.profile().side_by_side) {
         const auto tiles = static_cast<std::uint64_t>(params.tiles.x) * static_cast<std::uint64_t>(params.tiles.y);
         dispatch(kSideBySide[1], {params.tile_blocks});
-        dispatch(kSideBySide[2], gpu::groups_for(tiles, 1));
+        dispatch(kSideBySide[2], commands.groups_for(tiles, 1));
         dispatch(kSideBySide[3], {1});
         dispatch(kSideBySide[4], {params.tile_blocks});
         return;
     }
     const auto run_steps = [&](const char* shader) {
         for (std::uint32_t step = 0; step < steps; ++step)
-            dispatch(shader, gpu::groups_for(params.tile_blocks, 16));
+            dispatch(shader, commands.groups_for(params.tile_blocks, 16));
     };
     run_steps(kInColumns[0]);
     dispatch(kInColumns[1], {1});

@@ -8,7 +8,7 @@ gpu::Specialization refine_constants(std::uint32_t step) {
 }
 
 void refine_pixels(gpu::Commands& commands, std::uint64_t tiles, std::uint32_t step) {
-    commands.dispatch("5_refine_pixels.comp", refine_constants(step), 0, gpu::groups_for(tiles, 1));
+    commands.dispatch("5_refine_pixels.comp", refine_constants(step), 0, commands.groups_for(tiles, 1));
     commands.barrier();
 }
 

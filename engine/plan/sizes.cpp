@@ -45,7 +45,7 @@ std::uint64_t padded_pairs(std::uint64_t pairs, const glm::ivec2& tiles) {
 std::uint64_t tile_order_items(const FramePlan& plan) {
     const std::uint64_t items =
         tile_count(plan) * tile_groups({.profile = &gpu::device_profiles().front(), .refined = plan.refined}, 1);
-    return tile_count(plan) + items + items / 65535 + 1;  // groups_for() may add up to items / 65535 + 1 groups
+    return tile_count(plan) + items;
 }
 
 std::uint64_t tile_entry_pairs(const FramePlan& plan, const gpu::DeviceProfile& profile) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/reference/1_estimate_edges.h"
+#include "engine/reference/shading.h"
 
 namespace edgesplat::reference {
 
@@ -17,6 +18,10 @@ struct SplatRecord {
     std::optional<TransferPoint>
         classified{};   ///< with a transfer function: replaces the material's colour and extinction
     double weight = 1;  ///< factor on the kernel: above 1 next to the volume's border, beyond which there are no voxels
+    /// The light that reaches the splat (passes 2b and 2d); `turned_ambient`: the ambient light at a wall's other face.
+    Reach reach{};
+    double turned_ambient = 1;
+    Reach reach_at(bool turned) const { return turned ? Reach{turned_ambient, reach.lights} : reach; }
     double extinction(const Scene& scene) const {
         return weight * (classified ? classified->extinction : scene.materials[material].extinction);
     }

@@ -21,7 +21,7 @@ glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const Volume
 
 double light_reach(std::span<const SplatRecord> records, const Field& field, const Scene& scene,
                    const VolumeGeometry& geometry, const Footprints& footprints, const Light& light,
-                   const glm::dvec3& place) {
+                   const glm::dvec3& place, const IndexClip& clip) {
     const glm::dvec3 way =
         light.kind == Light::Kind::Directional ? light.direction : light.position - geometry.to_world(place);
     const glm::dvec3 to_light = glm::inverse(geometry.index_to_world_axes) * way;
@@ -29,6 +29,7 @@ double light_reach(std::span<const SplatRecord> records, const Field& field, con
     const glm::dvec3 u = glm::normalize(to_light);
     const double path = glm::length(geometry.index_to_world_axes * u);
     const VolumePiece inside = piece_in_volume(geometry.dims, place, u);
+    const auto pieces = clip.kept_along(place, u);
     double tau = 0;
     for (const SplatRecord& record : records) {
         const glm::dvec3 v = place - glm::dvec3(field.voxel(record.voxel));
@@ -38,8 +39,11 @@ double light_reach(std::span<const SplatRecord> records, const Field& field, con
         Slice slice{along, along + length};
         if (footprints.cuts(record.edge))
             slice = {std::max(slice.low, along + inside.low), std::min(slice.high, along + inside.high)};
-        const double part = slice.low < slice.high ? footprints.along_slice(record.edge, p, u, slice) : 0;
-        tau += record.extinction(scene) * path * part;
+        for (const KeptPiece& piece : pieces) {
+            const Slice kept{std::max(slice.low, along + piece.first), std::min(slice.high, along + piece.last)};
+            if (piece.empty() || !(kept.low < kept.high)) continue;
+            tau += record.extinction(scene) * path * footprints.along_slice(record.edge, p, u, kept);
+        }
     }
     return std::exp(-tau);
 }

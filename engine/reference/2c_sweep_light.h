@@ -14,9 +14,10 @@ namespace edgesplat::reference {
 glm::dvec3 lit_place(const SplatRecord& record, const Field& field, const VolumeGeometry& geometry, double band,
                      const glm::dvec3& to_light, double pixel, const IndexClip& clip = {});
 
-/// exp(-tau) from the light to `place` (index space) through the kernels of `records`. Directional and point lights.
+/// exp(-tau) from the light to `place` (index space) through the kernels of `records`, as far as `clip` keeps them.
+/// Directional and point lights.
 double light_reach(std::span<const SplatRecord> records, const Field& field, const Scene& scene,
                    const VolumeGeometry& geometry, const Footprints& footprints, const Light& light,
-                   const glm::dvec3& place);
+                   const glm::dvec3& place, const IndexClip& clip = {});
 
 }  // namespace edgesplat::reference

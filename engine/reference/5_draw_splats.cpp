@@ -26,17 +26,16 @@ double in_front(double s0, double radius) {
 }  // namespace
 
 glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
-                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut,
-                      const Reach& reach) {
+                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut) {
     const VoxelEdge& edge = record.edge;
     const glm::dvec3 x(field.voxel(record.voxel));
     // A surface's normal points to its lower values, on whichever side the splat is.
     glm::dvec3 n = edge.has_normal ? (edge.upper ? -edge.n : edge.n) : glm::dvec3(0);
     // A wall's kernel reaches both faces; the visible one is turned to the eye.
     const bool wall = edge.has_edge && edge.D2 < edge_reach(settings);
-    if (wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0) {
-        n = -n;
-    }
+    const bool turned =
+        wall && glm::dot(world_normal(view.geometry, n), view.frame.eye - view.geometry.to_world(x)) < 0;
+    if (turned) n = -n;
     const glm::dvec3 normal = edge.has_normal ? world_normal(view.geometry, n) : n;
     const double depth = cut ? std::clamp(view.depth(x), cut->near, cut->far) : view.depth(x);
     switch (payload) {
@@ -49,7 +48,7 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
                           .normal = unlit ? glm::dvec3(0) : normal,
                           .position = view.geometry.to_world(x),
                           .depth = depth},
-                         view.frame.eye, reach);
+                         view.frame.eye, record.reach_at(turned));
         }
         case Payload::Depth:
             return {depth, 0, 0};
@@ -62,19 +61,17 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     return normal;
 }
 
-glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
+glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
                        const Scene& scene, const View& view, Payload payload) {
     switch (payload) {
-        case Payload::Color: {
-            const Material& material = scene.materials[number];
+        case Payload::Color:
             return shade(scene,
-                         {.color = material.color,
-                          .response = material.response,
+                         {.color = record.color(scene),
+                          .response = scene.materials[record.material].response,
                           .normal = world_normal(view.geometry, face),
                           .position = view.geometry.to_world(entry),
                           .depth = view.depth(entry)},
-                         view.frame.eye);
-        }
+                         view.frame.eye, record.reach);
         case Payload::Depth:
             return {view.depth(entry), 0, 0};
         case Payload::Distance:
@@ -129,7 +126,7 @@ struct SeenSplat {
                       .normal = unlit ? glm::dvec3(0) : normal,
                       .position = view.geometry.to_world(at),
                       .depth = view.depth(at)},
-                     view.frame.eye);
+                     view.frame.eye, record.reach_at(end.behind));
     }
 };
 
@@ -320,11 +317,11 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
         glm::dvec3 quantity = faces ? quantity_of(kept) : own;
         const glm::dvec3 entry = p + piece.first * u;
         if (piece.face && piece.first > -s0 && in_matter(splat, record.edge, x, y, p, u, piece.first)) {
-            quantity = cap_payload(record.material, own, *piece.face, center + entry, scene_, view_, payload);
+            quantity = cap_payload(record, own, *piece.face, center + entry, scene_, view_, payload);
         }
         sum += footprint(splat, record.edge, x, y, p, u, kept) * glm::dvec4(quantity, 1);
     }
-    return scene_.materials[record.material].extinction * ray.w * sum;
+    return record.extinction(scene_) * ray.w * sum;
 }
 
 void SplatDrawer::draw(std::span<const std::uint32_t> splats, Payload payload, std::span<const char> closed,

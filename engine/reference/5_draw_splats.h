@@ -16,10 +16,10 @@ namespace edgesplat::reference {
 /// The quantity that splats carry.
 enum class Payload { Color, Depth, Distance, Normal };
 
-/// The payload where a ray enters the matter of a splat of material `number` through a clip plane at `entry` (index
-/// space): colour lit by the plane's normal, depth of the entry, or the plane's normal. Distance is that of the splat.
-/// `face`: the plane's normal, index space; `own`: payload_of the splat.
-glm::dvec3 cap_payload(std::uint32_t number, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
+/// The payload where a ray enters the splat's matter through a clip plane at `entry` (index space): colour lit by the
+/// plane's normal, depth of the entry, or the plane's normal. Distance is that of the splat. `face`: the plane's
+/// normal, index space; `own`: payload_of the splat.
+glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
                        const Scene& scene, const View& view, Payload payload);
 
 /// Depth range that a kernel is cut to, mm along the view axis from the eye.
@@ -31,8 +31,7 @@ struct DepthRange {
 /// The payload of a splat at its voxel's centre: lit colour (linear), z in mm (first component), signed distance to the
 /// edge in voxels (first component, negative inside) or unit world normal. Depth is clamped to `cut`.
 glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene& scene, const View& view,
-                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut = {},
-                      const Reach& reach = {});
+                      const Settings& settings, Payload payload, const std::optional<DepthRange>& cut = {});
 
 /// The payload where a ray p + z u (index space; p relative to the voxel centre) meets the face that cuts the kernel;
 /// where it passes the voxel, if no face cuts it. `plain`: the kernel is widened and not cut, but keeps its face's

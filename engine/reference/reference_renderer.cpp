@@ -3,8 +3,11 @@
 #include <algorithm>
 
 #include "engine/image/sample_mean.h"
+#include "engine/reference/2b_occlude_ambient.h"
+#include "engine/reference/2c_sweep_light.h"
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"
+#include "engine/reference/parallel.h"
 #include "engine/reference/pixel_rows.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
@@ -106,12 +109,48 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     return mean.image();
 }
 
+void PreparedVolume::find_light(std::span<SplatRecord> records) const {
+    const Field f = field();
+    const VolumeGeometry& geometry = volume_->geometry;
+    const double band = edge_reach(settings_);
+    const IndexClip clip = index_clip(scene_.effects.clip, geometry);
+    const std::vector<std::size_t> shadowing = shadow_lights(scene_);
+    const double across = glm::length(geometry.index_to_world_axes * glm::dvec3(geometry.dims));
+    const double pixel = across / scene_.effects.shadows.resolution;
+    const auto& occlusion = scene_.effects.occlusion;
+    if (!occludes_ambient(scene_) && shadowing.empty()) return;
+    parallel_for(static_cast<int>(records.size()), [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            SplatRecord& record = records[static_cast<std::size_t>(i)];
+            const auto ambient = [&](bool turned) {
+                const double reach =
+                    ambient_reach(record, f, scaled_, scene_, geometry, band, occlusion->radius, turned);
+                return 1 - occlusion->strength * (1 - reach);
+            };
+            if (occludes_ambient(scene_)) {
+                record.reach.ambient = ambient(false);
+                record.turned_ambient = is_wall(record.edge, band) ? ambient(true) : record.reach.ambient;
+            }
+            for (const std::size_t l : shadowing) {
+                const Light& light = scene_.lights[l];
+                const glm::dvec3 at = geometry.to_world(glm::dvec3(f.voxel(record.voxel)));
+                const bool far = light.kind == Light::Kind::Directional;
+                const glm::dvec3 to_light = glm::normalize(far ? light.direction : light.position - at);
+                const glm::dvec3 place = lit_place(record, f, geometry, band, to_light, pixel, clip);
+                record.reach.lights[l] =
+                    light_reach(records, f, scene_, geometry, footprints_, light, place, clip);
+            }
+        }
+    });
+}
+
 Image PreparedVolume::draw(const Camera& camera, const View& view, Output output) const {
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const int width = view.width, height = view.height;
     std::vector<SplatRecord> records = collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye,
                                                       output == Output::Tau, classified_, carried_);
+    if (output == Output::Color) find_light(records);
     // Optical depth includes everything on a ray, so no face is traced.
     for (SplatRecord& record : records)
         if (output == Output::Tau) record.edge.traced.reset();

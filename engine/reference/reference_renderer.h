@@ -40,6 +40,8 @@ class PreparedVolume {
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
+    /// Finds the light that reaches each splat: ambient occlusion and shadows.
+    void find_light(std::span<SplatRecord> records) const;
     /// One picture with one ray per pixel.
     Image draw(const Camera& camera, const View& view, Output output) const;
 

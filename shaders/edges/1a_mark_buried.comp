@@ -7,6 +7,7 @@
 #include "shaders/shared/scene_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_AXIS) const uint AXIS = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_BURIED, r8ui) uniform uimage3D buried;
@@ -26,21 +27,22 @@ bool opaque(ivec3 p) {
 
 void main() {
     ivec3 dims = params.scene.dims;
-    int line = int(gl_GlobalInvocationID.x);
+    uint line = invocation_number();
+    uvec3 n = uvec3(dims);
     ivec3 p, step;
     int count;
     if (AXIS == 0u) {
-        p = ivec3(0, line % dims.y, line / dims.y);
+        p = ivec3(0, line % n.y, line / n.y);
         step = ivec3(1, 0, 0);
-        count = line < dims.y * dims.z ? dims.x : 0;
+        count = line < n.y * n.z ? dims.x : 0;
     } else if (AXIS == 1u) {
-        p = ivec3(line % dims.x, 0, line / dims.x);
+        p = ivec3(line % n.x, 0, line / n.x);
         step = ivec3(0, 1, 0);
-        count = line < dims.x * dims.z ? dims.y : 0;
+        count = line < n.x * n.z ? dims.y : 0;
     } else {
-        p = ivec3(line % dims.x, line / dims.x, 0);
+        p = ivec3(line % n.x, line / n.x, 0);
         step = ivec3(0, 0, 1);
-        count = line < dims.x * dims.y ? dims.z : 0;
+        count = line < n.x * n.y ? dims.z : 0;
     }
     int reach = params.scene.bury_distance;
     int run = 0;

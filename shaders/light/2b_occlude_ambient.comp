@@ -6,6 +6,7 @@
 #include "shaders/shared/occlusion_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // number of planes
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
@@ -59,7 +60,7 @@ mat3 frame_of(vec3 n) {
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint i = invocation_number();
     if (i >= occlusion.at.splat_count) return;
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);

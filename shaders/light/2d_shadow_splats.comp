@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
@@ -30,7 +31,7 @@ float optical_depth(ivec2 pixel, float depth) {
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint i = invocation_number();
     if (i >= params.frame.splat_count) return;
     Splat splat = SplatsRef(params.frame.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);

@@ -6,12 +6,13 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/sheets/sheets_of_slot.glsl"
 
 void main() {
-    uint slot = (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x) * 64u + gl_LocalInvocationIndex;
+    uint slot = invocation_number();
     if (slot >= params.frame.slot_count) return;
     uvec2 sheets = sheets_of_slot(slot);
     uint block = slot / slots_per_block();

@@ -6,11 +6,12 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
+#include "shaders/common/groups.glsl"
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/common/row_sums.glsl"
 
 void main() {
-    uint sheet = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint sheet = group_number();
     if (sheet >= params.frame.sheet_count) return;
     uint sum = sum_row(UintsRef(params.frame.counters), sheet * SORT_BLOCKS, SORT_BLOCKS);
     if (gl_LocalInvocationIndex == 0u) UintsRef(params.frame.sheet_starts).at[sheet] = sum;

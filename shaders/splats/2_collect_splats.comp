@@ -7,6 +7,7 @@
 #include "shaders/edges/edge_record.glsl"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_EDGES) const uint EDGES = 1u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
@@ -33,7 +34,7 @@ void main() {
     // Adjacent invocations own adjacent bricks of one slice, so that their voxels are close in memory.
     ivec3 size = params.scene.core_size;
     uvec3 runs = uvec3(uvec2(size.xy) + BRICK - 1u, uint(size.z)) / uvec3(BRICK, BRICK, 1u);
-    uint run = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint run = invocation_number();
     if (run >= runs.x * runs.y * runs.z) return;
     ivec3 low = ivec3(run % runs.x * BRICK, run / runs.x % runs.y * BRICK, run / runs.x / runs.y);
     ivec2 extent = min(size.xy - low.xy, ivec2(BRICK));

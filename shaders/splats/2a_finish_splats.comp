@@ -9,6 +9,7 @@
 #include "shaders/shared/scene_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -30,7 +31,7 @@ vec3 field_gradient(ivec3 p) {
 #include "shaders/splats/fit_face.glsl"
 
 void main() {
-    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint i = invocation_number();
     bool with_edge = false, with_crease = false, traced = false;
     IF_ANY(i < params.scene.list_count) {
         dims = params.scene.dims;

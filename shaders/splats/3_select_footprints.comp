@@ -7,6 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -47,7 +48,7 @@ void note(uint i, uint first, uint last, ivec4 box) {
 }
 
 void main() {
-    uint slot = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint slot = invocation_number();
     if (slot >= params.frame.slot_count) return;
     uint i = slot;
     bool there = true;

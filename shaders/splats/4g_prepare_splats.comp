@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -33,7 +34,7 @@ layout(push_constant) uniform Push { uint chunk; };
 
 void main() {
     uvec2 part = PairsRef(params.frame.chunks).at[chunk];
-    uint entry = part.x + gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    uint entry = part.x + invocation_number();
     if (entry >= part.y) return;
     uint sheet = 0u;
     if (SLICED == 1u) sheet = sheet_of_entry(entry);

@@ -5,13 +5,14 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 256) in;
+#include "shaders/common/groups.glsl"
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range, store_range)
 #include "shaders/common/row_sums.glsl"
 
 void main() {
-    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint tile = group_number();
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
     uint sum = sum_row(UintsRef(params.frame.tile_counters), tile * params.frame.tile_blocks, params.frame.tile_blocks);
     if (gl_LocalInvocationIndex == 0u) store_range(tile, uvec2(sum, 0u));

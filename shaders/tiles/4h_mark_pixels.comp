@@ -7,6 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 8, local_size_y_id = SPEC_LIST_PARTS) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -54,7 +55,8 @@ const uint OWN = ROWS * TILE / (CELL_X * CELL_Y);
 const float TOO_WIDE = 1e30;
 
 void main() {
-    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint tile = group_number();
+    if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
     if (ROUNDS == 1u) tile = load_order(tile);
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
     uvec2 range = load_range(tile);

@@ -10,6 +10,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x_id = SPEC_GROUP) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -79,9 +80,10 @@ void fold(inout vec4 sum, inout bool open, vec4 sheet) {
 
 void main() {
     uint draw_round = what & 0xfffffu;
-    uint item = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
-    if (ROUNDS == 1u) item = load_order(tile_count() + item);
+    uint item = group_number();
     uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
+    if (item >= tile_count() * groups) return;
+    if (ROUNDS == 1u) item = load_order(tile_count() + item);
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
     uvec2 range = load_range(tile);

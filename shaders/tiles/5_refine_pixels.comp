@@ -7,6 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x_id = SPEC_GROUP) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_STEP) const uint STEP = 4u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
@@ -26,7 +27,7 @@ vec4 between(vec4 a, vec4 b, vec4 c, vec4 d) { return (9.0 * (b + c) - (a + d)) 
 void keep(ivec2 pixel, vec4 value) { store_pixel(pixel.y * params.frame.size.x + pixel.x, vec4(max(value.rgb, 0.0), clamp(value.a, 0.0, 1.0))); }
 
 void main() {
-    uint tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint tile = group_number();
     if (tile >= uint(params.frame.tiles.x * params.frame.tiles.y)) return;
     ivec2 corner = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE);
     ivec2 size = params.frame.size, in_tile = pixel_in_tile(gl_LocalInvocationIndex) * int(STEP), first = corner + in_tile;

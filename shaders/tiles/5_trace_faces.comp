@@ -7,6 +7,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x_id = SPEC_GROUP) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -81,7 +82,8 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
 }
 
 void main() {
-    uint draw_round = what & 0xfffffu, tile = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+    uint draw_round = what & 0xfffffu, tile = group_number();
+    if (tile >= tile_count()) return;
     if (ROUNDS == 1u) tile = load_order(tile);
     if (tile >= tile_count()) return;
     uvec2 range = load_range(tile);

@@ -6,6 +6,7 @@
 #include "shaders/shared/frame_params.h"
 
 layout(local_size_x = 16) in;  // there are few columns: a larger workgroup would leave processors idle
+#include "shaders/common/groups.glsl"
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 #include "shaders/drivers/texels.glsl"
 STORED_WORDS(BIND_TILE_COUNTERS, counters, tile_counters, count_at, set_count)
@@ -18,7 +19,7 @@ struct Block {
 };
 
 Block block_of_invocation() {
-    uint column = gl_GlobalInvocationID.x;
+    uint column = invocation_number();
     uvec2 entries = entries_of_block(column);
     return Block(entries.x, column < params.frame.tile_blocks ? entries.y : entries.x, column);
 }

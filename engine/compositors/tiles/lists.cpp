@@ -117,7 +117,7 @@ void TileOrder::sort(std::uint32_t groups) {
             order_[at++] = tile * groups + i;
         ends_.push_back(at);
     }
-    // A dispatch that is folded into rows may have surplus groups in its last row.
+    // A dispatch that is folded into rows may have surplus groups in its last row; they load these.
     std::ranges::fill(order_.subspan(at), ~0U);
 }
 
