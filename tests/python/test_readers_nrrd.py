@@ -5,7 +5,6 @@ import bz2
 import gzip
 import random
 import re
-import zlib
 
 import numpy as np
 import pytest
@@ -91,7 +90,7 @@ def decode(data, fields, dtype, count):
         data = data[data.index(b"\n") + 1 :]
     encoding, skip = fields["encoding"].lower(), int(fields.get("byteskip", 0))
     if encoding in ("gzip", "gz"):
-        data = zlib.decompressobj(47).decompress(data)
+        data = gzip.decompress(data)
     elif encoding in ("bzip2", "bz2"):
         data = bz2.decompress(data)
     data = data[skip:] if skip >= 0 else data[len(data) - count * dtype.itemsize :]
@@ -253,7 +252,7 @@ def write_random(folder, seed):
         if pick.random() < 0.8:
             fields.append(("space origin", vector([*rng.uniform(-200, 200, 3), *([0.0] * (dimension - 3))], blank)))
         if pick.random() < 0.4:
-            units = [pick.choice(list(UNITS))] * 3 if pick.random() < 0.7 else [pick.choice(list(UNITS)) for _ in "xyz"]
+            units = [pick.choice(list(UNITS))] * 3 if pick.random() < 0.7 else [pick.choice(["mm", "cm", "inch"]) for _ in "xyz"]
             fields.append(("space units", " ".join(f'"{u}"' for u in units + ["s"] * (dimension - 3))))
         if pick.random() < 0.2:
             frame_text = " ".join(vector([float(i == j) for i in range(dimension)], "") for j in range(dimension))

@@ -218,15 +218,19 @@ void take_meta_data(const MetaHeader& header, const std::string& file, MetaFile&
         data.files.push_back(folder / name);
 }
 
-/// Whether the letters of AnatomicalOrientation, such as RAI, name the sides from which the axes come.
+/// Whether the letters of AnatomicalOrientation, such as RAI, name sides from which the axes come: each on an axis of
+/// the patient of its own, less than 90 degrees from the direction.
 bool letters_match(std::string letters, const glm::dmat3& axes) {
     std::ranges::transform(letters, letters.begin(), [](unsigned char c) { return std::toupper(c); });
-    static constexpr std::array<std::string_view, 3> from_low = {"R", "A", "I"}, from_high = {"L", "P", "S"};
-    for (int axis = 0; axis < 3; ++axis) {
-        const glm::dvec3 size = glm::abs(axes[axis]);
-        const int main = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const auto& expected = axes[axis][main] > 0 ? from_low : from_high;
-        if (expected[static_cast<std::size_t>(main)] != letters.substr(static_cast<std::size_t>(axis), 1)) return false;
+    static constexpr std::string_view from_low = "RAI", from_high = "LPS";
+    std::array<bool, 3> named{};
+    for (int i = 0; i < 3; ++i) {
+        const char letter = letters[static_cast<std::size_t>(i)];
+        const auto low = from_low.find(letter), high = from_high.find(letter);
+        const std::size_t axis = std::min(low, high);
+        const double component = axes[i][static_cast<int>(axis)];
+        if (named[axis] || !(low < high ? component > 0 : component < 0)) return false;
+        named[axis] = true;
     }
     return true;
 }
@@ -347,6 +351,17 @@ MetaFile meta_file(const std::string& path, const std::string& file, const LoadO
     for (const std::size_t n : out.dims)
         if (__builtin_mul_overflow(out.data.samples, n, &out.data.samples) || out.data.samples > kMaxPackedVoxels)
             header.refuse("DimSize", fmt::format("'{}': at most 2^40 samples can be read", header.value("dimsize")));
+    // VTK writes numbers of 8 bytes as MET_LONG.
+    const auto& file_name = out.data.files.front();
+    std::error_code error;
+    if (header.value("elementtype").ends_with("LONG") && !header.value("elementtype").ends_with("_LONG_LONG") &&
+        out.data.encoding == StoredEncoding::Raw && out.data.files.size() == 1 && !out.data.at_end &&
+        fs::file_size(file_name, error) == out.data.offset + 8 * out.data.samples) {
+        out.data.type = out.data.type == SampleType::Int32 ? SampleType::Int64 : SampleType::UInt64;
+        out.volume.stored_type = name_of(out.data.type);
+        out.volume.notes.push_back(fmt::format("{} has 4 bytes, but the file holds 8 for each: they were read as {}.",
+                                               header.value("elementtype"), out.volume.stored_type));
+    }
     if (out.dims.size() == 4)
         out.selection.first = chosen_frame(path, options, out.dims[3]) * step[2] * out.dims[2];
     else

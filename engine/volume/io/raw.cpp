@@ -98,6 +98,7 @@ StoredData stored_of(const RawForm& form, std::size_t bytes, const std::string& 
     data.type = form.type;
     data.swapped = form.swapped;
     data.offset = form.skip;
+    data.may_continue = true;  // named above
     data.samples = bytes / size_of(form.type);
     return data;
 }
@@ -125,10 +126,7 @@ Volume load_raw(const std::string& path, const LoadOptions& options) {
     const RawForm form = form_of(path, options);
     Volume volume;
     const auto data = stored_of(form, checked_bytes(path, form.dims, size_of(form.type)), path, options, volume);
-    // The spare bytes are named above.
-    auto warnings = volume.warnings;
     read_stored(data, selection_of(form), volume, options);
-    volume.warnings = std::move(warnings);
     return volume;
 }
 

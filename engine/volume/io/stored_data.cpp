@@ -356,11 +356,13 @@ class StoredStream {
         for (; count > 0; count -= std::min(count, part.size()))
             read(part.data(), std::min(count, part.size()));
     }
-    /// Whether the last file continues after the last sample.
-    bool continues() {
-        char more = 0;
-        return bytes_ && !data_.at_end && bytes_->read(&more, 1) > 0;
+    /// Bytes after the last sample in the last file, at most kSpare + 1.
+    std::size_t spare() {
+        std::array<char, kSpare + 1> more{};
+        const bool known = is_text(data_.encoding) || data_.at_end || data_.may_continue;
+        return known || !bytes_ ? 0 : bytes_->read(more.data(), more.size());
     }
+    static constexpr std::size_t kSpare = 16;
 
   private:
     const StoredData& data_;
@@ -464,8 +466,11 @@ void read_stored(const StoredData& data, const StoredSelection& selection, Volum
     } catch (const std::bad_alloc&) {
         fail("{}: not enough memory for {} voxels", data.path, voxels);
     }
-    if (is_text(data.encoding) ? false : stream.continues())
+    const std::size_t spare = stream.spare();
+    if (spare > StoredStream::kSpare)
         volume.warnings.emplace_back("Data after the last voxel were not used: the dims may be wrong.");
+    else if (spare > 0)
+        volume.notes.push_back(fmt::format("{} bytes after the last voxel were not used.", spare));
 }
 
 std::optional<FileLayout> layout_of_stored(const StoredData& data, const StoredSelection& selection,

@@ -28,7 +28,8 @@ struct StoredData {
     std::size_t byte_skip = 0;  ///< then bytes to skip, after unpacking
     bool at_end = false;        ///< instead of byte_skip: the data are the last bytes
     double slope = 1, intercept = 0;
-    std::size_t samples = 0;  ///< samples in all files
+    bool may_continue = false;  ///< bytes after the last sample need no mention
+    std::size_t samples = 0;    ///< samples in all files
 
     std::size_t bytes() const { return samples * size_of(type); }
 };
@@ -43,7 +44,8 @@ struct StoredSelection {
 void check_stored(const StoredData& data);
 
 /// Fills `volume.values`; `volume.geometry.dims` must be set and limits on memory checked. Fails like check_stored, or
-/// if the data are truncated, damaged or not numbers. Adds a warning if data remain after the last sample.
+/// if the data are truncated, damaged or not numbers. Adds a warning, or a
+/// note for a few bytes, if data follow the last sample.
 void read_stored(const StoredData& data, const StoredSelection& selection, Volume& volume, const LoadOptions& options);
 
 /// The layout for reading box by box, after check_stored; nullopt if the samples are encoded, in several files or not
