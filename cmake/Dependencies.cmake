@@ -18,7 +18,7 @@ pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 
 # Named components: otherwise ITK loads every module of its build.
 set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK
-    ITKIOMINC ITKIOGIPL ITKImageFunction ITKImageGrid)
+    ITKIOGIPL ITKImageFunction ITKImageGrid)
 find_package(ITK REQUIRED COMPONENTS ${EDGESPLAT_ITK_COMPONENTS})
 # ITK's use file registers factories per directory. An interface target holds its settings instead.
 add_library(edgesplat_itk INTERFACE)
@@ -32,10 +32,10 @@ target_link_libraries(edgesplat_itk INTERFACE gdcmMSFF gdcmDSED gdcmCommon)
 
 # Packed volumes and HDF5 files. ITK's search has already run this CMake module.
 find_package(HDF5 REQUIRED COMPONENTS C)
-# netCDF files; ITK's reader of MINC loads the library already.
+# netCDF files.
 pkg_check_modules(NETCDF REQUIRED IMPORTED_TARGET netcdf)
 
-# For formats that ITK's readers lack: bzip2 in NRRD, and checks of (gzipped) NIfTI files before ITK reads them.
+# bzip2 in NRRD; gzip in NIfTI, MGH and MRC.
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)
 target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)

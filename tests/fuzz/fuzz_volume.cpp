@@ -1,5 +1,5 @@
 // Formats with small headers: legacy VTK, GIPL, the refusal of VTI, raw data with a description in the first line, zip
-// archives, and the checks of DICOM and netCDF files before their libraries read them. GDCM, libminc and OpenImageIO
+// archives, MINC1, and the checks of DICOM and netCDF files before their libraries read them. GDCM, HDF5 and OpenImageIO
 // themselves are not fuzzed.
 #include "engine/error.h"
 #include "engine/volume/io/readers.h"
@@ -29,6 +29,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         }
     } else if (text.starts_with("CDF") || text.starts_with("\x08") || (size > 132 && text.substr(128, 4) == "DICM")) {
         const std::string path = write("volume.bin", text);
+        if (text[0] == 'C') load("volume.mnc", text);
         try {
             (text[0] == 'C' ? edgesplat::detail::check_netcdf_is_whole : edgesplat::detail::check_dicom_is_whole)(path);
         } catch (const edgesplat::Error&) {

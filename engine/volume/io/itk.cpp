@@ -1,6 +1,5 @@
 // Reads one file through an ITK ImageIO, without ITK's pixel-type templates and factories: the ImageIO reads header and
 // data, and the voxels are converted to float here.
-#include <itkMINCImageIO.h>
 #include <itkVTKImageIO.h>
 
 #include <algorithm>
@@ -17,8 +16,6 @@ const char* name_of(ItkFormat format) {
     switch (format) {
         case ItkFormat::Vtk:
             return "legacy VTK image data";
-        case ItkFormat::Minc:
-            return "MINC";
     }
     return "";
 }
@@ -27,8 +24,6 @@ itk::ImageIOBase::Pointer image_io(ItkFormat format) {
     switch (format) {
         case ItkFormat::Vtk:
             return itk::VTKImageIO::New().GetPointer();
-        case ItkFormat::Minc:
-            return itk::MINCImageIO::New().GetPointer();
     }
     return {};
 }
@@ -129,9 +124,6 @@ VolumeGeometry geometry_of(const itk::ImageIOBase& io) {
     return geometry;
 }
 
-/// Whether the format defines the patient's axes; ITK then converts to LPS.
-static bool in_patient(ItkFormat format) {
-    return format == ItkFormat::Minc;
 }
 
 /// An ImageIO that has read the file's header.
@@ -167,7 +159,6 @@ Volume load_through_itk(const ItkRequest& request, const LoadOptions& options) {
         frames *= dims[axis];
     const std::size_t frame = chosen_frame(path, options, frames);
     volume.geometry = geometry_of(*io);
-    volume.in_patient = in_patient(request.format);
     if (dims.size() == 2)
         volume.notes.push_back("The file holds a 2-D image: it is read as a volume of one slice, 1 mm thick.");
 

@@ -62,7 +62,7 @@ constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 bool is_packed_volume(const std::string& path) {
     std::error_code error;
     return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5) &&
-           !ends_with_any(path, {".mnc", ".mnc2"}) && is_packed(path);
+           is_packed(path);
 }
 
 Volume load_packed(const std::string& path, const LoadOptions& options) {
@@ -119,9 +119,7 @@ constexpr std::array kFormats{
     Format{"VTI", [](const Start& f) { return f.head.find("<VTKFile") != std::string::npos; }, load_vti},
     Format{"MINC",
            [](const Start& f) {
-               const bool netcdf = f.begins("CDF\x01") || f.begins("CDF\x02");
-               return (netcdf && (f.head.find("xspace") != std::string::npos || f.is_named({".mnc"}))) ||
-                      (f.begins(kHdf5) && f.is_named({".mnc", ".mnc2"}));
+               return f.is_named({".mnc", ".mnc2", ".mnc.gz"}) || is_minc(f.path);
            },
            load_minc},
     Format{"netCDF",
@@ -147,11 +145,7 @@ constexpr std::array kFormats{
                       is_mrc(f.path) || (f.is_named({".map", ".st", ".ali", ".preali"}) && !is_dicom(f.path));
            },
            load_mrc},
-    Format{"NumPy .npy and .npz",
-           [](const Start& f) {
-               return f.is_named({".npy"}) || is_npy(f.path);
-           },
-           load_npy},
+    Format{"NumPy .npy and .npz", [](const Start& f) { return f.is_named({".npy"}) || is_npy(f.path); }, load_npy},
     Format{"MetaImage",
            [](const Start& f) {
                return f.is_named({".mha", ".mhd", ".mha.gz", ".mhd.gz"});
@@ -180,7 +174,7 @@ Volume load_file(const std::string& path, const LoadOptions& options) {
     }
     const std::string head = first_bytes(path);
     const Start start{path, head};
-    if (is_archive(head) && start.is_named({".npz"})) return load_npz(path, "", options);
+    if (is_archive(head) && start.is_named({".npz"})) return load_npz(path, options);
     if (is_archive(head)) return load_archive(path, options, load_unpacked);
     for (const Format& format : kFormats)
         if (format.recognises(start)) {
@@ -358,8 +352,6 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
         if (options.raw.empty() && is_packed_volume(path)) return load_packed(path, options);
         if (fs::is_directory(path, error)) {
             volume = load_folder(path, options);
-        } else if (const auto array = npz_member(path); array && !fs::exists(path, error)) {
-            volume = load_npz(array->first, array->second, options);
         } else if (!fs::exists(path, error) && path.find('%') != std::string::npos) {
             volume = load_pattern(path, options);
         } else if (!fs::exists(path, error) && path.find_first_of("*?") != std::string::npos) {

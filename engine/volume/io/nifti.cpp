@@ -214,6 +214,15 @@ void set_nifti_place(const NiftiHeader& header, const LoadOptions& options, Volu
             volume.notes.push_back(fmt::format("{} is used; {} puts a corner of the volume up to {:.4g} mm elsewhere.",
                                                place.source, other.source, apart));
     }
+    // Of a file with an sform alone, pixdim should be the lengths of its steps.
+    for (int axis = 0; has_sform && !has_qform && axis < 3; ++axis) {
+        const double stated = header.real(at.pixdim, static_cast<std::size_t>(axis + 1));
+        const double length = glm::length(place.axes[axis]);
+        if (stated > 0 && std::abs(stated - length) > 0.01 * length)
+            volume.notes.push_back(
+                fmt::format("{} is used: its steps along axis {} are {:.6g} long, pixdim says {:.6g}.", place.source,
+                            axis, length, stated));
+    }
     if (!has_sform)
         for (std::size_t axis = 1; axis <= 3; ++axis)
             if (const double value = header.real(at.pixdim, axis); value < 0)

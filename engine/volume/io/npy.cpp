@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
-#include <optional>
 
 #include "engine/volume/io/binary_file.h"
 
@@ -343,13 +342,8 @@ Volume load_npy(const std::string& path, const LoadOptions& options) {
     return npy_volume(path, path, options);
 }
 
-std::optional<std::pair<std::string, std::string>> npz_member(const std::string& path) {
-    const auto at = path.rfind(".npz:");
-    if (at == std::string::npos || !fs::is_regular_file(path.substr(0, at + 4))) return std::nullopt;
-    return std::pair(path.substr(0, at + 4), path.substr(at + 5));
-}
-
-Volume load_npz(const std::string& path, const std::string& member, const LoadOptions& options) {
+Volume load_npz(const std::string& path, const LoadOptions& options) {
+    const std::string& member = options.inner;
     std::vector<NpzArray> arrays;
     each_array(path, [&](const std::string& name, const auto& read) {
         std::string head(kNpyMaxHeader, '\0');

@@ -78,7 +78,7 @@ class OutputCapture {
     int file_ = -1, saved_out_ = -1, saved_err_ = -1;
 };
 
-enum class ItkFormat { Vtk, Minc };
+enum class ItkFormat { Vtk };
 /// Input of `load_through_itk`.
 struct ItkRequest {
     ItkFormat format = ItkFormat::Minc;
@@ -106,10 +106,8 @@ Volume load_mrc(const std::string& path, const LoadOptions& options);
 /// NumPy's .npy: samples without geometry.
 bool is_npy(const std::string& path);
 Volume load_npy(const std::string& path, const LoadOptions& options);
-/// One array of a .npz. `member`: its name; empty: the only one.
-Volume load_npz(const std::string& path, const std::string& member, const LoadOptions& options);
-/// Splits "file.npz:name"; nullopt if the path does not name an array of an existing file.
-std::optional<std::pair<std::string, std::string>> npz_member(const std::string& path);
+/// One array of a .npz: the one that options.inner names, or the only one.
+Volume load_npz(const std::string& path, const LoadOptions& options);
 Volume load_meta(const std::string& path, const LoadOptions& options);
 Volume load_vti(const std::string& path, const LoadOptions& options);
 /// `head`: the file's first bytes.
@@ -122,6 +120,8 @@ Volume load_hdf5(const std::string& path, const LoadOptions& options);
 Volume load_netcdf(const std::string& path, const LoadOptions& options);
 /// Whether an HDF5 file was written by netCDF.
 bool is_netcdf4(const std::string& path);
+/// MINC1 (netCDF) or MINC2 (HDF5).
+bool is_minc(const std::string& path);
 Volume load_minc(const std::string& path, const LoadOptions& options);
 Volume load_gipl(const std::string& path, const LoadOptions& options);
 /// "64x64x64:uint8:little[:sx,sy,sz[:skip]]": dims, type, byte order, spacing in mm, bytes before the first voxel.
