@@ -41,11 +41,11 @@ find_package(BZip2 REQUIRED)
 target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)
 # Series in zip archives.
 find_package(LibArchive REQUIRED)
-if(EDGESPLAT_VTK)
-    find_package(VTK REQUIRED COMPONENTS IOXML CommonDataModel CommonExecutionModel)
-    target_link_libraries(edgesplat_itk INTERFACE VTK::IOXML VTK::CommonDataModel VTK::CommonExecutionModel)
-    target_compile_definitions(edgesplat_itk INTERFACE EDGESPLAT_HAS_VTK)
-endif()
+# VTK's XML files: the document, and blocks compressed by LZ4 and LZMA.
+find_package(pugixml REQUIRED)
+find_package(LibLZMA REQUIRED)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
+target_link_libraries(edgesplat_itk INTERFACE pugixml::pugixml LibLZMA::LibLZMA PkgConfig::LZ4)
 
 # The navigation app: window and widgets. Debian's imgui library contains the Vulkan backend.
 find_package(glfw3 3.3 REQUIRED)

@@ -45,10 +45,11 @@ struct InnerPath {
 InnerPath split_inner(const std::string& path);
 
 /// Reads a volume and finishes it (see `finish_volume`). `path` is one of
-///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, legacy VTK image data, GIPL, VTI (if built with VTK),
-///    a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
+///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, VTK image data (legacy and XML), GIPL, Voreen and Inviwo
+///    .dat, a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
 ///  - a packed volume (packed_volume.h), whose samples stay in the file and which has its own limits;
-///  - a zip archive of one such file, or of the files of a folder;
+///  - an archive (zip, tar, compressed tar) of one such file, or of the files of a folder, or a compressed file;
+///  - "FILE:NAME", something inside a file (see `split_inner`): an array, or a file in an archive;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;
 ///  - a pattern of slices with one printf number or with * and ?, e.g. "slice_%03d.tif";
 ///  - "builtin:NAME" (see `analytic_volumes.h`).
@@ -57,8 +58,5 @@ InnerPath split_inner(const std::string& path);
 /// the data or itself, more voxels than `kMaxVoxels`, unevenly spaced slices, vector or 4-D data without a chosen
 /// component or frame.
 Volume load_volume(const std::string& path, const LoadOptions& options = {});
-
-/// Whether this build can read .vti files (EDGESPLAT_VTK).
-bool can_read_vti();
 
 }  // namespace edgesplat

@@ -74,20 +74,8 @@ Volume load_packed(const std::string& path, const LoadOptions& options) {
     return open_packed(path);
 }
 
-bool is_archive(std::string_view head) {
-    return head.starts_with("PK\x03\x04");
-}
-
 Volume load_folder(const std::string& path, const LoadOptions& options);
-Volume load_file(const std::string& path, const LoadOptions& options);
-
-Volume load_unpacked(const std::string& path, const LoadOptions& options) {
-    if (fs::is_directory(path)) return load_folder(path, options);
-    check_readable_file(path);
-    // Refused, because archives can be nested without end.
-    if (is_archive(first_bytes(path))) fail("{}: an archive in an archive", path);
-    return load_file(path, options);
-}
+Volume load_file(const std::string& path, const LoadOptions& options, int depth);
 
 // What detection sees of a file.
 struct Start {
@@ -112,11 +100,9 @@ constexpr std::array kFormats{
                return f.begins("NRRD0") || (f.begins("\x1f\x8b") && f.is_named({".nrrd.gz", ".nhdr.gz"}));
            },
            load_nrrd},
-    Format{"legacy VTK image data", [](const Start& f) { return f.begins("# vtk DataFile"); },
-           [](const std::string& path, const LoadOptions& options) {
-               return load_vtk_legacy(path, first_bytes(path), options);
-           }},
-    Format{"VTI", [](const Start& f) { return f.head.find("<VTKFile") != std::string::npos; }, load_vti},
+    Format{"legacy VTK image data", [](const Start& f) { return f.begins("# vtk DataFile"); }, load_vtk_legacy, true},
+    Format{"VTI and VTR", [](const Start& f) { return f.head.find("<VTKFile") != std::string::npos; }, load_vtk_xml,
+           true},
     Format{"MINC",
            [](const Start& f) {
                return f.is_named({".mnc", ".mnc2", ".mnc.gz"}) || is_minc(f.path);
@@ -156,6 +142,7 @@ constexpr std::array kFormats{
                return f.is_named({".gipl", ".gipl.gz"});
            },
            load_gipl},
+    Format{"Voreen and Inviwo", [](const Start& f) { return is_volume_dat(f.path, f.head); }, load_volume_dat},
     Format{"DICOM", [](const Start& f) { return is_dicom(f.path); },
            [](const std::string& path, const LoadOptions& options) { return load_dicom(path, {path}, options); }},
 };
@@ -167,31 +154,84 @@ std::string format_names() {
     return names;
 }
 
-Volume load_file(const std::string& path, const LoadOptions& options) {
+constexpr std::initializer_list<const char*> kImageNames{".tif", ".tiff", ".png", ".bmp",
+                                                         ".jpg", ".jpeg", ".pgm", ".tga"};
+
+MemberKind member_kind(const std::string& path) {
+    const std::string head = first_bytes(path);
+    const Start start{path, head};
+    if (head.empty()) return MemberKind::Other;
+    if (start.is_named({".pvti", ".pvtr"})) return MemberKind::Parts;
+    // The header of a pair of files is the volume.
+    for (const char* ending : {".img", ".img.gz"})
+        if (start.is_named({ending}) &&
+            fs::exists(path.substr(0, path.size() - std::string_view(ending).size()) + ".hdr"))
+            return MemberKind::Other;
+    for (const Format& format : kFormats)
+        if (format.recognises(start)) return format.name == "DICOM" ? MemberKind::Dicom : MemberKind::Volume;
+    if (ends_with_any(path, kImageNames)) return MemberKind::Image;
+    return is_compressed(head) || is_archive(path, head) ? MemberKind::Volume : MemberKind::Other;
+}
+
+// `depth`: archives and compressed files around the unpacked file.
+ArchiveLoader archive_loader(int depth) {
+    return {.kind = member_kind,
+            .load = [depth](const std::string& path, const std::vector<fs::path>& files, const LoadOptions& options) {
+                if (!fs::is_directory(path)) {
+                    check_readable_file(path);
+                    return load_file(path, options, depth);
+                }
+                std::vector<std::string> dicom;
+                for (const fs::path& file : files)
+                    if (file.string().starts_with(path + "/") && member_kind(file.string()) == MemberKind::Dicom)
+                        dicom.push_back(file.string());
+                if (dicom.empty()) return load_folder(path, options);
+                refuse_inner(path, options, "a folder of slices");
+                return load_dicom(path, dicom, options);
+            }};
+}
+
+Volume load_file(const std::string& path, const LoadOptions& options, int depth) {
     if (!options.raw.empty()) {
         refuse_inner(path, options, "a raw file");
         return load_raw(path, options);
     }
     const std::string head = first_bytes(path);
     const Start start{path, head};
-    if (is_archive(head) && start.is_named({".npz"})) return load_npz(path, options);
-    if (is_archive(head)) return load_archive(path, options, load_unpacked);
+    refuse_foreign(path, head);
+    // Compressed files of a format that unpacks them itself are its reader's; others are unpacked first.
+    const bool compressed =
+        is_compressed(head) &&
+        !start.is_named({".nii.gz", ".hdr.gz", ".img.gz", ".gipl.gz", ".mgz", ".mgh.gz", ".nrrd.gz", ".nhdr.gz",
+                         ".mha.gz", ".mhd.gz", ".mrc.gz", ".ccp4.gz", ".rec.gz", ".mnc.gz"});
+    if (is_archive(path, head) && start.is_named({".npz"})) return load_npz(path, options);
+    // Archives can be nested without end.
+    if ((compressed || !is_compressed(head)) && is_archive(path, head)) {
+        if (depth > 0) fail("{}: an archive in an archive", path);
+        return load_archive(path, options, archive_loader(depth + 1));
+    }
+    if (compressed) {
+        if (depth > 1) fail("{}: compressed more than twice", path);
+        return load_compressed(path, options, archive_loader(depth + 1));
+    }
     for (const Format& format : kFormats)
         if (format.recognises(start)) {
             if (!format.takes_inner) refuse_inner(path, options, fmt::format("a file of the format {}", format.name));
             return format.load(path, options);
         }
-    if (start.is_named({".raw", ".dat", ".bin", ".zraw", ".den"}))
+    refuse_inner(path, options, "a file of this format");
+    const std::string kind = foreign_kind(path, head);
+    if ((kind.empty() || kind.starts_with("it begins")) &&
+        start.is_named({".raw", ".dat", ".bin", ".zraw", ".den", ".vol"}))
         fail(
-            "{}: has no header; open the header that belongs to it (.nhdr, .mhd), or describe it with "
+            "{}: has no header; open the header that belongs to it (.nhdr, .mhd, .dat), or describe it with "
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
-    refuse_inner(path, options, "a file of this format");
     if (is_image_file(path)) return load_images(path, {path}, options);
     fail(
-        "{}: unknown volume format. Supported are {}TIFF and other images, packed volumes, zip archives of one of "
-        "these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
-        path, format_names());
+        "{}: unknown volume format{}{}. Supported are {}TIFF and other images, packed volumes, archives (zip, tar) and "
+        "compressed files of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
+        path, kind.empty() ? "" : ": ", kind, format_names());
 }
 
 /// DICOM files in the folders inside: a study often has a folder per series.
@@ -228,7 +268,7 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
         if (entry.path().filename() == "DICOMDIR") continue;
         if (entry.file_size() > 0 && is_dicom(file))
             dicom.push_back(file);
-        else if (ends_with_any(file, {".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".pgm", ".tga"}))
+        else if (ends_with_any(file, kImageNames))
             images.push_back(file);
         else
             ++others;
@@ -358,7 +398,7 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
             volume = load_glob(path, options);
         } else {
             check_readable_file(path);
-            volume = load_file(path, options);
+            volume = load_file(path, options, 0);
         }
     } catch (const std::bad_alloc&) {
         fail("{}: not enough memory for it", path);

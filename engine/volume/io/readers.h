@@ -78,20 +78,6 @@ class OutputCapture {
     int file_ = -1, saved_out_ = -1, saved_err_ = -1;
 };
 
-enum class ItkFormat { Vtk };
-/// Input of `load_through_itk`.
-struct ItkRequest {
-    ItkFormat format = ItkFormat::Minc;
-    std::string path;                              ///< the user's path, used in messages
-    std::string read_path;                         ///< the file that ITK opens; empty: `path`
-    std::string stored_type;                       ///< empty: as ITK says
-    std::size_t stored_bytes = 0;                  ///< size of the data on disk; 0: not checked
-    std::size_t stored_ratio = kBestDeflateRatio;  ///< see check_stored_size
-    /// Called before reading, with the bytes and samples to be read; may throw.
-    std::function<void(std::size_t bytes, std::size_t samples)> check_data;
-};
-Volume load_through_itk(const ItkRequest& request, const LoadOptions& options);
-
 Volume load_nrrd(const std::string& path, const LoadOptions& options);
 /// The signature of NIfTI-1 or NIfTI-2, in a plain or gzip file. Analyze has none.
 bool is_nifti(const std::string& path);
@@ -109,9 +95,12 @@ Volume load_npy(const std::string& path, const LoadOptions& options);
 /// One array of a .npz: the one that options.inner names, or the only one.
 Volume load_npz(const std::string& path, const LoadOptions& options);
 Volume load_meta(const std::string& path, const LoadOptions& options);
-Volume load_vti(const std::string& path, const LoadOptions& options);
-/// `head`: the file's first bytes.
-Volume load_vtk_legacy(const std::string& path, const std::string& head, const LoadOptions& options);
+Volume load_vtk_legacy(const std::string& path, const LoadOptions& options);
+/// VTK's XML files of image data and of rectilinear grids with even coordinates; also their parallel forms.
+Volume load_vtk_xml(const std::string& path, const LoadOptions& options);
+/// Whether the file is a header of Voreen or Inviwo, or one of TU Wien's .dat files. `head`: its first bytes.
+bool is_volume_dat(const std::string& path, std::string_view head);
+Volume load_volume_dat(const std::string& path, const LoadOptions& options);
 /// Whether the HDF5 file is a packed volume.
 bool is_packed(const std::string& path);
 /// Any other HDF5 file; `options.inner` names the array.
@@ -137,9 +126,30 @@ bool begins_with_dicom_elements(const std::string& path);
 bool is_dicom(const std::string& path);
 Volume load_dicom(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);
 
-/// Reads a zip archive of one file or one folder; `load` reads the unpacked content.
-Volume load_archive(const std::string& path, const LoadOptions& options,
-                    const std::function<Volume(const std::string&, const LoadOptions&)>& load);
+/// What a file in an archive is: a volume, one that puts other files together, a slice, or something else, such as the
+/// data file of a header.
+enum class MemberKind { Volume, Parts, Dicom, Image, Other };
+/// What reading an archive needs to know of the readers.
+struct ArchiveLoader {
+    std::function<MemberKind(const std::string& path)> kind;
+    /// Reads an unpacked file, or a folder of slices. `files`: all unpacked files.
+    std::function<Volume(const std::string& path, const std::vector<std::filesystem::path>& files,
+                         const LoadOptions& options)>
+        load;
+};
+/// Fails with what the file is if its content is that of no volume, whatever its name: a web page, a Git LFS pointer.
+void refuse_foreign(const std::string& path, std::string_view head);
+/// What a file is that no reader reads, and what to do with it; "" if this is unknown.
+std::string foreign_kind(const std::string& path, std::string_view head);
+
+/// Whether the file is a zip or tar archive, plain or compressed. `head`: its first bytes.
+bool is_archive(const std::string& path, std::string_view head);
+/// Whether the bytes begin as those of gzip, bzip2, xz, zstd, lz4 or compress.
+bool is_compressed(std::string_view head);
+/// Reads an archive of one volume, or the volume in it that options.inner names.
+Volume load_archive(const std::string& path, const LoadOptions& options, const ArchiveLoader& loader);
+/// Reads a compressed file.
+Volume load_compressed(const std::string& path, const LoadOptions& options, const ArchiveLoader& loader);
 
 bool is_image_file(const std::string& path);
 /// Reads slices in this order; one file may contain a stack. `name` is the user's path.
