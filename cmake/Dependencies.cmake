@@ -13,6 +13,13 @@ find_package(PNG REQUIRED)
 # OpenImageIO's CMake package on Debian 12 requires programs that its -dev package does not contain; pkg-config works.
 pkg_check_modules(OIIO REQUIRED IMPORTED_TARGET OpenImageIO)
 
+# TIFF and OME-Zarr: libtiff and the codecs are in a module, the headers are read by these two.
+find_package(TIFF REQUIRED)
+pkg_check_modules(BLOSC REQUIRED IMPORTED_TARGET blosc)
+pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
+find_package(pugixml REQUIRED)
+
 # Scene files.
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 

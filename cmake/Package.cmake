@@ -7,7 +7,8 @@ foreach(library footprints volume scene reference engine)
     install(TARGETS edgesplat_${library} EXPORT edgesplatTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
         COMPONENT dev)
 endforeach()
-install(TARGETS edgesplat_pictures LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat COMPONENT edgesplat)
+install(TARGETS edgesplat_pictures edgesplat_codecs LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/edgesplat
+    COMPONENT edgesplat)
 install(EXPORT edgesplatTargets NAMESPACE edgesplat:: DESTINATION ${package_folder} COMPONENT dev)
 
 # Public headers. Headers that only the library's own sources include are not installed.

@@ -32,6 +32,7 @@ edgesplat::LoadOptions load_options(const VolumeOptions& options) {
     edgesplat::LoadOptions load;
     load.component = source.component;
     load.frame = source.frame;
+    load.level = source.level;
     load.series = source.series;
     load.raw = source.raw;
     load.spacing = source.spacing;

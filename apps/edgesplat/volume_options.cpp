@@ -45,7 +45,10 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
     command.add_option("--component", options.component, "Component of vector or colour data, from 0")
         ->check(CLI::NonNegativeNumber);
     command.add_option("--frame", options.frame, "Frame of 4-D data, from 0")->check(CLI::NonNegativeNumber);
-    command.add_option("--series", options.series, "DICOM series to read from a folder with several: number or UID");
+    command.add_option("--level", options.level, "Level of an OME-Zarr image, 0: the finest")
+        ->check(CLI::NonNegativeNumber);
+    command.add_option("--series", options.series,
+                       "Series of a DICOM folder, or image of a file, with several: number, UID or name");
     command.add_flag("--resample", options.resample, "Resample unevenly spaced DICOM slices to even spacing");
     command.add_option("--spacing", options.spacing, "Voxel spacing in mm, instead of the file's")->expected(3);
 }
@@ -53,6 +56,7 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (options.component >= 0) source.component = options.component;
     if (options.frame >= 0) source.frame = options.frame;
+    if (options.level >= 0) source.level = options.level;
     if (!options.series.empty()) source.series = options.series;
     if (!options.raw.empty()) source.raw = options.raw;
     if (options.resample) source.resample = true;

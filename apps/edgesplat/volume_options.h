@@ -12,13 +12,15 @@
 struct VolumeOptions {
     int component = -1;           ///< --component; -1: not given
     int frame = -1;               ///< --frame; -1: not given
+    int level = -1;               ///< --level; -1: not given
     std::string series;           ///< --series
     std::string raw;              ///< --raw
     bool resample = false;        ///< --resample
     std::vector<double> spacing;  ///< --spacing X Y Z, mm; empty: not given
 };
 
-/// Adds --raw, --component, --frame, --series, --resample and --spacing to a command. `options` must outlive the parse.
+/// Adds --raw, --component, --frame, --level, --series, --resample and --spacing to a command. `options` must outlive
+/// the parse.
 void add_volume_options(CLI::App& command, VolumeOptions& options);
 
 /// Copies the given options into a scene's volume.

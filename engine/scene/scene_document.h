@@ -22,7 +22,7 @@ namespace edgesplat {
 struct VolumeSource {
     std::string path;                               ///< file, folder, pattern of slices, or builtin:NAME
     std::string raw, series;                        ///< see LoadOptions; empty: not given
-    std::optional<int> component, frame;            ///< from 0
+    std::optional<int> component, frame, level;     ///< from 0
     bool resample = false;                          ///< unevenly spaced DICOM slices are interpolated
     std::optional<glm::dvec3> spacing;              ///< mm, instead of the file's
     std::optional<double> threshold;                ///< 1 from this value up, else 0

@@ -50,8 +50,11 @@ void add_volume(KeyTable& t) {
           {.help = "Component of vector or colour data", .range = {0, 1e6}, .absent = "required for such data"});
     t.add("volume.frame", MEMBER(volume.frame),
           {.help = "Frame of 4-D data", .range = {0, 1e6}, .absent = "required for such data"});
+    t.add("volume.level", MEMBER(volume.level),
+          {.help = "Level of an OME-Zarr image, 0: the finest", .range = {0, 63}, .absent = "the finest that fits"});
     t.add("volume.series", MEMBER(volume.series),
-          {.help = "Series of a DICOM folder with several: number or UID", .absent = "required for such folders"});
+          {.help = "Series of a DICOM folder, or image of a file, with several: number, UID or name",
+           .absent = "required for such data"});
     t.add("volume.resample", MEMBER(volume.resample),
           {.help = "Resample unevenly spaced DICOM slices to even spacing by cubic interpolation"});
     t.add("volume.spacing", MEMBER(volume.spacing),

@@ -56,6 +56,7 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     LoadOptions options;
     options.component = source.component;
     options.frame = source.frame;
+    options.level = source.level;
     options.series = source.series;
     options.raw = source.raw;
     options.spacing = source.spacing;

@@ -25,7 +25,8 @@ inline constexpr std::size_t kMaxVoxelsPerAxis = 65535;
 struct LoadOptions {
     std::optional<int> component;  ///< component of a vector or colour voxel, from 0
     std::optional<int> frame;      ///< frame of 4-D data, from 0 (5-D and above: all further axes combined)
-    std::string series;            ///< series of a DICOM folder with several: its number (from 0) or UID
+    std::optional<int> level;      ///< level of an OME-Zarr image, 0: the finest; not given: the finest that fits
+    std::string series;            ///< series of a DICOM folder, image of a file, with several: number (from 0) or UID
     /// The part of the path after the colon: a name inside the file ("data.vti:density" gives "density"). `load_volume`
     /// sets it; callers leave it empty.
     std::string inner;
@@ -45,9 +46,11 @@ struct InnerPath {
 InnerPath split_inner(const std::string& path);
 
 /// Reads a volume and finishes it (see `finish_volume`). `path` is one of
-///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC2, VTK image data (legacy and XML), GIPL, Voreen and Inviwo
-///    .dat, a TIFF stack, VolPack .den with --raw, or any file with `options.raw`;
+///  - a file: NRRD, MetaImage, NIfTI-1/2, Analyze, DICOM, MINC, MGH, MRC and CCP4 maps, NumPy, VTK image data (legacy
+///    and XML), HDF5, netCDF, GIPL, Voreen and Inviwo .dat, a TIFF stack (plain, ImageJ, OME, LSM), VolPack .den with
+///    --raw, or any file with `options.raw`;
 ///  - a packed volume (packed_volume.h), whose samples stay in the file and which has its own limits;
+///  - an OME-Zarr image or Zarr array: a folder or a zip archive;
 ///  - an archive (zip, tar, compressed tar) of one such file, or of the files of a folder, or a compressed file;
 ///  - "FILE:NAME", something inside a file (see `split_inner`): an array, or a file in an archive;
 ///  - a folder: one DICOM series, or the images in it as slices, sorted by the numbers in their names;

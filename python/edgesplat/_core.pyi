@@ -17,7 +17,8 @@ _Triple = tuple[float, float, float]
 class Volume:
     @staticmethod
     def load(
-        path: str, component: int | None, frame: int | None, series: str, raw: str, spacing: _Triple | None, /
+        path: str, component: int | None, frame: int | None, level: int | None, series: str, raw: str,
+        spacing: _Triple | None, /
     ) -> Volume: ...
     @staticmethod
     def from_array(

@@ -78,8 +78,8 @@ class Volume:
     direction: 3 x 3; its **columns** are the world directions of x, y and z, as in ITK.
     patient: whether the world axes are patient axes (+x left, +y back, +z up).
     name: name of an array in messages and pictures.
-    component, frame, series, raw: choose data in a file, as ``--component`` and so on; `frame` also in a 4-D nibabel
-        image.
+    component, frame, level, series, raw: choose data in a file, as ``--component`` and so on; `frame` also in a 4-D
+        nibabel image.
 
     Samples that are not finite are replaced by the smallest finite one, with a warning.
     Raises Error with the program's messages.
@@ -96,6 +96,7 @@ class Volume:
         name: str | None = None,
         component: int | None = None,
         frame: int | None = None,
+        level: int | None = None,
         series: str | int = "",
         raw: str = "",
     ) -> None:
@@ -103,13 +104,14 @@ class Volume:
         if lengths is not None and not np.all(lengths > 0):
             raise Error(f"spacing: {_triple(lengths)}: expected lengths above 0, mm, along x, y, z")
         of_arrays = {"origin": origin, "direction": direction, "patient": patient, "name": name}
-        of_files = {"component": component, "series": None if series == "" else series, "raw": raw or None}
+        series_given = None if series == "" else series
+        of_files = {"component": component, "level": level, "series": series_given, "raw": raw or None}
         if isinstance(source, PathLike):
             for key, value in of_arrays.items():
                 if value is not None:
                     raise Error(f"{key}: only for arrays; a file defines it")
             given = None if lengths is None else _triple(lengths)
-            self._core = _core.Volume.load(os.fspath(source), component, frame, str(series), raw, given)
+            self._core = _core.Volume.load(os.fspath(source), component, frame, level, str(series), raw, given)
         else:
             for key, value in of_files.items():
                 if value is not None:

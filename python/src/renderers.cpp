@@ -26,7 +26,7 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     VolumeSource reading = reading_part(asked), none;
     reading.path = none.path = volume.source.path;
     if (reading != none && reading != volume.source)
-        fail("volume: {} is already read; expected component, frame, series, raw and spacing as arguments of Volume",
+        fail("volume: {} is already read; expected component, frame, level, series, raw and spacing as arguments of Volume",
              volume.source.path);
     scene.volume = volume.source;
     scene.volume.threshold = asked.threshold;

@@ -12,10 +12,12 @@ namespace edgesplat::python {
 namespace {
 
 SharedVolume load(const std::string& path, std::optional<int> component, std::optional<int> frame,
-                  const std::string& series, const std::string& raw, const std::optional<Triple>& spacing) {
+                  std::optional<int> level, const std::string& series, const std::string& raw,
+                  const std::optional<Triple>& spacing) {
     VolumeSource source;
     source.component = component;
     source.frame = frame;
+    source.level = level;
     source.series = series;
     source.raw = raw;
     if (spacing) source.spacing = vector(*spacing);
@@ -116,6 +118,7 @@ VolumeSource reading_part(const VolumeSource& source) {
     part.series = source.series;
     part.component = source.component;
     part.frame = source.frame;
+    part.level = source.level;
     part.spacing = source.spacing;
     return part;
 }

@@ -1,4 +1,5 @@
-// Reads stacks and sequences of images through OpenImageIO: samples as stored, not scaled to 0..1.
+// Reads stacks and sequences of images: TIFF by the reader of TIFF, pictures that OpenImageIO changes by our own, all
+// others through it. Samples as stored, not scaled to 0..1.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -8,12 +9,26 @@
 #include <span>
 
 #include "engine/files/picture_library_internal.h"
+#include "engine/volume/io/exact_pictures.h"
 #include "engine/volume/io/readers.h"
+#include "engine/volume/io/tiff.h"
 
 namespace edgesplat::detail {
 namespace {
 
+std::string first_part(const std::string& path) {
+    std::string head(8, '\0');
+    std::ifstream file(path, std::ios::binary);
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(file.gcount()));
+    return head;
+}
+
 std::unique_ptr<PictureReader> opened(const std::string& path) {
+    if (auto exact = open_exact_picture(path)) return exact;
+    const std::string head = first_part(path);
+    if (path.ends_with(".tga") && head.size() > 2 && head[1] == 1 && (head[2] == 1 || head[2] == 9))
+        fail("{}: a TGA with a palette, whose indices are not read; save it as PNG", path);
     std::string reason;
     std::unique_ptr<PictureReader> input;
     {
@@ -54,6 +69,7 @@ NumberedName numbered(const std::string& file) {
 }  // namespace
 
 bool is_image_file(const std::string& path) {
+    if (begins_as_exact_picture(first_part(path))) return true;
     OutputCapture capture;
     std::string ignored;
     return picture_library().open(path, ignored) != nullptr;
@@ -90,6 +106,7 @@ std::vector<std::string> ordered_slices(const std::string& name, std::vector<std
 }
 
 Volume load_images(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options) {
+    if (begins_as_tiff(first_part(files[0]))) return load_tiff(name, files, options);
     Volume volume;
     volume.name = name;
     const bool stack = files.size() == 1;
@@ -141,6 +158,9 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
                 check_memory(name, fmt::format("pages of {} x {} pixels, {} channels", width, height, channels),
                              page_bytes);
                 check_stored_size(name, page_bytes, std::filesystem::file_size(files[i]), kBestPictureRatio);
+                if (std::ranges::find(spec.texts, "palette", &std::pair<std::string, std::string>::first) !=
+                    spec.texts.end())
+                    volume.notes.emplace_back("A palette image: samples are its indices, not its colours.");
                 volume.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height) * slices);
                 if (spec.bits % 8 != 0 && spec.bits != 1)
                     volume.notes.push_back(fmt::format(
@@ -169,6 +189,7 @@ Volume load_images(const std::string& name, const std::vector<std::string>& file
     }
     volume.stored_type = name_of(*type);
     volume.geometry.dims = {width, height, static_cast<int>(depth)};
+    volume.geometry_source = "none: 1 mm assumed";
     if (depth == 1) volume.notes.push_back("The file holds one image: it is read as a volume of one slice.");
     if (!options.spacing)
         volume.notes.push_back(

@@ -15,6 +15,8 @@
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/io/hdf5.h"
 #include "engine/volume/io/readers.h"
+#include "engine/volume/io/tiff.h"
+#include "engine/volume/io/zarr.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 
@@ -65,10 +67,15 @@ bool is_packed_volume(const std::string& path) {
            is_packed(path);
 }
 
+void refuse_level(const std::string& path, const LoadOptions& options) {
+    if (options.level) fail("{}: --level {}: only OME-Zarr images have levels", path, *options.level);
+}
+
 Volume load_packed(const std::string& path, const LoadOptions& options) {
     refuse_inner(path, options, "a packed volume");
     (void)chosen_component(path, options, 1);
     (void)chosen_frame(path, options, 1);
+    refuse_level(path, options);
     if (options.spacing)
         fail("{}: --spacing: a packed volume keeps the spacing it was packed with (edgesplat pack --spacing)", path);
     return open_packed(path);
@@ -145,6 +152,8 @@ constexpr std::array kFormats{
     Format{"Voreen and Inviwo", [](const Start& f) { return is_volume_dat(f.path, f.head); }, load_volume_dat},
     Format{"DICOM", [](const Start& f) { return is_dicom(f.path); },
            [](const std::string& path, const LoadOptions& options) { return load_dicom(path, {path}, options); }},
+    Format{"TIFF", [](const Start& f) { return begins_as_tiff(f.head); },
+           [](const std::string& path, const LoadOptions& options) { return load_tiff(path, {path}, options); }},
 };
 
 std::string format_names() {
@@ -204,6 +213,11 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
         is_compressed(head) &&
         !start.is_named({".nii.gz", ".hdr.gz", ".img.gz", ".gipl.gz", ".mgz", ".mgh.gz", ".nrrd.gz", ".nhdr.gz",
                          ".mha.gz", ".mhd.gz", ".mrc.gz", ".ccp4.gz", ".rec.gz", ".mnc.gz"});
+    if (is_archive(path, head) && is_zarr_zip(path)) {
+        refuse_inner(path, options, "a Zarr archive");
+        return load_zarr(path, options);
+    }
+    refuse_level(path, options);
     if (is_archive(path, head) && start.is_named({".npz"})) return load_npz(path, options);
     // Archives can be nested without end.
     if ((compressed || !is_compressed(head)) && is_archive(path, head)) {
@@ -229,8 +243,8 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
             path);
     if (is_image_file(path)) return load_images(path, {path}, options);
     fail(
-        "{}: unknown volume format{}{}. Supported are {}TIFF and other images, packed volumes, archives (zip, tar) and "
-        "compressed files of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
+        "{}: unknown volume format{}{}. Supported are {}images, packed volumes, archives (zip, tar) and compressed files "
+        "of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
         path, kind.empty() ? "" : ": ", kind, format_names());
 }
 
@@ -257,6 +271,8 @@ std::vector<std::string> dicom_files_below(const std::string& path) {
 Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
     refuse_inner(path, options, "a folder of slices");
+    if (is_zarr_folder(path)) return load_zarr(path, options);
+    refuse_level(path, options);
     std::vector<std::string> dicom, images;
     std::size_t others = 0, folders = 0;
     report(options, 0.0, "searching the folder");
@@ -290,6 +306,8 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     } else if (const auto below = folders > 0 ? dicom_files_below(path) : std::vector<std::string>(); !below.empty()) {
         volume = load_dicom(path, below, options);
     } else {
+        if (fs::exists(fs::path(path) / "attributes.json"))
+            fail("{}: an N5 container, which is not read; convert it to OME-Zarr", path);
         fail(
             "{}: no DICOM files and no images in this folder ({} other files, {} folders inside); give a file or one "
             "of its folders",
@@ -302,6 +320,7 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
 // Reads the files that match a pattern: a DICOM series (sorted by position) or images (sorted by number).
 Volume load_slices(const std::string& path, std::vector<std::string> files, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a pattern", path);
+    refuse_level(path, options);
     if (files.empty()) fail("{}: no file matches this pattern", path);
     std::vector<std::string> images;
     for (const auto& file : files) {

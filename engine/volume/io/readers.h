@@ -35,8 +35,10 @@ void check_stored_size(const std::string& path, std::size_t needed, std::size_t 
 /// Fails with "truncated" if the file's structure continues beyond its end. Files with unknown structure pass.
 void check_netcdf_is_whole(const std::string& path);
 
-/// The component and frame to read. Fails with the option to use if the file has several and none is chosen.
-std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count);
+/// The component and frame to read. Fails with the option to use if the file has several and none is chosen. `names`:
+/// of the components, for that message.
+std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count,
+                             const std::vector<std::string>& names = {});
 std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count);
 
 /// The text without white space at both ends.

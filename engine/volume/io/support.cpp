@@ -42,11 +42,22 @@ std::mutex& capture_mutex() {
     return mutex;
 }
 
+/// " (0: red, 1: green)" for names that are not all empty.
+std::string listed(const std::vector<std::string>& names) {
+    constexpr std::size_t kMostListed = 16;
+    std::string list;
+    for (std::size_t i = 0; i < std::min(names.size(), kMostListed); ++i)
+        if (!names[i].empty()) list += fmt::format("{}{}: {}", list.empty() ? "" : ", ", i, names[i]);
+    if (names.size() > kMostListed) list += ", ...";
+    return list.empty() || list == ", ..." ? "" : " (" + list + ")";
+}
+
 std::size_t chosen(const std::string& path, const std::optional<int>& choice, std::size_t count, const char* what,
-                   const char* option, const char* kind) {
+                   const char* option, const char* kind, const std::vector<std::string>& names = {}) {
     if (!choice) {
         if (count > 1)
-            fail("{}: {} data with {} {}s; choose one with --{} 0..{}", path, kind, count, what, option, count - 1);
+            fail("{}: {} data with {} {}s; choose one with --{} 0..{}{}", path, kind, count, what, option, count - 1,
+                 listed(names));
         return 0;
     }
     if (*choice < 0 || static_cast<std::size_t>(*choice) >= count)
@@ -144,8 +155,9 @@ void check_stored_size(const std::string& path, std::size_t needed, std::size_t 
             path, needed, stored);
 }
 
-std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count) {
-    return chosen(path, options.component, count, "component", "component", "vector or colour");
+std::size_t chosen_component(const std::string& path, const LoadOptions& options, std::size_t count,
+                             const std::vector<std::string>& names) {
+    return chosen(path, options.component, count, "component", "component", "vector or colour", names);
 }
 
 std::size_t chosen_frame(const std::string& path, const LoadOptions& options, std::size_t count) {
