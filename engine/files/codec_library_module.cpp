@@ -25,8 +25,9 @@ class Decoder : public TiffDecoder {
         TIFFOpenOptionsSetWarningHandlerExtR(options, &ignore, nullptr);
         // Directories have been checked before; this bounds what compressed data ask for.
         TIFFOpenOptionsSetMaxSingleMemAlloc(options, tmsize_t{1} << 34);
-        // h: the first directory is not read here. m: not mapped, so that a file that shrinks is an error.
-        tiff_ = TIFFOpenExt(path.c_str(), "rhm", options);
+        // h: the first directory is not read here. m: not mapped, so that a file that shrinks is an error. c: strips as
+        // the file has them, not cut into smaller ones.
+        tiff_ = TIFFOpenExt(path.c_str(), "rhmc", options);
         TIFFOpenOptionsFree(options);
     }
     ~Decoder() override {
@@ -85,8 +86,7 @@ class Decoder : public TiffDecoder {
 std::string unpack_blosc(std::string_view packed, void* target, std::size_t bytes) {
     std::size_t size = 0;
     if (blosc_cbuffer_validate(packed.data(), packed.size(), &size) != 0) return "not a whole blosc buffer";
-    if (size != bytes)
-        return "blosc data of " + std::to_string(size) + " bytes, expected " + std::to_string(bytes);
+    if (size != bytes) return "blosc data of " + std::to_string(size) + " bytes, expected " + std::to_string(bytes);
     const int got = blosc_decompress_ctx(packed.data(), target, bytes, 1);
     if (got < 0 || static_cast<std::size_t>(got) != bytes) return "damaged blosc data";
     return {};

@@ -26,8 +26,10 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     VolumeSource reading = reading_part(asked), none;
     reading.path = none.path = volume.source.path;
     if (reading != none && reading != volume.source)
-        fail("volume: {} is already read; expected component, frame, level, series, raw and spacing as arguments of Volume",
-             volume.source.path);
+        fail(
+            "volume: {} is already read; expected component, frame, level, series, raw and spacing as arguments of "
+            "Volume",
+            volume.source.path);
     scene.volume = volume.source;
     scene.volume.threshold = asked.threshold;
     scene.volume.box_filter = asked.box_filter;

@@ -13,7 +13,7 @@ tifffile = pytest.importorskip("tifffile", reason="the reader to compare with: p
 
 #: Millimetres in the units of ImageJ and OME.
 UNITS = {"um": 1e-3, "micron": 1e-3, "\\u00B5m": 1e-3, "nm": 1e-6, "mm": 1, "cm": 10, "inch": 25.4}
-OME_UNITS = {"µm": 1e-3, "nm": 1e-6, "mm": 1, "cm": 10, "Å": 1e-7, "pm": 1e-9, "in": 25.4, "m": 1e3}
+OME_UNITS = {"µm": 1e-3, "nm": 1e-6, "mm": 1, "cm": 10, "Å": 1e-7, "in": 25.4, "m": 1e3}
 
 
 def numbers(rng, shape, dtype):
@@ -80,7 +80,7 @@ def test_plain(tmp_path, seed):
     white = samples == 1 and np.dtype(dtype).kind == "u" and pick.random() < 0.4
     path = tmp_path / "a.tif"
     compression = pick.choice([None, None, "zlib"])
-    predictor = bool(compression) and np.dtype(dtype).kind != "f" and pick.random() < 0.5
+    predictor = bool(compression) and np.dtype(dtype).kind != "f" and np.dtype(dtype).itemsize < 8 and pick.random() < 0.5
     with tifffile.TiffWriter(path, bigtiff=pick.random() < 0.3, byteorder=pick.choice("<>")) as writer:
         for page in stored:
             writer.write(page[..., 0] if samples == 1 and planar == "contig" else page[0] if samples == 1 else page,
@@ -92,9 +92,7 @@ def test_plain(tmp_path, seed):
     theirs = np.stack([page.asarray() for page in tifffile.TiffFile(path).pages]).reshape(stored.shape)
     assert np.array_equal(theirs, stored)
     if white:  # difference to tifffile, which shows what is stored: MinIsWhite is undone here
-        array = np.iinfo(dtype).max - array
-        if np.dtype(dtype).itemsize > 4:
-            array = array.astype(np.float64)
+        array = ~array
     length = {("INCH", 1234.5): 25.4 / 1234.5, ("CENTIMETER", 12345.0): 10 / 12345}.get((unit, per_unit), 1)
     for sample in range(samples):
         volume = Volume(path, component=sample if samples > 1 else None)

@@ -66,7 +66,8 @@ void write_tiff(const std::string& path, const TiffFormat& format) {
                         tile.insert(tile.end(), row.begin(), row.end());
                     }
                     ASSERT_GT(TIFFWriteTile(tiff, tile.data(), static_cast<std::uint32_t>(left),
-                                            static_cast<std::uint32_t>(top), 0, 0), 0);
+                                            static_cast<std::uint32_t>(top), 0, 0),
+                              0);
                 }
         } else {
             TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, 8);

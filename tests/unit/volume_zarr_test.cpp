@@ -21,12 +21,15 @@ class Zarr : public FolderTest {
         write_level("0");
         write_level("1");
         write("a.zarr/.zgroup", R"({"zarr_format": 2})");
-        write("a.zarr/.zattrs", R"({"multiscales": [{"version": "0.4", "axes": [)"
-                                R"({"name": "z", "type": "space", "unit": "micrometer"},)"
-                                R"({"name": "y", "type": "space", "unit": "millimeter"},)"
-                                R"({"name": "x", "type": "space", "unit": "micrometer"}], "datasets": [)"
-                                R"({"path": "0", "coordinateTransformations": [)" + transformations + R"(]},)"
-                                R"({"path": "1", "coordinateTransformations": [{"type": "scale", "scale": [8, 8, 8]}]}]}]})");
+        write("a.zarr/.zattrs",
+              R"({"multiscales": [{"version": "0.4", "axes": [)"
+              R"({"name": "z", "type": "space", "unit": "micrometer"},)"
+              R"({"name": "y", "type": "space", "unit": "millimeter"},)"
+              R"({"name": "x", "type": "space", "unit": "micrometer"}], "datasets": [)"
+              R"({"path": "0", "coordinateTransformations": [)" +
+                  transformations +
+                  R"(]},)"
+                  R"({"path": "1", "coordinateTransformations": [{"type": "scale", "scale": [8, 8, 8]}]}]}]})");
     }
 };
 

@@ -131,7 +131,9 @@ std::unique_ptr<PictureReader> open_png(const std::string& path, std::string_vie
 std::unique_ptr<PictureReader> open_portable_map(const std::string& path, std::string_view bytes) {
     const char kind = bytes[1];
     std::size_t at = 2;
-    const auto is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f'; };
+    const auto is_blank = [](char c) {
+        return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\v' || c == '\f';
+    };
     const auto number = [&]() -> std::size_t {
         while (at < bytes.size() && (is_blank(bytes[at]) || bytes[at] == '#')) {
             if (bytes[at] == '#')
@@ -151,8 +153,7 @@ std::unique_ptr<PictureReader> open_portable_map(const std::string& path, std::s
     if (largest < 1 || largest > 65535) fail("{}: its largest value is {}, expected 1 to 65535", path, largest);
     const int channels = kind == '3' || kind == '6' ? 3 : 1;
     const bool wide = largest > 255, is_text = kind == '2' || kind == '3';
-    const PicturePage page =
-        decoded_page(path, width, height, channels, wide ? SampleType::UInt16 : SampleType::UInt8);
+    const PicturePage page = decoded_page(path, width, height, channels, wide ? SampleType::UInt16 : SampleType::UInt8);
     const std::size_t count = width * height * static_cast<std::size_t>(channels);
     check_stored_size(path, count, bytes.size(), 1);
     std::string pixels(count * (wide ? 2 : 1), '\0');
@@ -209,8 +210,7 @@ std::unique_ptr<PictureReader> open_bmp(const std::string& path, std::string_vie
         const std::size_t from = first + stride * (height > 0 ? rows - 1 - y : y);  // the lowest row first
         for (std::size_t x = 0; x < columns; ++x) {
             const auto byte = static_cast<unsigned char>(bytes[from + x * bits / 8]);
-            pixels[y * columns + x] =
-                static_cast<char>(byte >> (8 - bits - x * bits % 8) & ((1 << bits) - 1));
+            pixels[y * columns + x] = static_cast<char>(byte >> (8 - bits - x * bits % 8) & ((1 << bits) - 1));
         }
     }
     return std::make_unique<DecodedPicture>(page, std::vector{std::move(pixels)});

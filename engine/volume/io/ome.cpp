@@ -93,12 +93,12 @@ std::optional<double> ome_millimetres(std::string_view unit) {
         std::string_view symbol, name;
         double factor;
     };
-    constexpr std::array kPrefixes{Prefix{"Y", "yotta", 1e27},  Prefix{"Z", "zetta", 1e24},  Prefix{"E", "exa", 1e21},
-                                   Prefix{"P", "peta", 1e18},   Prefix{"T", "tera", 1e15},   Prefix{"G", "giga", 1e12},
-                                   Prefix{"M", "mega", 1e9},    Prefix{"k", "kilo", 1e6},    Prefix{"h", "hecto", 1e5},
-                                   Prefix{"da", "deca", 1e4},   Prefix{"d", "deci", 1e2},    Prefix{"c", "centi", 1e1},
-                                   Prefix{"m", "milli", 1},     Prefix{"n", "nano", 1e-6},   Prefix{"p", "pico", 1e-9},
-                                   Prefix{"f", "femto", 1e-12}, Prefix{"a", "atto", 1e-15},  Prefix{"z", "zepto", 1e-18},
+    constexpr std::array kPrefixes{Prefix{"Y", "yotta", 1e27},  Prefix{"Z", "zetta", 1e24}, Prefix{"E", "exa", 1e21},
+                                   Prefix{"P", "peta", 1e18},   Prefix{"T", "tera", 1e15},  Prefix{"G", "giga", 1e12},
+                                   Prefix{"M", "mega", 1e9},    Prefix{"k", "kilo", 1e6},   Prefix{"h", "hecto", 1e5},
+                                   Prefix{"da", "deca", 1e4},   Prefix{"d", "deci", 1e2},   Prefix{"c", "centi", 1e1},
+                                   Prefix{"m", "milli", 1},     Prefix{"n", "nano", 1e-6},  Prefix{"p", "pico", 1e-9},
+                                   Prefix{"f", "femto", 1e-12}, Prefix{"a", "atto", 1e-15}, Prefix{"z", "zepto", 1e-18},
                                    Prefix{"y", "yocto", 1e-21}, Prefix{"u", "micro", 1e-3}};
     for (const Prefix& prefix : kPrefixes) {
         if (unit.ends_with('m') && unit.substr(0, unit.size() - 1) == prefix.symbol) return prefix.factor;
@@ -110,11 +110,18 @@ std::optional<double> ome_millimetres(std::string_view unit) {
         std::string_view name;
         double millimetres;
     };
-    constexpr std::array kOthers{Unit{"thou", 0.0254},          Unit{"li", 25.4 / 12},   Unit{"yd", 914.4},
-                                 Unit{"yard", 914.4},           Unit{"mi", 1609344},     Unit{"mile", 1609344},
-                                 Unit{"pt", 25.4 / 72},         Unit{"ua", 1.495978707e14},
-                                 Unit{"ly", 9.4607304725808e18}, Unit{"pc", 3.0856775814913673e19},
-                                 Unit{"parsec", 3.0856775814913673e19}, Unit{"\xe2\x84\xab", 1e-7}};
+    constexpr std::array kOthers{Unit{"thou", 0.0254},
+                                 Unit{"li", 25.4 / 12},
+                                 Unit{"yd", 914.4},
+                                 Unit{"yard", 914.4},
+                                 Unit{"mi", 1609344},
+                                 Unit{"mile", 1609344},
+                                 Unit{"pt", 25.4 / 72},
+                                 Unit{"ua", 1.495978707e14},
+                                 Unit{"ly", 9.4607304725808e18},
+                                 Unit{"pc", 3.0856775814913673e19},
+                                 Unit{"parsec", 3.0856775814913673e19},
+                                 Unit{"\xe2\x84\xab", 1e-7}};
     for (const Unit& other : kOthers)
         if (unit == other.name) return other.millimetres;
     return millimetres_in(unit);

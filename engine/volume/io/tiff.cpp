@@ -79,8 +79,7 @@ bool is_same_shape(const TiffPage& a, const TiffPage& b) {
 /// Fails unless the page's pixels can be read.
 void check_page(const TiffPlane& plane) {
     const TiffPage& page = plane.description();
-    if (page.width == 0 || page.height == 0)
-        fail("{}: {} x {} pixels", plane.name(), page.width, page.height);
+    if (page.width == 0 || page.height == 0) fail("{}: {} x {} pixels", plane.name(), page.width, page.height);
     if (page.samples < 1 || page.samples > 65535)
         fail("{}: {} samples per pixel, expected 1 to 65535", plane.name(), page.samples);
     if (page.planar != 1 && page.planar != 2)
@@ -121,8 +120,8 @@ void choose_planes(TiffStack& stack, const std::string& path, const LoadOptions&
     const std::size_t samples = page.samples;
     if (sizes.channels > (std::size_t{1} << 24) / samples)
         fail("{}: {} channels of {} samples: too many", path, sizes.channels, samples);
-    const std::size_t component = chosen_component(path, options, sizes.channels * samples,
-                                                   component_names(page, sizes.channels, channel_names));
+    const std::size_t component =
+        chosen_component(path, options, sizes.channels * samples, component_names(page, sizes.channels, channel_names));
     const std::size_t frame = chosen_frame(path, options, sizes.frames);
     stack.sample = component % samples;
     if (sizes.slices > kMaxVoxelsPerAxis)
@@ -135,7 +134,8 @@ void choose_planes(TiffStack& stack, const std::string& path, const LoadOptions&
 
 /// Whether this is a resolution, pixels per inch, that screens and printers have: programs write it without a meaning.
 bool is_of_printing(double per_inch) {
-    constexpr double kUsual[] = {72, 75, 90, 96, 100, 120, 144, 150, 180, 192, 200, 240, 300, 350, 360, 400, 600, 720, 1200, 2400};
+    constexpr double kUsual[] = {72,  75,  90,  96,  100, 120, 144, 150, 180,  192,
+                                 200, 240, 300, 350, 360, 400, 600, 720, 1200, 2400};
     return std::ranges::any_of(kUsual, [&](double usual) { return std::abs(per_inch / usual - 1) < 2e-3; });
 }
 
@@ -188,8 +188,7 @@ std::size_t imagej_count(const std::string& path, const ImageJFields& fields, co
 }
 
 /// Millimetres of ImageJ's unit; nullopt if it is none of length ("pixel").
-std::optional<double> imagej_millimetres(const std::string& path, const LoadOptions& options,
-                                         const std::string& unit) {
+std::optional<double> imagej_millimetres(const std::string& path, const LoadOptions& options, const std::string& unit) {
     static constexpr std::string_view kNone[] = {"", "pixel", "pixels", "null", "voxel", "voxels"};
     if (std::ranges::find(kNone, unit) != std::end(kNone)) return std::nullopt;
     if (const auto known = millimetres_in(unit)) return known;
@@ -239,9 +238,11 @@ TiffPlace imagej_place(const std::string& path, const LoadOptions& options, cons
         const std::string own = axis == 0 ? "" : text(units[axis]);
         if (!own.empty()) scale = imagej_millimetres(path, options, own).value_or(1);
         if (size[axis] != 0)
-            place.spacing[axis] = tiff_length(
-                path, options, axis == 0 ? "XResolution" : axis == 1 ? "YResolution" : "ImageJ's spacing", size[axis],
-                scale);
+            place.spacing[axis] = tiff_length(path, options,
+                                              axis == 0   ? "XResolution"
+                                              : axis == 1 ? "YResolution"
+                                                          : "ImageJ's spacing",
+                                              size[axis], scale);
         if (const std::string origin = text(origins[axis]); !origin.empty()) {
             const double voxels = tiff_number(path, std::string("ImageJ's ") + origins[axis], origin);
             if (!std::isfinite(voxels)) fail("{}: ImageJ's {}={}: expected a number", path, origins[axis], origin);
@@ -298,8 +299,8 @@ std::vector<std::size_t> usable_pages(const TiffFile& file, std::vector<std::str
         for (std::size_t i = 0; i < file.pages().size(); ++i)
             usable.push_back(i);
     } else if (left_out > 0) {
-        notes.push_back(fmt::format("{} of its {} pages are reduced copies or masks and left out.", left_out,
-                                    file.pages().size()));
+        notes.push_back(
+            fmt::format("{} of its {} pages are reduced copies or masks and left out.", left_out, file.pages().size()));
     }
     return usable;
 }
@@ -310,9 +311,8 @@ std::vector<std::size_t> pages_of_one_shape(const TiffFile& file, const std::vec
     std::vector<std::vector<std::size_t>> groups;
     constexpr std::size_t kMostGroups = 64;
     for (const std::size_t page : pages) {
-        const auto group = std::ranges::find_if(groups, [&](const auto& members) {
-            return is_same_shape(file.pages()[members[0]], file.pages()[page]);
-        });
+        const auto group = std::ranges::find_if(
+            groups, [&](const auto& members) { return is_same_shape(file.pages()[members[0]], file.pages()[page]); });
         if (group != groups.end())
             group->push_back(page);
         else if (groups.size() < kMostGroups)
@@ -410,8 +410,8 @@ bool take_shaped(TiffStack& stack, const TiffFilePointer& file, const LoadOption
     if (page.samples > 1 && page.planar == 2) inside.insert(inside.begin(), page.samples);
     if (shape.size() < inside.size() || !std::equal(inside.rbegin(), inside.rend(), shape.rbegin())) return false;
     shape.resize(shape.size() - inside.size());
-    const std::string axes = fields.contains("axes") && fields["axes"].is_string() ? fields["axes"].get<std::string>()
-                                                                                   : std::string();
+    const std::string axes =
+        fields.contains("axes") && fields["axes"].is_string() ? fields["axes"].get<std::string>() : std::string();
     std::size_t images = 1;
     for (const std::size_t size : shape)
         if (size == 0 || __builtin_mul_overflow(images, size, &images)) return false;
@@ -434,9 +434,7 @@ bool take_shaped(TiffStack& stack, const TiffFilePointer& file, const LoadOption
         if (axis != channel_axis && !(is_named && axes[axis] == 'T')) slice_axis = axis;
     TiffSizes sizes;
     for (std::size_t axis = 0; axis < shape.size(); ++axis)
-        (axis == slice_axis     ? sizes.slices
-         : axis == channel_axis ? sizes.channels
-                                : sizes.frames) *= shape[axis];
+        (axis == slice_axis ? sizes.slices : axis == channel_axis ? sizes.channels : sizes.frames) *= shape[axis];
     choose_planes(stack, file->path(), options, sizes, page, {}, [&](std::size_t z, std::size_t c, std::size_t t) {
         std::size_t index = 0, stride = 1;
         for (std::size_t axis = shape.size(); axis-- > 0;) {
@@ -472,7 +470,8 @@ bool take_lsm(TiffStack& stack, const TiffFilePointer& file, const LoadOptions& 
     const TiffPage& page = file->pages()[0];
     if (!page.lsm) return false;
     const std::string& path = file->path();
-    if (page.lsm->count < 90) fail("{}: Zeiss LSM information of {} bytes, expected at least 90", path, page.lsm->count);
+    if (page.lsm->count < 90)
+        fail("{}: Zeiss LSM information of {} bytes, expected at least 90", path, page.lsm->count);
     const std::string info = file->bytes(page.lsm->at, 90);
     const auto number = [&](auto value, std::size_t at) {
         std::memcpy(&value, info.data() + at, sizeof value);
@@ -488,7 +487,8 @@ bool take_lsm(TiffStack& stack, const TiffFilePointer& file, const LoadOptions& 
     const auto kind = number(std::uint16_t{}, 88);
     if (kind != 0 && kind != 3 && kind != 6 && kind != 7)
         fail("{}: a Zeiss LSM of scan type {}: only stacks and time series of slices in x and y are read", path, kind);
-    if (slices < 1 || frames < 1 || static_cast<std::uint64_t>(slices) * static_cast<std::uint64_t>(frames) != pages.size())
+    if (slices < 1 || frames < 1 ||
+        static_cast<std::uint64_t>(slices) * static_cast<std::uint64_t>(frames) != pages.size())
         fail("{}: Zeiss LSM: {} slices, {} frames, but {} pages", path, slices, frames, pages.size());
     check_page({file, pages[0], {}});
     const TiffSizes sizes{static_cast<std::size_t>(slices), 1, static_cast<std::size_t>(frames)};
@@ -595,8 +595,8 @@ void check_ome_type(const std::string& path, const OmeImage& image, const TiffPa
         std::string_view name;
         std::uint64_t bits, format;
     };
-    static constexpr Type kTypes[] = {{"int8", 8, 2},    {"uint8", 8, 1},  {"int16", 16, 2}, {"uint16", 16, 1},
-                                      {"int32", 32, 2},  {"uint32", 32, 1}, {"float", 32, 3}, {"double", 64, 3}};
+    static constexpr Type kTypes[] = {{"int8", 8, 2},   {"uint8", 8, 1},   {"int16", 16, 2}, {"uint16", 16, 1},
+                                      {"int32", 32, 2}, {"uint32", 32, 1}, {"float", 32, 3}, {"double", 64, 3}};
     for (const Type& type : kTypes) {
         if (type.name != image.type) continue;
         const bool is_plain = page.format == 1 || page.format == 4;
@@ -641,7 +641,8 @@ void take_ome(TiffStack& stack, const std::string& path, const TiffFilePointer& 
     for (const OmeTiffData& part : data) {
         const auto file = files.of(part);
         const std::uint64_t begin = part.directory.value_or(0), pages = file->pages().size();
-        const std::uint64_t count = part.planes.value_or(part.directory || part.z + part.c + part.t > 0 ? 1 : std::min(pages, total));
+        const std::uint64_t count =
+            part.planes.value_or(part.directory || part.z + part.c + part.t > 0 ? 1 : std::min(pages, total));
         if (begin > pages || count > pages - begin)
             fail("{}: OME-XML: TiffData IFD='{}' with {} planes, but {} has {} pages", path, begin, count, file->path(),
                  pages);
@@ -715,7 +716,9 @@ void take_pages(TiffStack& stack, const TiffFilePointer& file, const LoadOptions
     check_page({file, pages[0], {}});
     const TiffPage& page = file->pages()[pages[0]];
     choose_planes(stack, file->path(), options, {pages.size(), 1, 1}, page, {},
-                  [&](std::size_t z, std::size_t, std::size_t) { return TiffPlane{file, pages[z], std::nullopt}; });
+                  [&](std::size_t z, std::size_t, std::size_t) {
+                      return TiffPlane{file, pages[z], std::nullopt};
+                  });
     stack.place = plain_place(page, stack.notes);
 }
 
@@ -776,7 +779,8 @@ void gdal_calibration(TiffStack& stack, const std::string& path, const TiffPage&
     for (const pugi::xml_node item : xml.child("GDALMetadata").children("Item")) {
         const std::string_view role = item.attribute("role").value();
         if ((role != "scale" && role != "offset") || item.attribute("sample").as_ullong() != stack.sample) continue;
-        (role == "scale" ? scale : offset) = tiff_number(path, fmt::format("GDAL's {}", role), trimmed(item.text().get()));
+        (role == "scale" ? scale : offset) =
+            tiff_number(path, fmt::format("GDAL's {}", role), trimmed(item.text().get()));
     }
     if (!std::isfinite(scale) || !std::isfinite(offset) || scale == 0)
         fail("{}: GDAL's scale {} and offset {}: expected finite numbers", path, scale, offset);
@@ -793,13 +797,13 @@ std::optional<double> declared_fill(const std::string& path, const TiffPage& pag
 }
 
 void add_page_notes(TiffStack& stack, const TiffPage& page) {
-    if (page.photometric == 3)
-        stack.notes.emplace_back("A palette image: samples are its indices, not its colours.");
+    if (page.photometric == 3) stack.notes.emplace_back("A palette image: samples are its indices, not its colours.");
     if (page.photometric == 0 && page.format != 1 && page.format != 4)
         stack.warnings.emplace_back(
             "Its lowest values are displayed white (MinIsWhite), which is not undone for signed numbers and floats.");
     else if (page.photometric == 0)
-        stack.notes.push_back(fmt::format("MinIsWhite is undone: samples are 2^{} - 1 minus what is stored.", page.bits));
+        stack.notes.push_back(
+            fmt::format("MinIsWhite is undone: samples are 2^{} - 1 minus what is stored.", page.bits));
     if (page.is_geo) stack.notes.emplace_back("GeoTIFF's scale of pixels (ModelPixelScale) is ignored.");
     if (page.has_missing)
         stack.warnings.emplace_back("A sparse file: some of its strips or tiles are absent, their samples are 0.");

@@ -34,11 +34,11 @@ struct TiffPage {
     std::vector<std::string> descriptions;
     std::string no_data, gdal_metadata;  ///< GDAL's fields; empty: not given
     std::optional<TiffField> lsm;
-    TiffField offsets, counts;     ///< of the strips or tiles
-    std::uint64_t stored = 0;      ///< bytes of all strips or tiles
-    std::uint64_t first = 0;       ///< offset of the first one
-    bool is_contiguous = false;    ///< they follow each other without gaps
-    bool has_missing = false;      ///< some have neither offset nor bytes (sparse files)
+    TiffField offsets, counts;   ///< of the strips or tiles
+    std::uint64_t stored = 0;    ///< bytes of all strips or tiles
+    std::uint64_t first = 0;     ///< offset of the first one
+    bool is_contiguous = false;  ///< they follow each other without gaps
+    bool has_missing = false;    ///< some have neither offset nor bytes (sparse files)
 };
 
 /// A file's chain of directories. Closed between calls: a sequence may have more files than a process may open.

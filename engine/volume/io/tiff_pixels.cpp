@@ -195,9 +195,9 @@ void TiffPixels::read(const TiffPlane& plane, std::size_t sample, void* target) 
         const std::uint64_t index = i + (page.planar == 2 ? sample * blocks.count() : 0);
         block_.assign(static_cast<std::size_t>(blocks.row_bytes * coded_rows), '\0');
         if (!page.has_missing || offsets[index] != 0 || counts[index] != 0) {
-            const std::string reason = decoder_->decode(page.directory, static_cast<std::uint32_t>(index),
-                                                        static_cast<std::uint32_t>(coded_rows), block_.data(),
-                                                        block_.size());
+            const std::string reason =
+                decoder_->decode(page.directory, static_cast<std::uint32_t>(index),
+                                 static_cast<std::uint32_t>(coded_rows), block_.data(), block_.size());
             if (!reason.empty()) fail("{}: truncated or damaged: {}", plane.name(), tidy(reason));
         }
         for (std::uint64_t row = 0; row < rows; ++row)

@@ -127,8 +127,7 @@ void find_space(const std::string& where, ZarrView& view) {
     std::vector<std::size_t> space;
     for (std::size_t axis = 0; axis < view.axes.size(); ++axis)
         if (view.axes[axis].role == ZarrRole::Space) space.push_back(axis);
-    if (space.size() < 2 || space.size() > 3)
-        fail("{}: {} axes of space, expected 2 or 3", where, space.size());
+    if (space.size() < 2 || space.size() > 3) fail("{}: {} axes of space, expected 2 or 3", where, space.size());
     const auto named = [&](std::string_view name) -> std::optional<std::size_t> {
         for (const std::size_t axis : space)
             if (view.axes[axis].name == name) return axis;
@@ -213,10 +212,9 @@ class ZarrTarget {
         const std::size_t item = array_.item();
         for (std::size_t z = 0; z < count[2]; ++z)
             for (std::size_t y = 0; y < count[1]; ++y) {
-                const char* row = from + stride[2] * static_cast<std::ptrdiff_t>(z) +
-                                  stride[1] * static_cast<std::ptrdiff_t>(y);
-                char* to = samples_.data() +
-                           (((begin[2] + z) * dims_[1] + begin[1] + y) * dims_[0] + begin[0]) * item;
+                const char* row =
+                    from + stride[2] * static_cast<std::ptrdiff_t>(z) + stride[1] * static_cast<std::ptrdiff_t>(y);
+                char* to = samples_.data() + (((begin[2] + z) * dims_[1] + begin[1] + y) * dims_[0] + begin[0]) * item;
                 if (stride[0] == static_cast<std::ptrdiff_t>(item)) {
                     std::memcpy(to, row, count[0] * item);
                     continue;
@@ -315,8 +313,10 @@ void take_zarr_labels(const json& image_label, Volume& volume) {
         table = std::make_shared<LabelTable>();
         table->is_signed = !values.empty() && values[0] < 0;
         for (const float value : values)
-            table->labels.push_back(
-                {.id = static_cast<std::uint64_t>(static_cast<std::int64_t>(value)), .value = value, .name = {}, .color = {}});
+            table->labels.push_back({.id = static_cast<std::uint64_t>(static_cast<std::int64_t>(value)),
+                                     .value = value,
+                                     .name = {},
+                                     .color = {}});
     }
     const auto label_of = [&](const json& entry) -> Label* {
         const json* value = member(entry, "label-value");
@@ -404,12 +404,11 @@ Volume read_zarr(const std::string& path, const ZarrStore& store, const ZarrArra
                 at[axis] += origin[axis];
             return at;
         };
-        return ZarrSink{[&target, moved](const ZarrShape& at, const ZarrShape& shape) {
-                            return target.needs(moved(at), shape);
-                        },
-                        [&target, moved](const ZarrPiece& piece) {
-                            target.take({moved(piece.origin), piece.shape, piece.data, piece.strides});
-                        }};
+        return ZarrSink{
+            [&target, moved](const ZarrShape& at, const ZarrShape& shape) { return target.needs(moved(at), shape); },
+            [&target, moved](const ZarrPiece& piece) {
+                target.take({moved(piece.origin), piece.shape, piece.data, piece.strides});
+            }};
     };
     std::size_t done = 0;
     store.visit(keys, [&](std::size_t index, const std::string& packed) {
@@ -422,8 +421,9 @@ Volume read_zarr(const std::string& path, const ZarrStore& store, const ZarrArra
     for (std::size_t i = 0; i < chunks.size(); ++i)
         if (!is_read[i]) fill_zarr_piece(array, array.chunk, sink_at(chunks[i].origin));
     if (missing == chunks.size())
-        volume.warnings.push_back(fmt::format("None of its {} chunks exists, the first would be {}: all samples are {}.",
-                                              missing, store.shown(keys[0]), array.shown_fill));
+        volume.warnings.push_back(
+            fmt::format("None of its {} chunks exists, the first would be {}: all samples are {}.", missing,
+                        store.shown(keys[0]), array.shown_fill));
     else if (missing > 0)
         volume.notes.push_back(
             fmt::format("{} of its {} chunks are not stored: their samples are {}, the array's fill_value.", missing,
@@ -501,7 +501,8 @@ Volume load_multiscale(const std::string& path, const ZarrStore& store, const Za
             view.notes.push_back(fmt::format("Level {} of 0..{} is read; --level chooses.", level, levels - 1));
         const auto labels = store.children(zarr_key(group.key, "labels"));
         if (!labels.empty())
-            view.notes.push_back(fmt::format("It has labels: {}.", store.shown(zarr_key(group.key, "labels/" + labels[0]))));
+            view.notes.push_back(
+                fmt::format("It has labels: {}.", store.shown(zarr_key(group.key, "labels/" + labels[0]))));
         return read_zarr(path, store, array, view, options);
     }
 }
@@ -509,7 +510,8 @@ Volume load_multiscale(const std::string& path, const ZarrStore& store, const Za
 /// An array without multiscales: its last three axes are space unless their names say otherwise.
 Volume load_plain_array(const std::string& path, const ZarrStore& store, const ZarrArray& array,
                         const LoadOptions& options) {
-    if (options.level) fail("{}: --level {}: this is one array, not an OME-Zarr image of several levels", path, *options.level);
+    if (options.level)
+        fail("{}: --level {}: this is one array, not an OME-Zarr image of several levels", path, *options.level);
     ZarrView view;
     const std::size_t count = array.shape.size();
     if (count < 2) fail("{}: an array with {} axis, expected at least 2", path, count);
@@ -617,8 +619,7 @@ Volume load_group(const std::string& path, const ZarrStore& store, const ZarrNod
             well += "/0";
         refuse("a plate, whose wells hold the images", wells);
     }
-    if (const json* well = member(ome, "well"))
-        refuse("a well of several images", paths_in(member(*well, "images")));
+    if (const json* well = member(ome, "well")) refuse("a well of several images", paths_in(member(*well, "images")));
     if (member(ome, "labels") != nullptr) refuse("a group of labels", paths_in(member(ome, "labels")));
     auto names = store.children(group.key);
     std::erase(names, "OME");  // metadata only

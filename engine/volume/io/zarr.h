@@ -59,9 +59,9 @@ using ZarrShape = std::vector<std::size_t>;
 struct ZarrCodec {
     enum class Kind { Transpose, Bytes, Sharding, Blosc, Zstd, Lz4, Gzip, Bzip2, Crc32c };
     Kind kind = Kind::Bytes;
-    ZarrShape order;        ///< Transpose
+    ZarrShape order;          ///< Transpose
     bool is_swapped = false;  ///< Bytes: not in this machine's byte order
-    ZarrShape inner_shape;  ///< Sharding
+    ZarrShape inner_shape;    ///< Sharding
     std::vector<ZarrCodec> inner, index;
     bool index_at_end = true;
 };

@@ -42,7 +42,8 @@ ZarrShape zarr_shape(const std::string& where, const json& object, const char* n
                   list[i].get<std::uint64_t>() >= least;
         if (is_good) shape.push_back(list[i].get<std::size_t>());
     }
-    if (!is_good) fail("{}: '{}': {}: expected at most 32 whole numbers of at least {}", where, name, shown_json(list), least);
+    if (!is_good)
+        fail("{}: '{}': {}: expected at most 32 whole numbers of at least {}", where, name, shown_json(list), least);
     return shape;
 }
 
@@ -106,7 +107,8 @@ std::uint16_t half_of(double value) {
     const int shift = std::max(exponent - 11, -24);
     const auto mantissa = static_cast<int>(std::nearbyint(std::ldexp(magnitude, -shift)));
     // A mantissa of 2^11 after rounding carries into the exponent by itself.
-    return static_cast<std::uint16_t>(sign | (mantissa + (magnitude >= std::ldexp(1.0, -14) ? (shift + 24) * 1024 : 0)));
+    return static_cast<std::uint16_t>(sign |
+                                      (mantissa + (magnitude >= std::ldexp(1.0, -14) ? (shift + 24) * 1024 : 0)));
 }
 
 std::string bytes_of_float(const ZarrArray& array, const json& value) {
@@ -224,8 +226,8 @@ void set_v2(ZarrArray& array, const json& fields) {
             transpose.order.push_back(axis);
         array.codecs.push_back(transpose);
     }
-    array.codecs.push_back(
-        {.kind = ZarrCodec::Kind::Bytes, .is_swapped = name[0] == '<' ? !kHostIsLittle : name[0] == '>' && kHostIsLittle});
+    array.codecs.push_back({.kind = ZarrCodec::Kind::Bytes,
+                            .is_swapped = name[0] == '<' ? !kHostIsLittle : name[0] == '>' && kHostIsLittle});
     if (const auto compressor = fields.find("compressor"); compressor != fields.end() && !compressor->is_null()) {
         if (!compressor->is_object())
             fail("{}: 'compressor': {}: expected an object with an id", array.where, shown_json(*compressor));
@@ -244,7 +246,8 @@ void set_v2(ZarrArray& array, const json& fields) {
 /// A codec, or an extension of the format, as {"name": ..., "configuration": {...}} or as its name alone.
 std::string v3_name(const std::string& where, const json& value, const char* what) {
     if (value.is_string()) return value.get<std::string>();
-    if (value.is_object() && value.contains("name") && value["name"].is_string()) return value["name"].get<std::string>();
+    if (value.is_object() && value.contains("name") && value["name"].is_string())
+        return value["name"].get<std::string>();
     fail("{}: '{}': {}: expected an object with a name", where, what, shown_json(value));
 }
 
@@ -298,9 +301,12 @@ std::vector<ZarrCodec> v3_codecs(const std::string& where, const json& list, std
                          shape.size());
                 for (std::size_t axis = 0; axis < shape.size(); ++axis)
                     if (shape[axis] % codec.inner_shape[axis] != 0)
-                        fail("{}: sharding_indexed: chunks of {} voxels in shards of {} along axis {}: expected a divisor",
-                             where, codec.inner_shape[axis], shape[axis], axis);
-                codec.inner = v3_codecs(where, zarr_field(where, settings, "codecs"), item, codec.inner_shape, depth + 1);
+                        fail(
+                            "{}: sharding_indexed: chunks of {} voxels in shards of {} along axis {}: expected a "
+                            "divisor",
+                            where, codec.inner_shape[axis], shape[axis], axis);
+                codec.inner =
+                    v3_codecs(where, zarr_field(where, settings, "codecs"), item, codec.inner_shape, depth + 1);
                 codec.index = v3_codecs(where, zarr_field(where, settings, "index_codecs"), 8, {1}, 9);
                 for (const ZarrCodec& one : codec.index)
                     if (one.kind != ZarrCodec::Kind::Bytes && one.kind != ZarrCodec::Kind::Crc32c)

@@ -81,13 +81,13 @@ std::string unpacked(const std::string& where, const std::vector<ZarrCodec>& cod
             continue;
         }
         std::string target(sizes[i - first], '\0');
-        const std::string reason =
-            kind == ZarrCodec::Kind::Gzip    ? unpack_gzip(now, target.data(), target.size())
-            : kind == ZarrCodec::Kind::Bzip2 ? unpack_bz2(now, target.data(), target.size())
-                                             : codec_library().unpack(kind == ZarrCodec::Kind::Blosc  ? Codec::Blosc
-                                                                      : kind == ZarrCodec::Kind::Zstd ? Codec::Zstd
-                                                                                                      : Codec::Lz4,
-                                                                      now, target.data(), target.size());
+        const std::string reason = kind == ZarrCodec::Kind::Gzip ? unpack_gzip(now, target.data(), target.size())
+                                   : kind == ZarrCodec::Kind::Bzip2
+                                       ? unpack_bz2(now, target.data(), target.size())
+                                       : codec_library().unpack(kind == ZarrCodec::Kind::Blosc  ? Codec::Blosc
+                                                                : kind == ZarrCodec::Kind::Zstd ? Codec::Zstd
+                                                                                                : Codec::Lz4,
+                                                                now, target.data(), target.size());
         if (!reason.empty()) fail("{}: truncated or damaged: {}", where, reason);
         now = std::move(target);
     }
@@ -144,10 +144,11 @@ ZarrSink shifted(const ZarrSink& sink, const ZarrShape& by) {
             origin[axis] += by[axis];
         return origin;
     };
-    return {[&sink, moved](const ZarrShape& origin, const ZarrShape& shape) { return sink.needs(moved(origin), shape); },
-            [&sink, moved](const ZarrPiece& piece) {
-                sink.take({moved(piece.origin), piece.shape, piece.data, piece.strides});
-            }};
+    return {
+        [&sink, moved](const ZarrShape& origin, const ZarrShape& shape) { return sink.needs(moved(origin), shape); },
+        [&sink, moved](const ZarrPiece& piece) {
+            sink.take({moved(piece.origin), piece.shape, piece.data, piece.strides});
+        }};
 }
 
 void decode_from(const std::string& where, const ZarrArray& array, const std::vector<ZarrCodec>& codecs,
@@ -157,7 +158,8 @@ void decode_shard(const std::string& where, const ZarrArray& array, const std::v
                   std::size_t first, std::string_view packed, const ZarrShape& shape, const ZarrSink& sink) {
     const ZarrCodec& shard = codecs[first];
     for (std::size_t i = first + 1; i < codecs.size(); ++i)
-        if (codecs[i].kind != ZarrCodec::Kind::Crc32c) fail("{}: shards that are packed as a whole are not read", where);
+        if (codecs[i].kind != ZarrCodec::Kind::Crc32c)
+            fail("{}: shards that are packed as a whole are not read", where);
     std::string checked;
     if (first + 1 < codecs.size()) {
         const std::size_t sums = 4 * (codecs.size() - first - 1);
@@ -173,7 +175,8 @@ void decode_shard(const std::string& where, const ZarrArray& array, const std::v
     for (const ZarrCodec& codec : shard.index)
         sums += codec.kind == ZarrCodec::Kind::Crc32c ? 4 : 0;
     if (packed.size() < index_bytes + sums)
-        fail("{}: truncated: a shard of {} bytes, but its index alone has {}", where, packed.size(), index_bytes + sums);
+        fail("{}: truncated: a shard of {} bytes, but its index alone has {}", where, packed.size(),
+             index_bytes + sums);
     const std::size_t bytes_at = static_cast<std::size_t>(
         std::ranges::find(shard.index, ZarrCodec::Kind::Bytes, &ZarrCodec::kind) - shard.index.begin());
     std::string index = unpacked(
