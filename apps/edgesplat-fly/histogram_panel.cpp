@@ -9,6 +9,7 @@
 #include "apps/edgesplat-fly/value_plot.h"
 #include "apps/edgesplat-fly/widgets.h"
 #include "engine/viewer/iso_edit.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -20,7 +21,7 @@ using Target = PlotState::Target;
 constexpr double kPointReach = 0.55, kLineReach = 0.4, kSnap = 0.25;  // em
 
 double gap_of(const edgesplat::Volume& volume) {
-    return viewer::kIsoGap * static_cast<double>(volume.max_value - volume.min_value);
+    return viewer::kIsoGap * volume.in_file_unit(static_cast<double>(volume.max_value - volume.min_value));
 }
 
 /// The point or line under the mouse; points have priority.
@@ -128,12 +129,12 @@ void mouse(AppState& state, const ValuePlot& plot, const Target& under) {
 void tooltip(const AppState& state, const ValuePlot& plot, const Target& target) {
     const SceneDocument& document = state.session.document();
     if (target.kind == PlotKind::Iso) {
-        ImGui::SetTooltip("iso-value %g", document.iso_values[target.place]);
+        ImGui::SetTooltip("iso-value %.10g", document.iso_values[target.place]);
     } else if (target.kind == PlotKind::Point) {
         const auto& point = document.transfer[target.place];
-        ImGui::SetTooltip("%g: %g per mm", point.value, point.extinction);
+        ImGui::SetTooltip("%.10g: %g per mm", point.value, point.extinction);
     } else {
-        ImGui::SetTooltip("%g", plot.value_at(plot.mouse.x));
+        ImGui::SetTooltip("%.10g", plot.value_at(plot.mouse.x));
     }
 }
 
@@ -141,19 +142,21 @@ void visible_range(AppState& state) {
     PlotState& now = state.editing.plot;
     const auto& volume = state.session.volume();
     const float low = volume.min_value, high = volume.max_value;
-    auto from = static_cast<float>(now.low), to = static_cast<float>(now.high);
+    // Floats hold values in the unit of the samples, but perhaps not in the file's.
+    auto from = static_cast<float>(now.low / volume.value_scale),
+         to = static_cast<float>(now.high / volume.value_scale);
     ImGui::SetNextItemWidth(14 * static_cast<float>(state.em));
     if (ImGui::DragFloatRange2("##range", &from, &to, (high - low) / 400, low, high, "from %g", "to %g",
                                ImGuiSliderFlags_AlwaysClamp) &&
         static_cast<double>(to - from) > 1e-3 * static_cast<double>(high - low)) {
-        now.low = static_cast<double>(from);
-        now.high = static_cast<double>(to);
+        now.low = volume.in_file_unit(static_cast<double>(from));
+        now.high = volume.in_file_unit(static_cast<double>(to));
     }
     note(state, "range");
     ImGui::SameLine();
     if (!button(state, "reset")) return;
-    now.low = static_cast<double>(low);
-    now.high = static_cast<double>(high);
+    now.low = volume.in_file_unit(static_cast<double>(low));
+    now.high = volume.in_file_unit(static_cast<double>(high));
 }
 
 }  // namespace
@@ -161,7 +164,7 @@ void visible_range(AppState& state) {
 void histogram_panel(AppState& state) {
     const auto& volume = state.session.volume();
     if (!(volume.max_value > volume.min_value)) {
-        ImGui::TextDisabled("every voxel has the value %g", static_cast<double>(volume.min_value));
+        ImGui::TextDisabled("every voxel has the value %s", edgesplat::value_text(volume, volume.min_value).c_str());
         return;
     }
     const ValuePlot plot = value_plot(state, "histogram");

@@ -8,6 +8,7 @@
 #include "apps/edgesplat-fly/widgets.h"
 #include "engine/viewer/iso_edit.h"
 #include "engine/viewer/transfer_edit.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -16,14 +17,18 @@ using edgesplat::MaterialChoice;
 using edgesplat::SceneDocument;
 
 /// For example "bone, from 300".
-std::string title(const edgesplat::Scene& scene, std::size_t m) {
-    const auto& iso = scene.iso_values;
+std::string title(const edgesplat::Scene& scene, const edgesplat::Volume& volume, std::size_t m) {
+    std::vector<double> values = scene.iso_values;
+    for (double& value : values)
+        value = volume.in_file_unit(value);
+    const double range = volume.in_file_unit(static_cast<double>(volume.max_value - volume.min_value));
+    const std::vector<std::string> iso = edgesplat::value_texts(values, range);
     std::string text = scene.materials[m].name;
     if (!text.empty()) text += ", ";
     if (iso.empty()) return text + "all values";
-    if (m == 0) return text + fmt::format("below {:.5g}", iso.front());
-    text += fmt::format("from {:.5g}", iso[m - 1]);
-    return m < iso.size() ? text + fmt::format(" to {:.5g}", iso[m]) : text;
+    if (m == 0) return text + fmt::format("below {}", iso.front());
+    text += fmt::format("from {}", iso[m - 1]);
+    return m < iso.size() ? text + fmt::format(" to {}", iso[m]) : text;
 }
 
 void name_field(AppState& state, std::size_t m) {
@@ -44,13 +49,15 @@ void response(AppState& state, std::size_t m, const char* label, double value, c
 bool iso_value(AppState& state, std::size_t m) {
     auto& session = state.session;
     const auto& volume = session.volume();
-    const double value = session.scene().iso_values[m - 1];
+    const double value = session.document().iso_values[m - 1];
     // This slider stops at the neighbouring iso-values, since beyond them it would belong to another material.
-    const auto iso = session.scene().iso_values;
-    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const auto iso = session.document().iso_values;
+    const double low = volume.in_file_unit(static_cast<double>(volume.min_value));
+    const double high = volume.in_file_unit(static_cast<double>(volume.max_value));
+    const std::string format = edgesplat::value_format(volume);
     const double gap = viewer::kIsoGap * (high - low);
     const double least = m > 1 ? iso[m - 2] + gap : low, most = m < iso.size() ? iso[m] - gap : high;
-    slide(state, "iso", value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
+    slide(state, "iso", value, {low, high, format.c_str()}, [&](SceneDocument& d, double v) {
         viewer::move_iso_value(d, volume, m - 1, std::clamp(v, least, std::max(least, most)));
     });
     const bool needed = session.document().transfer.empty() && session.scene().iso_values.size() == 1;
@@ -89,7 +96,7 @@ void material(AppState& state, std::size_t m) {
               [m](SceneDocument& d, const glm::dvec3& v) { viewer::material_choice(d, m).color = v; });
         ImGui::SameLine();
     }
-    const std::string text = title(state.session.scene(), m);
+    const std::string text = title(state.session.scene(), state.session.volume(), m);
     const bool open = ImGui::TreeNodeEx("material", ImGuiTreeNodeFlags_SpanAvailWidth, "%s", text.c_str());
     note(state, "title");
     if (!open) return;

@@ -16,7 +16,8 @@ void measure_panel(AppState& state) {
     for (std::size_t i = picks.size(); i-- > 0 && i + 6 > picks.size();) {
         const auto& p = picks[i];
         ImGui::Text("%zu  %.2f, %.2f, %.2f mm", i + 1, p.world.x, p.world.y, p.world.z);
-        ImGui::TextDisabled("   voxel %.2f, %.2f, %.2f  value %g", p.voxel.x, p.voxel.y, p.voxel.z, p.value);
+        ImGui::TextDisabled("   voxel %.2f, %.2f, %.2f  value %.8g", p.voxel.x, p.voxel.y, p.voxel.z,
+                            state.session.volume().in_file_unit(p.value));
         ImGui::TextDisabled("   %.2f ± %.2f mm away", p.distance, p.uncertainty);
     }
 }

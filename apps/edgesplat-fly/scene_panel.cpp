@@ -12,8 +12,8 @@ void reset_for_volume(AppState& state) {
     if (editing.volume == volume) return;
     editing.volume = volume;
     editing.plot = {};
-    editing.plot.low = static_cast<double>(volume->min_value);
-    editing.plot.high = static_cast<double>(volume->max_value);
+    editing.plot.low = volume->in_file_unit(static_cast<double>(volume->min_value));
+    editing.plot.high = volume->in_file_unit(static_cast<double>(volume->max_value));
     editing.stored_transfer.clear();
 }
 

@@ -11,6 +11,7 @@
 #include "engine/error.h"
 #include "engine/viewer/samples.h"
 #include "engine/viewer/screen.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -177,6 +178,14 @@ void show(AppState& state, int axis, const glm::dvec3& voxel, const glm::dvec2& 
     mouse(state, cell, voxel);
 }
 
+/// The value at a place in index space, for reading.
+std::string value_there(const edgesplat::Volume& volume, const glm::dvec3& voxel) {
+    const glm::ivec3 nearest = glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), volume.geometry.dims - 1);
+    if (!volume.has_data(nearest)) return "no data";
+    return edgesplat::value_text(volume.in_file_unit(viewer::interpolated(volume, voxel)),
+                                 volume.in_file_unit(static_cast<double>(volume.max_value - volume.min_value)));
+}
+
 void window_sliders(AppState& state) {
     SliceView& view = state.slice_view;
     const auto& volume = state.session.volume();
@@ -227,8 +236,8 @@ void contents(AppState& state) {
     window_sliders(state);
     ImGui::Text("%.1f, %.1f, %.1f mm", world.x, world.y, world.z);
     if (inside(volume.geometry, world))
-        ImGui::TextDisabled("voxel %.1f, %.1f, %.1f: %g", voxel.x, voxel.y, voxel.z,
-                            viewer::interpolated(volume, voxel));
+        ImGui::TextDisabled("voxel %.1f, %.1f, %.1f: %s", voxel.x, voxel.y, voxel.z,
+                            value_there(volume, voxel).c_str());
     ImGui::EndGroup();
 }
 

@@ -8,6 +8,7 @@
 #include "apps/edgesplat-fly/widgets.h"
 #include "engine/error.h"
 #include "engine/viewer/transfer_edit.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -29,6 +30,8 @@ void to_transfer(AppState& state) {
         const auto low = static_cast<double>(session.volume().min_value);
         const auto high = static_cast<double>(session.volume().max_value);
         points = viewer::transfer_of_materials(session.scene(), low, high, kStep * (high - low));
+        for (auto& point : points)
+            point.value = session.volume().in_file_unit(point.value);
     }
     state.editing.plot.chosen.reset();
     session.edit([&](SceneDocument& d) { viewer::use_transfer(d, points); });
@@ -86,7 +89,9 @@ void transfer_panel(AppState& state) {
     }
     const std::size_t i = *chosen;
     const auto& volume = session.volume();
-    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const double low = volume.in_file_unit(static_cast<double>(volume.min_value));
+    const double high = volume.in_file_unit(static_cast<double>(volume.max_value));
+    const std::string format = edgesplat::value_format(volume);
     const double gap = 1e-5 * (high - low);
     color(state, "##colour", points[i].color,
           [i](SceneDocument& d, const glm::dvec3& v) { d.transfer.at(i).color = v; });
@@ -99,7 +104,7 @@ void transfer_panel(AppState& state) {
         chosen.reset();
         return;
     }
-    slide(state, "value", points[i].value, {low, high, "%.5g"}, [&](SceneDocument& d, double v) {
+    slide(state, "value", points[i].value, {low, high, format.c_str()}, [&](SceneDocument& d, double v) {
         viewer::move_transfer_point(d.transfer, i, v, d.transfer.at(i).extinction, gap);
     });
     const auto scale = viewer::ExtinctionScale::of(volume.geometry);

@@ -9,7 +9,12 @@ constexpr int kBins = 256, kSuggestions = 4;
 
 ValueStatistics counted(const edgesplat::Volume& volume) {
     try {
-        return {edgesplat::histogram(volume, kBins), edgesplat::suggest_iso_values(volume, kSuggestions)};
+        ValueStatistics found{edgesplat::histogram(volume, kBins), edgesplat::suggest_iso_values(volume, kSuggestions)};
+        found.histogram.low = volume.in_file_unit(found.histogram.low);
+        found.histogram.high = volume.in_file_unit(found.histogram.high);
+        for (auto& suggestion : found.suggestions)
+            suggestion.value = volume.in_file_unit(suggestion.value);
+        return found;
     } catch (const edgesplat::Error&) {
         return {};  // the drawer reports packed files that have become unreadable
     }

@@ -5,6 +5,7 @@
 #include "apps/device_options.h"
 #include "apps/edgesplat/accuracy_command.h"
 #include "apps/edgesplat/bench_command.h"
+#include "apps/edgesplat/check_command.h"
 #include "apps/edgesplat/compare_command.h"
 #include "apps/edgesplat/effects_command.h"
 #include "apps/edgesplat/footprints_command.h"
@@ -30,6 +31,7 @@ void add_commands(CLI::App& app, const std::string& command_line, int& exit_stat
     add_scene_command(app, exit_status);
     add_movie_command(app, exit_status);
     add_info_command(app);
+    add_check_command(app, exit_status);
     add_measure_command(app);
     add_pack_command(app, exit_status);
     add_compare_command(app, exit_status);

@@ -3,15 +3,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <span>
 
 #include "apps/edgesplat/json_output.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -27,12 +32,39 @@ std::vector<double> listed(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
 }
 
-double mean_of(const Volume& volume) {
-    if (volume.packed) return volume.packed->mean();
-    double sum = 0;
-    for (const float value : volume.values)
-        sum += static_cast<double>(value);
-    return sum / static_cast<double>(volume.values.size());
+/// Rows of the 4 x 4 matrix from voxel indices i, j, k to world mm.
+nlohmann::json affine(const edgesplat::VolumeGeometry& geometry) {
+    nlohmann::json rows;
+    const glm::dmat3& axes = geometry.index_to_world_axes;
+    for (int row = 0; row < 3; ++row)
+        rows.push_back({axes[0][row], axes[1][row], axes[2][row], geometry.origin[row]});
+    rows.push_back({0.0, 0.0, 0.0, 1.0});
+    return rows;
+}
+
+/// The labels of a segmentation, the largest first; null for other volumes.
+nlohmann::json labels_described(const Volume& volume) {
+    constexpr std::size_t kListed = 10;
+    std::vector<edgesplat::Label> labels;
+    if (volume.labels)
+        labels = volume.labels->labels;
+    else
+        for (const float value : edgesplat::labels_of(volume))
+            labels.push_back({.id = static_cast<std::uint64_t>(static_cast<std::int64_t>(value)), .value = value});
+    if (labels.empty()) return nullptr;
+    std::map<float, std::size_t> voxels;
+    for (std::size_t i = 0; i < volume.values.size(); ++i)
+        if (volume.has_data(i)) ++voxels[volume.values[i]];
+    std::ranges::stable_sort(labels, std::ranges::greater(), [&](const auto& label) { return voxels[label.value]; });
+    edgesplat::LabelTable numbers;
+    numbers.is_signed = !volume.labels || volume.labels->is_signed;
+    nlohmann::json json{{"count", labels.size()}, {"largest", nlohmann::json::array()}};
+    for (const auto& label : std::span(labels).first(std::min(labels.size(), kListed))) {
+        nlohmann::json entry{{"number", numbers.number_of(label)}, {"voxels", voxels[label.value]}};
+        if (!label.name.empty()) entry["name"] = label.name;
+        json["largest"].push_back(entry);
+    }
+    return json;
 }
 
 /// Properties of a packed volume, and the level from which iso-values are suggested.
@@ -55,24 +87,35 @@ nlohmann::json description(const Volume& volume, int bins) {
     nlohmann::json json;
     json["volume"] = volume.name;
     json["dims"] = {geometry.dims.x, geometry.dims.y, geometry.dims.z};
+    json["format"] = volume.format;
     json["type"] = volume.stored_type;
+    json["geometry_source"] = volume.geometry_source.empty() ? "none" : volume.geometry_source;
+    json["length_unit"] = volume.length_unit;
+    json["affine"] = affine(geometry);
+    json["in_patient"] = volume.in_patient;
     json["spacing_mm"] = listed(spacing);
     for (int axis = 0; axis < 3; ++axis)
         json["directions"].push_back(listed(geometry.index_to_world_axes[axis] / spacing[axis]));
     json["origin_mm"] = listed(geometry.origin);
     json["left_handed"] = glm::determinant(geometry.index_to_world_axes) < 0;
-    json["range"] = {volume.min_value, volume.max_value};
-    json["mean"] = mean_of(volume);
-    json["non_finite"] = volume.non_finite_count;
+    const auto in_file_unit = [&](double value) { return volume.in_file_unit(value); };
+    json["range"] = {in_file_unit(static_cast<double>(volume.min_value)),
+                     in_file_unit(static_cast<double>(volume.max_value))};
+    json["mean"] = in_file_unit(mean_of(volume));
+    json["no_data"] = volume.non_finite_count;
+    if (const auto labels = labels_described(volume); !labels.is_null()) json["labels"] = labels;
     json["checksum"] = fmt::format("{:016x}", volume.checksum);
+    if (!volume.packed) json["samples_crc32"] = fmt::format("{:08x}", samples_crc32(volume));
     json["notes"] = volume.notes;
     json["warnings"] = volume.warnings;
     const auto histogram = edgesplat::histogram(volume, bins);
-    json["histogram"] = {{"low", histogram.low}, {"high", histogram.high}, {"counts", histogram.counts}};
+    json["histogram"] = {
+        {"low", in_file_unit(histogram.low)}, {"high", in_file_unit(histogram.high)}, {"counts", histogram.counts}};
     if (volume.packed) json["packed"] = packed_description(*volume.packed);
     json["suggested_iso_values"] = nlohmann::json::array();
     for (const auto& suggestion : edgesplat::suggest_iso_values(volume))
-        json["suggested_iso_values"].push_back({{"value", suggestion.value}, {"strength", suggestion.strength}});
+        json["suggested_iso_values"].push_back(
+            {{"value", in_file_unit(suggestion.value)}, {"strength", suggestion.strength}});
     return json;
 }
 
@@ -84,14 +127,17 @@ std::string triple(const nlohmann::json& v) {
 void print_histogram(const nlohmann::json& histogram) {
     const auto counts = histogram["counts"].get<std::vector<std::size_t>>();
     const double low = histogram["low"], high = histogram["high"];
+    std::vector<double> from;
+    for (std::size_t bin = 0; bin < counts.size(); ++bin)
+        from.push_back(low + (high - low) * static_cast<double>(bin) / static_cast<double>(counts.size()));
+    const std::vector<std::string> texts = edgesplat::value_texts(from, high - low);
     double longest = 0;
     for (const auto count : counts)
         longest = std::max(longest, std::log2(1.0 + static_cast<double>(count)));
     for (std::size_t bin = 0; bin < counts.size(); ++bin) {
         const double length = std::log2(1.0 + static_cast<double>(counts[bin]));
-        const double from = low + (high - low) * static_cast<double>(bin) / static_cast<double>(counts.size());
         std::cout << fmt::format(
-            "  {:>12.6g} {:>11} {}\n", from, counts[bin],
+            "  {:>12} {:>11} {}\n", texts[bin], counts[bin],
             std::string(static_cast<std::size_t>(std::lround(50 * length / std::max(longest, 1.0))), '#'));
     }
 }
@@ -107,25 +153,49 @@ void print_packed(const nlohmann::json& json) {
     }
 }
 
-void print(const nlohmann::json& json) {
+void print_labels(const nlohmann::json& labels) {
+    std::cout << fmt::format("labels      {}, the largest:\n", labels["count"].get<std::size_t>());
+    for (const auto& label : labels["largest"])
+        std::cout << fmt::format("  {:>12} {:>11} voxels  {}\n", label["number"].get<std::string>(),
+                                 label["voxels"].get<std::size_t>(), label.value("name", ""));
+}
+
+/// "sform (code 2), in mm": where the geometry comes from.
+std::string place_text(const nlohmann::json& json) {
+    const auto unit = json["length_unit"].get<std::string>();
+    return fmt::format("{}{}, {}", json["geometry_source"].get<std::string>(),
+                       unit.empty() ? ", no unit named: mm" : ", unit " + unit,
+                       json["in_patient"].get<bool>() ? "patient axes (LPS)" : "no patient axes");
+}
+
+void print(const nlohmann::json& json, const std::array<std::string, 2>& range_ends) {
+    const double low = json["range"][0].get<double>(), high = json["range"][1].get<double>();
     const auto& d = json["dims"];
     const double voxels = d[0].get<double>() * d[1].get<double>() * d[2].get<double>();
     std::cout << fmt::format("volume      {}\n", json["volume"].get<std::string>())
               << fmt::format("dims        {} x {} x {} ({:.4g} M voxels)\n", d[0].get<int>(), d[1].get<int>(),
                              d[2].get<int>(), voxels / 1e6)
+              << fmt::format("format      {}\n", json["format"].get<std::string>())
               << fmt::format("type        {}\n", json["type"].get<std::string>())
+              << fmt::format("place       {}\n", place_text(json))
               << fmt::format("spacing     {} mm\n", triple(json["spacing_mm"]));
     const char* const names = "ijk";
     for (std::size_t axis = 0; axis < 3; ++axis)
         std::cout << fmt::format("direction {} {}\n", names[axis], triple(json["directions"][axis]));
     std::cout << fmt::format("origin      {} mm{}\n", triple(json["origin_mm"]),
                              json["left_handed"].get<bool>() ? " (left-handed)" : "")
-              << fmt::format("range       {:.7g} .. {:.7g}, mean {:.6g}\n", json["range"][0].get<double>(),
-                             json["range"][1].get<double>(), json["mean"].get<double>())
-              << fmt::format("non-finite  {}\n", json["non_finite"].get<std::size_t>())
-              << fmt::format("checksum    {}\n", json["checksum"].get<std::string>());
+              << fmt::format("range       {} .. {}, mean {}\n", range_ends[0], range_ends[1],
+                             edgesplat::value_text(json["mean"].get<double>(), high - low))
+              << fmt::format("no data     {} samples\n", json["no_data"].get<std::size_t>())
+              << fmt::format("checksum    {}{}\n", json["checksum"].get<std::string>(),
+                             json.contains("samples_crc32")
+                                 ? ", CRC-32 of the samples " + json["samples_crc32"].get<std::string>()
+                                 : "");
+    if (json.contains("labels")) print_labels(json["labels"]);
     for (const auto& note : json["notes"])
         std::cout << "note        " << note.get<std::string>() << '\n';
+    for (const auto& warning : json["warnings"])
+        std::cout << "warning     " << warning.get<std::string>() << '\n';
     const bool packed = json.contains("packed");
     if (packed) print_packed(json["packed"]);
     std::cout << "histogram   (lower bound, voxels, logarithmic bar"
@@ -134,9 +204,12 @@ void print(const nlohmann::json& json) {
     std::cout << "suggested iso-values"
               << (packed ? fmt::format(" (from level {})", json["packed"]["suggestions_from_level"].get<int>()) : "")
               << ":";
+    std::vector<double> values;
     for (const auto& suggestion : json["suggested_iso_values"])
-        std::cout << fmt::format(" {:.5g} ({:.2f})", suggestion["value"].get<double>(),
-                                 suggestion["strength"].get<double>());
+        values.push_back(suggestion["value"].get<double>());
+    const std::vector<std::string> texts = edgesplat::value_texts(values, high - low);
+    for (std::size_t i = 0; i < texts.size(); ++i)
+        std::cout << fmt::format(" {} ({:.2f})", texts[i], json["suggested_iso_values"][i]["strength"].get<double>());
     std::cout << (json["suggested_iso_values"].empty() ? " none\n" : "\n");
 }
 
@@ -146,7 +219,7 @@ void run(const InfoOptions& options) {
     const Volume volume = load_with_progress(source, edgesplat::volume_folders({}), false);
     const auto json = description(volume, options.bins);
     if (options.json.empty())
-        print(json);
+        print(json, {value_text(volume, volume.min_value), value_text(volume, volume.max_value)});
     else
         write_json(options.json, json);
 }

@@ -114,7 +114,7 @@ Json places_measured(const MeasureCommand& command, const SceneDocument& documen
     Json json;
     for (const Place& place : places) {
         Json entry{{"world_mm", {place.world.x, place.world.y, place.world.z}}, {"uncertainty_mm", place.uncertainty}};
-        if (place.iso) entry["iso_value"] = *place.iso;
+        if (place.iso) entry["iso_value"] = volume.in_file_unit(*place.iso);
         json["places"].push_back(entry);
     }
     for (std::size_t i = 1; i < places.size(); ++i)
@@ -139,13 +139,14 @@ Json extents_measured(const MeasureCommand& command, const Volume& volume, const
     for (std::size_t m = 0; m < extents.volumes.size(); ++m) {
         Json material;
         if (!scene.materials[m].name.empty()) material["name"] = scene.materials[m].name;
-        if (m > 0) material["from"] = scene.iso_values[m - 1];
-        if (m < scene.iso_values.size()) material["below"] = scene.iso_values[m];
+        if (m > 0) material["from"] = volume.in_file_unit(scene.iso_values[m - 1]);
+        if (m < scene.iso_values.size()) material["below"] = volume.in_file_unit(scene.iso_values[m]);
         material["volume_mm3"] = to_json(extents.volumes[m]);
         json["materials"].push_back(material);
     }
     for (std::size_t j = 0; j < extents.surfaces.size(); ++j)
-        json["surfaces"].push_back({{"iso_value", scene.iso_values[j]}, {"area_mm2", to_json(extents.surfaces[j])}});
+        json["surfaces"].push_back(
+            {{"iso_value", volume.in_file_unit(scene.iso_values[j])}, {"area_mm2", to_json(extents.surfaces[j])}});
     return json;
 }
 
@@ -157,11 +158,16 @@ Json labels_measured(const Volume& volume) {
     return json;
 }
 
+/// An iso-value with all its digits, up to ten.
+std::string value(const Json& iso) {
+    return fmt::format("{:.10g}", iso.get<double>());
+}
+
 std::string interval(const Json& material) {
     std::string words;
-    if (material.contains("from")) words += fmt::format("from {:.6g}", material["from"].get<double>());
+    if (material.contains("from")) words += fmt::format("from {}", value(material["from"]));
     if (material.contains("below"))
-        words += fmt::format("{}below {:.6g}", words.empty() ? "" : ", ", material["below"].get<double>());
+        words += fmt::format("{}below {}", words.empty() ? "" : ", ", value(material["below"]));
     if (material.contains("name")) words += fmt::format(" ({})", material["name"].get<std::string>());
     return words;
 }
@@ -173,8 +179,8 @@ void print(const Json& json) {
         std::cout << fmt::format("place {:<3} {:.7g}, {:.7g}, {:.7g} mm", ++number, at[0].get<double>(),
                                  at[1].get<double>(), at[2].get<double>());
         if (place.contains("iso_value"))
-            std::cout << fmt::format(" ± {:.2g}, on the surface at {:.6g}", place["uncertainty_mm"].get<double>(),
-                                     place["iso_value"].get<double>());
+            std::cout << fmt::format(" ± {:.2g}, on the surface at {}", place["uncertainty_mm"].get<double>(),
+                                     value(place["iso_value"]));
         std::cout << '\n';
     }
     number = 0;
@@ -190,8 +196,7 @@ void print(const Json& json) {
     for (const Json& material : json.value("materials", Json::array()))
         std::cout << fmt::format("volume {}: {} mm^3\n", interval(material), text(material["volume_mm3"]));
     for (const Json& surface : json.value("surfaces", Json::array()))
-        std::cout << fmt::format("surface at {:.6g}: {} mm^2\n", surface["iso_value"].get<double>(),
-                                 text(surface["area_mm2"]));
+        std::cout << fmt::format("surface at {}: {} mm^2\n", value(surface["iso_value"]), text(surface["area_mm2"]));
     for (const Json& label : json.value("labels", Json::array()))
         std::cout << fmt::format("label {:g}: {} mm^3, {} voxels\n", label["label"].get<double>(),
                                  text(label["volume_mm3"]), label["voxels"].get<std::size_t>());

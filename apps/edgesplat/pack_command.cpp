@@ -36,6 +36,8 @@ edgesplat::LoadOptions load_options(const VolumeOptions& options) {
     load.series = source.series;
     load.raw = source.raw;
     load.spacing = source.spacing;
+    load.resample = source.resample;
+    load.no_data = source.no_data;
     return load;
 }
 

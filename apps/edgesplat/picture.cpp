@@ -18,6 +18,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/value_text.h"
 
 namespace {
 
@@ -56,8 +57,8 @@ void check(const PictureRequest& request) {
 edgesplat::Volume load(PictureRequest& request) {
     edgesplat::Volume volume = load_with_progress(request.document.volume, request.folders, request.quiet);
     if (volume.non_finite_count > 0 && !request.quiet)
-        fmt::print(stderr, "edgesplat: warning: {}: {} samples are not finite; they are replaced by {}\n", volume.name,
-                   volume.non_finite_count, volume.min_value);
+        fmt::print(stderr, "edgesplat: warning: {}: {} of {} samples contain no data; they are transparent\n",
+                   volume.name, volume.non_finite_count, volume.geometry.voxel_count());
     recognise_labels(request.document, volume);
     return volume;
 }
@@ -119,8 +120,9 @@ void warn_about_eye(const edgesplat::Volume& volume, const edgesplat::Camera& ca
     const glm::ivec3 voxel(glm::round(volume.geometry.to_index(camera.eye)));
     fmt::print(stderr,
                "edgesplat: warning: the eye ({:.5g}, {:.5g}, {:.5g} mm) is inside opaque matter: voxel {}, {}, {} has "
-               "the value {:.6g}; move the eye (--eye) or raise the iso-value (--iso)\n",
-               camera.eye.x, camera.eye.y, camera.eye.z, voxel.x, voxel.y, voxel.z, value_at(volume, voxel));
+               "the value {}; move the eye (--eye) or raise the iso-value (--iso)\n",
+               camera.eye.x, camera.eye.y, camera.eye.z, voxel.x, voxel.y, voxel.z,
+               value_text(volume, value_at(volume, voxel)));
 }
 
 }  // namespace

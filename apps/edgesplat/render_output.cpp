@@ -126,6 +126,9 @@ ordered_json statistics(const RunDescription& run, const std::vector<RenderedFra
     ordered_json materials = ordered_json::array();
     for (const edgesplat::Material& m : run.scene->materials)
         materials.push_back({{"color", to_json(m.color)}, {"extinction_per_mm", m.extinction}});
+    std::vector<double> iso_values = run.scene->iso_values;
+    for (double& value : iso_values)
+        value = volume.in_file_unit(value);
     ordered_json frame_list = ordered_json::array();
     for (const RenderedFrame& frame : frames)
         frame_list.push_back(to_json(frame));
@@ -137,10 +140,10 @@ ordered_json statistics(const RunDescription& run, const std::vector<RenderedFra
                            {"checksum", checksum_text(volume)},
                            {"dims", {dims.x, dims.y, dims.z}},
                            {"spacing_mm", to_json(volume.geometry.spacing())},
-                           {"min", volume.min_value},
-                           {"max", volume.max_value},
+                           {"min", volume.in_file_unit(static_cast<double>(volume.min_value))},
+                           {"max", volume.in_file_unit(static_cast<double>(volume.max_value))},
                            {"warnings", volume.warnings}}},
-                         {"scene", {{"iso_values", run.scene->iso_values}, {"materials", materials}}},
+                         {"scene", {{"iso_values", iso_values}, {"materials", materials}}},
                          {"camera",
                           {{"eye_mm", to_json(run.camera.eye)},
                            {"direction", to_json(run.camera.direction)},

@@ -49,7 +49,7 @@ void run_new(const NewOptions& options) {
     recognise_labels(document, volume);
     const edgesplat::Scene scene = resolve_scene(document, volume);
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
-    write_out_materials(document, scene);
+    write_out_materials(document, scene, volume);
     document.iso_sigmas.clear();
     // Leave open what the user did not choose: the material below all surfaces, and the colours of labels.
     if (document.below == choice_of(edgesplat::Material{.color = glm::dvec3(0)})) document.below = {};

@@ -51,6 +51,8 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
                        "Series of a DICOM folder, or image of a file, with several: number, UID or name");
     command.add_flag("--resample", options.resample, "Resample unevenly spaced DICOM slices to even spacing");
     command.add_option("--spacing", options.spacing, "Voxel spacing in mm, instead of the file's")->expected(3);
+    command.add_option("--no-data", options.no_data,
+                       "Value of samples without data: transparent, and in no statistics (NaN always is)");
 }
 
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
@@ -60,6 +62,7 @@ void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (!options.series.empty()) source.series = options.series;
     if (!options.raw.empty()) source.raw = options.raw;
     if (options.resample) source.resample = true;
+    if (options.no_data) source.no_data = options.no_data;
     if (options.spacing.size() == 3)
         source.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
 }

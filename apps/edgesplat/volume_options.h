@@ -10,17 +10,18 @@
 
 /// Volume options of the command line; `LoadOptions` explains each.
 struct VolumeOptions {
-    int component = -1;           ///< --component; -1: not given
-    int frame = -1;               ///< --frame; -1: not given
-    int level = -1;               ///< --level; -1: not given
-    std::string series;           ///< --series
-    std::string raw;              ///< --raw
-    bool resample = false;        ///< --resample
-    std::vector<double> spacing;  ///< --spacing X Y Z, mm; empty: not given
+    int component = -1;             ///< --component; -1: not given
+    int frame = -1;                 ///< --frame; -1: not given
+    int level = -1;                 ///< --level; -1: not given
+    std::string series;             ///< --series
+    std::string raw;                ///< --raw
+    bool resample = false;          ///< --resample
+    std::vector<double> spacing;    ///< --spacing X Y Z, mm; empty: not given
+    std::optional<double> no_data;  ///< --no-data
 };
 
-/// Adds --raw, --component, --frame, --level, --series, --resample and --spacing to a command. `options` must outlive
-/// the parse.
+/// Adds --raw, --component, --frame, --level, --series, --resample, --spacing and --no-data to a command. `options`
+/// must outlive the parse.
 void add_volume_options(CLI::App& command, VolumeOptions& options);
 
 /// Copies the given options into a scene's volume.

@@ -46,16 +46,23 @@ Volume box_downsampled(const Volume& volume, int factor) {
     result.geometry.index_to_world_axes = volume.geometry.index_to_world_axes * static_cast<double>(factor);
     result.geometry.origin = volume.geometry.to_world(glm::dvec3((factor - 1) / 2.0));
     result.values.clear();
-    const double share = 1.0 / (static_cast<double>(factor) * factor * factor);
+    result.no_data.reset();
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x) {
                 double sum = 0;
+                int count = 0;
                 for (int c = 0; c < factor; ++c)
                     for (int b = 0; b < factor; ++b)
                         for (int a = 0; a < factor; ++a)
-                            sum += static_cast<double>(volume.at(factor * x + a, factor * y + b, factor * z + c));
-                result.values.push_back(static_cast<float>(share * sum));
+                            if (const glm::ivec3 i(factor * x + a, factor * y + b, factor * z + c);
+                                volume.has_data(i)) {
+                                sum += static_cast<double>(volume.at(i.x, i.y, i.z));
+                                ++count;
+                            }
+                const bool enough = 2 * count >= factor * factor * factor;
+                result.values.push_back(enough ? static_cast<float>(sum / count)
+                                               : std::numeric_limits<float>::quiet_NaN());
             }
     finish_volume(result);
     return result;

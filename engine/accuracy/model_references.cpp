@@ -9,7 +9,8 @@ namespace edgesplat::accuracy {
 ModelReferences::ModelReferences(const ReportInput& input, double tolerance, std::filesystem::path folder,
                                  Journal& journal, std::function<bool(double)> progress)
     : input_(input),
-      truth_(input.analytic ? *input.analytic : reference::interpolated_scene(*input.volume, RaycastFilter::Cubic)),
+      truth_(input.analytic ? *input.analytic
+                            : reference::interpolated_scene(*input.volume, RaycastFilter::Cubic, input.scene)),
       tolerance_(tolerance),
       store_(std::move(folder), journal),
       progress_(std::move(progress)) {}

@@ -51,8 +51,10 @@ bool is_cut_away(const shader::SceneParams& params, const passes::ClipCount& cli
     return beyond || within;
 }
 
+constexpr std::uint8_t kMissing = 0x80;  ///< marks the material of a sample without data
+
 /// Bit mask of the materials between the samples around a voxel, its own included, as in
-/// shaders/edges/values_around.glsl.
+/// shaders/edges/1b_estimate_edges.comp.
 std::uint32_t materials_around(std::span<const std::uint8_t> materials, const glm::ivec3& dims, const glm::ivec3& p) {
     const auto material = [&](const glm::ivec3& o) {
         const glm::ivec3 q = glm::clamp(p + o, glm::ivec3(0), dims - 1);
@@ -61,12 +63,16 @@ std::uint32_t materials_around(std::span<const std::uint8_t> materials, const gl
                              (static_cast<std::size_t>(q.y) +
                               static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(q.z))];
     };
-    std::uint8_t least = material(glm::ivec3(0)), most = least;
+    const std::uint8_t own = material(glm::ivec3(0)) & ~kMissing;
+    std::uint8_t least = own, most = own;
     for (int i = 0; i < 33; ++i) {
         glm::ivec3 o = i < 27 ? glm::ivec3(i % 3, i / 3 % 3, i / 9) - 1 : glm::ivec3(0);
         if (i >= 27) o[(i - 27) / 2] = i % 2 == 1 ? -2 : 2;
-        least = std::min(least, material(o));
-        most = std::max(most, material(o));
+        const std::uint8_t other = material(o);
+        // Matter of a missing sample's own material is not there.
+        const auto lowest = static_cast<std::uint8_t>(other >= kMissing ? (other & ~kMissing) + 1 : other);
+        least = std::min(least, lowest);
+        most = std::max<std::uint8_t>(most, other & ~kMissing);
     }
     return (2U << most) - (1U << least);
 }
@@ -88,16 +94,18 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
     std::vector<std::uint8_t> materials(voxels), splats(voxels), opaque(plan.buried ? voxels : 0);
     for (std::uint64_t i = 0; i < voxels; ++i) {
-        const auto scaled = static_cast<float>(scaled_value(volume, static_cast<double>(volume.values[i])));
+        const float scaled = scaled_sample(volume, volume.values[i]);
         for (std::uint32_t j = 0; j < params.iso_count; ++j)
             materials[i] += params.iso[j] <= scaled ? 1U : 0U;
+        if (!volume.has_data(i)) materials[i] |= kMissing;
     }
     for (std::uint64_t i = 0; i < voxels; ++i) {
         const glm::ivec3 at(static_cast<int>(i % nx), static_cast<int>(i / nx % ny), static_cast<int>(i / nx / ny));
         const std::uint32_t carried =
             params.translucent_mask == 0 ? 0 : params.translucent_mask & materials_around(materials, dims, at);
-        splats[i] = static_cast<std::uint8_t>(std::popcount(carried | (params.visible_mask & 1U << materials[i])));
-        if (plan.buried) opaque[i] = params.opaque_mask >> materials[i] & 1U;
+        const std::uint32_t here = 1U << (materials[i] & ~kMissing), own = volume.has_data(i) ? here : 0U;
+        splats[i] = static_cast<std::uint8_t>(std::popcount((carried & ~here) | (params.visible_mask & own)));
+        if (plan.buried) opaque[i] = (params.opaque_mask & own) != 0 ? 1U : 0U;
         if (!plan.clip.any()) continue;
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
         if (is_cut_away(params, plan.clip, at, params.reach)) splats[i] = 0;

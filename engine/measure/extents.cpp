@@ -38,11 +38,30 @@ struct Sums {
 /// Sums over all lines: [iso-value][axis].
 using AxisSums = std::vector<std::array<Sums, 3>>;
 
-/// Kept length of [first, last].
+/// Length of [first, last].
 double kept_length(const std::array<KeptPiece, 2>& pieces, double first, double last) {
     double length = 0;
     for (const KeptPiece& piece : pieces)
         length += std::max(0.0, std::min(last, piece.last) - std::max(first, piece.first));
+    return length;
+}
+
+/// Whether the voxel nearest to a position in index space contains data.
+bool has_data_at(const Volume& volume, const glm::dvec3& at) {
+    return volume.has_data(glm::clamp(glm::ivec3(glm::round(at)), glm::ivec3(0), volume.geometry.dims - 1));
+}
+
+/// The part of [first, last] on a line along an axis that is kept and whose samples contain data.
+double matter_length(const Volume& volume, const std::array<KeptPiece, 2>& pieces, glm::dvec3 at, int axis,
+                     double first, double last) {
+    if (!volume.no_data) return kept_length(pieces, first, last);
+    double length = 0;
+    for (double from = first; from < last;) {
+        const double to = std::min(last, std::floor(from + 0.5) + 0.5);
+        at[axis] = (from + to) / 2;
+        if (has_data_at(volume, at)) length += kept_length(pieces, from, to);
+        from = to;
+    }
     return length;
 }
 
@@ -101,7 +120,8 @@ class Measurement {
         for (int y = 0; y < geometry_.dims.y * kLines; ++y)
             for (int z = 0; z < geometry_.dims.z * kLines; ++z) {
                 const glm::dvec3 start(0, (y + 0.5) / kLines - 0.5, (z + 0.5) / kLines - 0.5);
-                length += kept_length(clip_.kept_along(start, {1, 0, 0}), -0.5, geometry_.dims.x - 0.5);
+                length +=
+                    matter_length(volume_, clip_.kept_along(start, {1, 0, 0}), start, 0, -0.5, geometry_.dims.x - 0.5);
             }
         return cell_ * length;
     }
@@ -119,14 +139,21 @@ class Measurement {
             double from = -0.5;
             bool inside = line.starts_from(iso_values[j]);
             line.for_crossings(iso_values[j], [&](double t) {
-                if (inside) sums.above += kept_length(pieces, from, t);
+                if (inside) sums.above += matter_length(volume_, pieces, line.at(0), axis, from, t);
                 from = t;
                 inside = !inside;
-                if (std::ranges::any_of(pieces, [&](const KeptPiece& p) { return p.first <= t && t < p.last; }))
+                if (std::ranges::any_of(pieces, [&](const KeptPiece& p) { return p.first <= t && t < p.last; }) &&
+                    between_data(line, t))
                     add_crossing(line, t, samples, sums);
             });
-            if (inside) sums.above += kept_length(pieces, from, last);
+            if (inside) sums.above += matter_length(volume_, pieces, line.at(0), axis, from, last);
         }
+    }
+
+    /// The end of the data is no surface.
+    bool between_data(const FieldLine& line, double t) const {
+        return !volume_.no_data ||
+               (has_data_at(volume_, line.at(std::floor(t))) && has_data_at(volume_, line.at(std::floor(t) + 1)));
     }
 
     void add_crossing(const FieldLine& line, double t, const viewer::Samples* samples, Sums& sums) const {
@@ -220,6 +247,7 @@ std::vector<LabelExtent> measure_labels(const Volume& volume) {
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x) {
+                if (!volume.has_data({x, y, z})) continue;
                 const float label = volume.at(x, y, z);
                 const auto other = [&](int i, int j, int k) { return volume.at(i, j, k) != label; };
                 Count& count = counts[label];

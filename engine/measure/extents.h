@@ -24,7 +24,8 @@ struct Extents {
 };
 
 /// Materials are bounded by the iso-surfaces of the cubic B-spline through the samples, by half a voxel around the
-/// outermost samples, and by `clip`. Lengths are measured along 2 x 2 lines per voxel and axis; each crossing is exact.
+/// outermost samples, by voxels without data, and by `clip`. Lengths are measured along 2 x 2 lines per voxel and axis;
+/// each crossing is exact.
 ///
 /// The uncertainty of a volume has three parts: twice the difference from trilinear interpolation; a common shift of
 /// all crossings by quantisation and by edges too sharp for the sampling (value_uncertainty); and the disagreement

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "engine/scene/views.h"
+#include "engine/volume/value_text.h"
 
 namespace edgesplat {
 namespace {
@@ -53,15 +54,23 @@ void draw_marker(Canvas& canvas, const glm::dvec2& center, double radius, const 
     }
 }
 
-std::string range_text(const Scene& scene, std::size_t material) {
-    const std::vector<double>& iso = scene.iso_values;
+std::string range_text(const std::vector<std::string>& iso, std::size_t material) {
     if (iso.empty()) return "";
-    if (material == 0) return fmt::format("below {:g}", iso.front());
-    if (material == iso.size()) return fmt::format("from {:g}", iso.back());
-    return fmt::format("{:g} to {:g}", iso[material - 1], iso[material]);
+    if (material == 0) return fmt::format("below {}", iso.front());
+    if (material == iso.size()) return fmt::format("from {}", iso.back());
+    return fmt::format("{} to {}", iso[material - 1], iso[material]);
 }
 
-Canvas material_legend(const Scene& scene, const Measures& size) {
+/// Range of the volume's values in the file's unit.
+double range_of(const Volume& volume) {
+    return volume.in_file_unit(static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value));
+}
+
+Canvas material_legend(const Scene& scene, const Volume& volume, const Measures& size) {
+    std::vector<double> values = scene.iso_values;
+    for (double& value : values)
+        value = volume.in_file_unit(value);
+    const std::vector<std::string> iso = value_texts(values, range_of(volume));
     struct Row {
         glm::dvec3 color;
         std::string text;
@@ -71,7 +80,7 @@ Canvas material_legend(const Scene& scene, const Measures& size) {
     for (std::size_t m = scene.materials.size(); m-- > 0;) {
         const Material& material = scene.materials[m];
         if (!(material.extinction > 0)) continue;
-        const std::string range = range_text(scene, m);
+        const std::string range = range_text(iso, m);
         rows.push_back({material.color, material.name.empty() ? range : material.name + "  " + range});
         widest = std::max(widest, text_size(rows.back().text, size.letters).x);
     }
@@ -90,8 +99,10 @@ Canvas material_legend(const Scene& scene, const Measures& size) {
 }
 
 /// Plots extinction over value in the transfer function's colours, with ticks at round values.
-Canvas transfer_legend(const Scene& scene, const Measures& size) {
-    const std::vector<TransferPoint>& points = scene.transfer;
+Canvas transfer_legend(const Scene& scene, const Volume& volume, const Measures& size) {
+    std::vector<TransferPoint> points = scene.transfer;
+    for (TransferPoint& point : points)
+        point.value = volume.in_file_unit(point.value);
     const double first = points.front().value, last = points.back().value, range = std::max(last - first, 1e-300);
     double most = 0;
     for (const TransferPoint& p : points)
@@ -120,7 +131,7 @@ Canvas transfer_legend(const Scene& scene, const Measures& size) {
     for (double value = std::ceil(first / step - 1e-9) * step; value <= last + 1e-9 * range; value += step) {
         const double x = left + (value - first) / range * width;
         canvas.line({x, bottom}, {x, bottom + size.letters / 3.0}, size.stroke / 2, kInk);
-        const std::string label = fmt::format("{:g}", std::abs(value) < 1e-9 * step ? 0.0 : value);
+        const std::string label = value_text(std::abs(value) < 1e-9 * step ? 0.0 : value, range);
         canvas.text(label, {x, bottom + 1.1 * size.letters}, size.letters * 3 / 4, kInk);
     }
     return canvas;
@@ -196,7 +207,8 @@ std::vector<PixelBox> draw_overlays(Image& image, const Volume& volume, const Sc
             lay(canvas);
         }
     }
-    if (overlays.legend) lay(scene.transfer.empty() ? material_legend(scene, size) : transfer_legend(scene, size));
+    if (overlays.legend)
+        lay(scene.transfer.empty() ? material_legend(scene, volume, size) : transfer_legend(scene, volume, size));
     return boxes;
 }
 

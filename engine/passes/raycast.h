@@ -15,6 +15,7 @@ struct RaycastVariant {
     std::uint32_t iso_count = 1;
     bool skip_empty = true;    ///< transparent bricks are skipped
     std::uint32_t filter = 0;  ///< RaycastFilter
+    bool no_data = false;      ///< rays meet samples without data where the smallest value would be drawn
     bool transfer = false;     ///< colour and extinction are from a transfer function, else from the material
 };
 

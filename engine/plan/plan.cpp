@@ -240,6 +240,7 @@ bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camer
     if (!glm::all(glm::greaterThanEqual(index, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(index, last)))
         return false;
     const glm::ivec3 voxel(index);
+    if (!volume.has_data(voxel)) return false;
     const auto value = static_cast<double>(value_at(volume, voxel));
     const auto above = std::upper_bound(scene.iso_values.begin(), scene.iso_values.end(), value);
     const auto material = static_cast<std::size_t>(above - scene.iso_values.begin());

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/scene/transfer_function.h"
+
 namespace edgesplat {
 namespace {
 
@@ -30,8 +32,12 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
 
     RaycastPlan plan;
     plan.size = size;
-    plan.variant = {light_code(scene), collection.params.iso_count, raycast.skip_empty,
-                    static_cast<std::uint32_t>(raycast.filter), !scene.transfer.empty()};
+    plan.variant = {light_code(scene),
+                    collection.params.iso_count,
+                    raycast.skip_empty,
+                    static_cast<std::uint32_t>(raycast.filter),
+                    draws_missing_samples(scene, volume),
+                    !scene.transfer.empty()};
     plan.transfer = collection.transfer;
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;

@@ -147,7 +147,10 @@ std::vector<CarriedEdge> voxels_beside(const Field& field, const ScaledScene& sc
         const glm::ivec3 i = field.voxel(at);
         const auto [least, most] = values_around(field, i);
         const int own = scene.material(field.at(i)), last = scene.material(most);
-        for (int m = scene.material(least); m <= last; ++m)
+        int first = scene.material(least);
+        // Matter of a missing sample's own material is not there.
+        if (field.has_data(at) && least < 0) first = std::min(first + 1, scene.material(least_data_around(field, i)));
+        for (int m = first; m <= last; ++m)
             if (m != own && scene.is_translucent[static_cast<std::size_t>(m)]) carried.push_back({at, m, {}});
     }
     return carried;

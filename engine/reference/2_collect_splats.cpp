@@ -90,7 +90,7 @@ double carried_value(const Field& field, const ScaledScene& scaled, const std::v
         if (scaled.material(further) == m) return further;
     }
     const auto [least, most] = values_around(field, i);
-    if (m == 0) return least;
+    if (m == 0) return least < 0 ? least_data_around(field, i) : least;
     return m == last ? most : 0.5 * (scaled.lower(m) + scaled.upper(m));
 }
 
@@ -106,7 +106,7 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
         for (std::size_t at = 0; at < opaque.size(); ++at) {
             const int m = scaled.material(static_cast<double>(field.values[at]));
             const bool there = clip.empty() || !clip.cuts_away(glm::dvec3(field.voxel(at)));
-            opaque[at] = there && rule->opaque[static_cast<std::size_t>(m)] ? 1 : 0;
+            opaque[at] = there && field.has_data(at) && rule->opaque[static_cast<std::size_t>(m)] ? 1 : 0;
         }
         // An eye inside opaque matter sees buried voxels, so none is culled. The test uses doubles, since the voxel of
         // a far eye overflows an int.
@@ -116,7 +116,7 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
         const auto eye_material = [&] {
             return scaled.material(static_cast<double>(field.values[field.offset(glm::ivec3(nearest))]));
         };
-        if (inside && !clip.cuts_away(geometry.to_index(eye)) &&
+        if (inside && !clip.cuts_away(geometry.to_index(eye)) && field.has_data(field.offset(glm::ivec3(nearest))) &&
             rule->opaque[static_cast<std::size_t>(eye_material())]) {
             rule.reset();
         }
@@ -138,7 +138,8 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
         for (; !carried.empty() && carried.front().voxel == at && carried.front().material < own;
              carried = carried.subspan(1))
             add(carried.front().material, carried.front().edge, carried.front().value);
-        if (scaled.drawn[static_cast<std::size_t>(own)]) add(own, edges[at], values.empty() ? 0 : values[at]);
+        if (field.has_data(at) && scaled.drawn[static_cast<std::size_t>(own)])
+            add(own, edges[at], values.empty() ? 0 : values[at]);
         for (; !carried.empty() && carried.front().voxel == at; carried = carried.subspan(1))
             add(carried.front().material, carried.front().edge, carried.front().value);
     }

@@ -47,7 +47,7 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
         double tau = 0;
         for (int i = 0; i < static_cast<int>(steps) && tau < kDark; ++i) {
             const glm::ivec3 p(glm::floor(start + (i + 0.5) * dl * u + 0.5));
-            if (field.clamped(p) != p || clip.cuts_away(glm::dvec3(p))) continue;
+            if (field.clamped(p) != p || !field.has_data(field.offset(p)) || clip.cuts_away(glm::dvec3(p))) continue;
             const double value = field.at(p);
             tau += dl * (scaled.transfer.empty()
                              ? scene.materials[static_cast<std::size_t>(scaled.material(value))].extinction

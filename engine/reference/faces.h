@@ -14,6 +14,9 @@ VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::i
 /// Smallest and largest sample around a voxel. The surface that the voxel finds passes between these samples.
 std::pair<double, double> values_around(const Field& field, const glm::ivec3& i);
 
+/// The smallest of those samples with data.
+double least_data_around(const Field& field, const glm::ivec3& i);
+
 /// The edge of voxel i without a surface in reach: only the normal along -gradient, if there is one.
 VoxelEdge edge_with_normal_only(const Field& field, const glm::ivec3& i);
 

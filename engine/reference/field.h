@@ -14,13 +14,15 @@ namespace edgesplat::reference {
 /// The samples as on the GPU. Positions are in index space (voxels).
 struct Field {
     glm::ivec3 dims{0};                   ///< voxels per axis, each >= 1
-    std::span<const float> values;        ///< F, scaled to 0..1, (dims.z, dims.y, dims.x)
+    std::span<const float> values;        ///< F, (dims.z, dims.y, dims.x): scaled to 0..1, kScaledNoData without data
     std::span<const float> coefficients;  ///< cubic B-spline coefficients, same shape; empty unless `cubic` is used
 
     std::size_t offset(const glm::ivec3& i) const;
     glm::ivec3 voxel(std::size_t offset) const;
     glm::ivec3 clamped(const glm::ivec3& i) const { return glm::clamp(i, glm::ivec3(0), dims - 1); }
     double at(const glm::ivec3& i) const { return static_cast<double>(values[offset(clamped(i))]); }
+    /// Of a scaled field.
+    bool has_data(std::size_t offset) const { return values[offset] >= 0; }
 };
 
 /// The part of a scene that estimation reads, in units of F.

@@ -1,13 +1,36 @@
 #include "engine/reference/interpolated_scene.h"
 
+#include <algorithm>
+#include <limits>
 #include <memory>
 
 #include "engine/reference/field.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 
 namespace edgesplat::reference {
 
-AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter) {
+namespace {
+
+/// T(p) of the samples with data around p; 0 if there are none.
+double sample_of_data(const Field& field, const glm::dvec3& p) {
+    const glm::ivec3 cell(p);
+    const glm::dvec3 t = p - glm::dvec3(cell);
+    double sum = 0, weights = 0;
+    for (int k = 0; k < 8; ++k) {
+        const glm::ivec3 step(k & 1, (k >> 1) & 1, (k >> 2) & 1);
+        const std::size_t at = field.offset(field.clamped(cell + step));
+        if (!field.has_data(at)) continue;
+        const glm::dvec3 w = glm::mix(1.0 - t, t, glm::dvec3(step));
+        sum += w.x * w.y * w.z * static_cast<double>(field.values[at]);
+        weights += w.x * w.y * w.z;
+    }
+    return weights > 0 ? sum / weights : 0;
+}
+
+}  // namespace
+
+AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter, const Scene& look) {
     struct Samples {
         std::vector<float> values, coefficients;
     };
@@ -30,7 +53,21 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter) {
     const auto held = [last = glm::dvec3(volume.geometry.dims - 1)](const glm::dvec3& x) {
         return glm::clamp(x, glm::dvec3(0), last);
     };
-    scene.value = [=](const glm::dvec3& x) { return low + range * sample(field(), held(x), cubic); };
+    const bool missing = draws_missing_samples(look, volume), of_data = missing && !look.transfer.empty();
+    scene.value = [=](const glm::dvec3& x) {
+        return low + range * (of_data ? sample_of_data(field(), held(x)) : sample(field(), held(x), cubic));
+    };
+    if (missing) {
+        // Matter of the smallest value ends at the first iso-value above it.
+        double end = std::numeric_limits<double>::infinity();
+        for (const double iso : look.iso_values)
+            if (scaled_iso_value(volume, iso) > 0) end = std::min(end, scaled_iso_value(volume, iso));
+        scene.missing = [=](const glm::dvec3& x) {
+            const Field f = field();
+            return !f.has_data(f.offset(f.clamped(glm::ivec3(glm::round(held(x)))))) &&
+                   (of_data || sample(f, held(x), cubic) < end);
+        };
+    }
     scene.gradient = [=](const glm::dvec3& x) {
         const glm::dvec3 p = inside(x);
         if (cubic) return range * spline_gradient(field(), p);

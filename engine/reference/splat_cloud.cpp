@@ -35,7 +35,8 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
     };
     for (std::size_t at = 0; at < field_.values.size(); ++at) {
         const int m = prepared.scaled_scene().material(static_cast<double>(field_.values[at]));
-        add(at, m, prepared.edges()[at], transfer.empty() ? nullptr : &prepared.classified()[at]);
+        if (field_.has_data(at))
+            add(at, m, prepared.edges()[at], transfer.empty() ? nullptr : &prepared.classified()[at]);
         for (const CarriedEdge& c : prepared.carried_by(at))
             add(at, c.material, c.edge, &c.value);
     }

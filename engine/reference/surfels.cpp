@@ -1,6 +1,7 @@
 // Surfels: points of the surface beside voxels. Mirrors shaders/edges/find_surfel.glsl.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "engine/reference/faces.h"
 #include "shaders/shared/limits.h"
@@ -63,23 +64,31 @@ dvec3 border_beside(const Field& field, const glm::ivec3& i) {
     return dvec3(0);
 }
 
+/// Calls look with the samples around a voxel, its own included.
+template <typename Look>
+void for_samples_around(const Field& field, const glm::ivec3& i, const Look& look) {
+    for (int k = 0; k < 27; ++k)
+        look(field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1));
+    for (int axis = 0; axis < 3; ++axis) {
+        glm::ivec3 o(0);
+        o[axis] = 2;
+        look(field.at(i + o));
+        look(field.at(i - o));
+    }
+}
+
 }  // namespace
 
 std::pair<double, double> values_around(const Field& field, const glm::ivec3& i) {
     std::pair around(field.at(i), field.at(i));
-    const auto look = [&](const glm::ivec3& o) {
-        const double f = field.at(i + o);
-        around = {std::min(around.first, f), std::max(around.second, f)};
-    };
-    for (int k = 0; k < 27; ++k)
-        look(glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-    for (int axis = 0; axis < 3; ++axis) {
-        glm::ivec3 o(0);
-        o[axis] = 2;
-        look(o);
-        look(-o);
-    }
+    for_samples_around(field, i, [&](double f) { around = {std::min(around.first, f), std::max(around.second, f)}; });
     return around;
+}
+
+double least_data_around(const Field& field, const glm::ivec3& i) {
+    double least = std::numeric_limits<double>::infinity();
+    for_samples_around(field, i, [&](double f) { least = f >= 0 ? std::min(least, f) : least; });
+    return least;
 }
 
 VoxelEdge edge_with_normal_only(const Field& field, const glm::ivec3& i) {

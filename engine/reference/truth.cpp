@@ -18,6 +18,7 @@ constexpr double kStep = 0.25;         ///< voxels between the probes of a ray
 constexpr double kSlopeStep = 1e-4;    ///< voxels, for the numerical gradient of a distance
 constexpr double kFinestProbe = 1e-7;  ///< voxels: precision of an extremum along a ray
 constexpr int kDeepestHalving = 40;
+constexpr int kNoMatter = -1;  ///< the material where the scene has none
 
 /// A point of a ray.
 struct Probe {
@@ -89,6 +90,7 @@ class TruthWalker {
         Probe p{t, scene_.value(x), scene_.signed_distance ? scene_.signed_distance(x) : 0.0, 0};
         const auto above = std::upper_bound(look_.iso_values.begin(), look_.iso_values.end(), p.value);
         p.material = static_cast<int>(above - look_.iso_values.begin());
+        if (scene_.missing && scene_.missing(x)) p.material = kNoMatter;
         ++sum_.samples;
         return p;
     }
@@ -174,7 +176,7 @@ class TruthWalker {
     }
 
     void absorb(double begin, double end, int material) {
-        if (!(end > begin)) return;
+        if (!(end > begin) || material == kNoMatter) return;
         if (!look_.transfer.empty()) return absorb_by_value(begin, end);
         const Material& m = look_.materials[static_cast<std::size_t>(material)];
         const double per_voxel = m.extinction * mm_per_voxel_;

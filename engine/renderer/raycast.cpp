@@ -39,6 +39,11 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
         stats.setup_milliseconds += milliseconds_since(start);
     const VolumeStore& store = self.splats.level().volume;
     const Volume& volume = *store.volume();
+    if (raycast.filter == RaycastFilter::Cubic && !scene.transfer.empty() && volume.no_data)
+        fail(
+            "raycast: {}: the cubic filter reaches into samples without data, expected the trilinear one "
+            "(--raycast-filter trilinear)",
+            volume.name);
     start = Clock::now();
     if (!self.rays) self.rays.emplace(device, self.session.pipelines(), commands);
     const auto plan = plan_raycast(volume, scene, camera, settings, raycast,

@@ -21,6 +21,6 @@ double default_extinction(bool highest, const VolumeGeometry& geometry);
 MaterialChoice choice_of(const Material& material);
 
 /// Copies iso-values and materials of the scene into the document.
-void write_out_materials(SceneDocument& document, const Scene& scene);
+void write_out_materials(SceneDocument& document, const Scene& scene, const Volume& volume);
 
 }  // namespace edgesplat

@@ -25,6 +25,7 @@ struct VolumeSource {
     std::optional<int> component, frame, level;     ///< from 0
     bool resample = false;                          ///< unevenly spaced DICOM slices are interpolated
     std::optional<glm::dvec3> spacing;              ///< mm, instead of the file's
+    std::optional<double> no_data;                  ///< samples with this value contain no data
     std::optional<double> threshold;                ///< 1 from this value up, else 0
     std::optional<bool> labels;                     ///< draws labels (drawn_labels); not given: see `recognise_labels`
     bool box_filter = false;                        ///< mean over 3x3x3 voxels

@@ -59,6 +59,10 @@ void add_volume(KeyTable& t) {
           {.help = "Resample unevenly spaced DICOM slices to even spacing by cubic interpolation"});
     t.add("volume.spacing", MEMBER(volume.spacing),
           {.unit = "mm", .help = "Voxel spacing along i, j, k", .range = kAboveZero, .absent = "the file's"});
+    t.add("volume.no_data", MEMBER(volume.no_data),
+          {.unit = "the volume's",
+           .help = "Samples with this value contain no data: they are transparent and count in no statistics",
+           .absent = "the file's"});
     t.add("volume.threshold", MEMBER(volume.threshold),
           {.unit = "the volume's", .help = "Step 1, binarise: 1 for samples >= this value, else 0", .absent = "none"});
     t.add("volume.labels", MEMBER(volume.labels),

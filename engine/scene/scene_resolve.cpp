@@ -13,6 +13,7 @@
 #include "engine/volume/filters.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/value_text.h"
 
 namespace edgesplat {
 namespace {
@@ -37,22 +38,22 @@ std::vector<double> chosen_iso_values(const SceneDocument& document, const Volum
     }
     const auto suggestions = suggest_iso_values(volume, 1);
     if (suggestions.empty())
-        fail("{}: every voxel has the value {}, so there is no surface to show", volume.name, volume.min_value);
+        fail("{}: every voxel has the value {}, so there is no surface to show", volume.name,
+             value_text(volume, volume.min_value));
     return {suggestions.front().value};
 }
 
-/// Iso-values at `sigmas` standard deviations above the mean.
+/// Iso-values at `sigmas` standard deviations above the mean of the samples with data.
 std::vector<double> iso_values_of_sigmas(const std::vector<double>& sigmas, const Volume& volume) {
     if (volume.packed)
         return iso_values_of_sigmas(sigmas,
                                     load_level(volume, finest_level_within(*volume.packed, kMaxVoxelsAnalysed)));
-    double sum = 0, squares = 0;
-    for (const float value : volume.values)
-        sum += static_cast<double>(value);
-    const double mean = sum / static_cast<double>(volume.values.size());
-    for (const float value : volume.values)
-        squares += (static_cast<double>(value) - mean) * (static_cast<double>(value) - mean);
-    const double deviation = std::sqrt(squares / static_cast<double>(volume.values.size()));
+    const double mean = mean_of(volume);
+    double squares = 0;
+    for (std::size_t i = 0; i < volume.values.size(); ++i)
+        if (volume.has_data(i)) squares += std::pow(static_cast<double>(volume.values[i]) - mean, 2);
+    const auto count = volume.values.size() - volume.non_finite_count;
+    const double deviation = std::sqrt(squares / static_cast<double>(std::max<std::size_t>(count, 1)));
     std::vector<double> values;
     for (const double sigma : sigmas)
         values.push_back(mean + sigma * deviation);
@@ -102,7 +103,8 @@ void check_iso_values(const std::vector<double>& iso, const Volume& volume) {
     for (std::size_t i = 0; i < iso.size(); ++i)
         if (!(iso[i] > low && iso[i] <= high))
             fail("iso_values[{}] (--iso {}): no surface has this value; the values of {} lie between {} and {}", i,
-                 iso[i], volume.name, volume.min_value, volume.max_value);
+                 volume.in_file_unit(iso[i]), volume.name, value_text(volume, volume.min_value),
+                 value_text(volume, volume.max_value));
 }
 
 /// `usual`, overridden by the choice's preset and then by the choice itself.
@@ -166,8 +168,10 @@ MaterialChoice choice_of(const Material& material) {
     return {{}, material.name, material.color, material.extinction, r.ambient, r.diffuse, r.specular, r.shininess};
 }
 
-void write_out_materials(SceneDocument& document, const Scene& scene) {
+void write_out_materials(SceneDocument& document, const Scene& scene, const Volume& volume) {
     document.iso_values = scene.iso_values;
+    for (double& value : document.iso_values)
+        value = volume.in_file_unit(value);
     document.below = choice_of(scene.materials.front());
     document.materials.clear();
     for (std::size_t m = 1; m < scene.materials.size(); ++m)
@@ -183,8 +187,13 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
         scene.transfer = preset.content.transfer;
         if (iso.empty()) iso = preset.content.iso_values;
     }
+    if (iso.empty() && document.iso_sigmas.empty()) iso = preset_iso_values(document.materials);
+    // The document's values are in the file's unit, the scene's in that of the samples.
+    for (double& value : iso)
+        value /= volume.value_scale;
+    for (TransferPoint& point : scene.transfer)
+        point.value /= volume.value_scale;
     if (iso.empty() && !document.iso_sigmas.empty()) iso = iso_values_of_sigmas(document.iso_sigmas, volume);
-    if (iso.empty()) iso = preset_iso_values(document.materials);
     if (iso.empty() && scene.transfer.empty() && document.volume.labels.value_or(false)) {
         iso = {kLabelSurface};
         scene.labels = true;
@@ -286,9 +295,11 @@ SceneDocument resolved(const SceneDocument& document, const Volume& volume, cons
                        const Settings& settings) {
     SceneDocument result = document;
     result.volume.checksum = fmt::format("{:016x}", volume.checksum);
-    write_out_materials(result, scene);
+    write_out_materials(result, scene, volume);
     result.iso_sigmas.clear();
     result.transfer = scene.transfer;
+    for (TransferPoint& point : result.transfer)
+        point.value = volume.in_file_unit(point.value);
     result.transfer_preset.clear();
     result.ambient = scene.ambient;
     result.lights = scene.lights;

@@ -99,6 +99,13 @@ std::optional<std::size_t> traced_material(const Settings& settings, const Scene
     return only;
 }
 
+bool draws_missing_samples(const Scene& scene, const Volume& volume) {
+    if (!volume.no_data) return false;
+    if (!scene.transfer.empty()) return true;
+    const auto above = std::ranges::upper_bound(scene.iso_values, static_cast<double>(volume.min_value));
+    return scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())].extinction > 0;
+}
+
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume) {
     if (scene.transfer.empty()) return {};
     if (!(volume.max_value > volume.min_value)) {

@@ -51,6 +51,10 @@ bool has_single_piece(const Settings& settings, const Scene& scene, const Volume
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry);
 
+/// Whether matter would be drawn where samples contain no data, if they counted as the smallest value: with a transfer
+/// function, because values between them and others are drawn, too.
+bool draws_missing_samples(const Scene& scene, const Volume& volume);
+
 /// The scene's transfer points with values scaled like samples (scaled_field), rounded to float32 as on the device.
 /// Empty without a transfer function. For a constant volume: one point, the function at its value.
 std::vector<TransferPoint> scaled_transfer(const Scene& scene, const Volume& volume);

@@ -54,10 +54,10 @@ std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
     const glm::ivec3 dims = volume.geometry.dims;
     const IndexClip clip = index_clip(scene.effects.clip, volume.geometry);
     const auto seen = [&](int x, int y, int z) {
-        for (int corner = 0; corner < 8; ++corner)
-            if (!shows(scene,
-                       static_cast<double>(volume.at(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2)))))
-                return false;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::ivec3 i(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2));
+            if (!volume.has_data(i) || !shows(scene, static_cast<double>(volume.at(i.x, i.y, i.z)))) return false;
+        }
         return clip.empty() || !clip.cuts_away(glm::dvec3(x, y, z) + 0.5);
     };
     std::vector<glm::dvec3> points;
@@ -123,7 +123,8 @@ std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& di
         const glm::ivec3 index(glm::round(place));
         const bool at_border = i > 0 && !in_volume;
         in_volume = glm::all(glm::greaterThanEqual(index, glm::ivec3(0))) && glm::all(glm::lessThanEqual(index, last));
-        if (!in_volume || clip.cuts_away(place) || !shows(*request.scene, static_cast<double>(value_at(volume, index))))
+        if (!in_volume || clip.cuts_away(place) || !volume.has_data(index) ||
+            !shows(*request.scene, static_cast<double>(value_at(volume, index))))
             continue;
         glm::dvec3 gradient(0);
         for (int axis = 0; axis < 3; ++axis) {

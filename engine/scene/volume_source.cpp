@@ -60,6 +60,7 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.series = source.series;
     options.raw = source.raw;
     options.spacing = source.spacing;
+    options.no_data = source.no_data;
     options.resample = source.resample;
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
@@ -68,7 +69,7 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
 
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
-    if (source.threshold) volume = threshold(volume, *source.threshold);
+    if (source.threshold) volume = threshold(volume, *source.threshold / volume.value_scale);
     if (source.labels.value_or(false)) volume = drawn_labels(volume);
     if (source.box_filter) volume = box_filter(volume);
     if (source.crop_low || source.crop_high)

@@ -70,9 +70,11 @@ std::vector<CollectionBlock> blocks_with_splats(const SampleSource& source, cons
                 const glm::ivec3 buried = block.core_size + 2 * params.bury_distance;
                 const bool within = glm::all(glm::greaterThanEqual(buried_low, glm::ivec3(0))) &&
                                     glm::all(glm::lessThanEqual(buried_low + buried, dims));
-                if (plan.buried && !plan.clip.any() && within &&
-                    (materials_between(params, source.range(buried_low, buried), volume) & ~params.opaque_mask) == 0)
-                    continue;
+                if (plan.buried && !plan.clip.any() && within) {
+                    const ValueRange range = source.range(buried_low, buried);
+                    if (range.complete && (materials_between(params, range, volume) & ~params.opaque_mask) == 0)
+                        continue;
+                }
                 blocks.push_back(block);
             }
     return blocks;

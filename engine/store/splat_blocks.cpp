@@ -15,7 +15,7 @@ std::vector<float> scaled_block(const SampleSource& source, const Volume& volume
     std::vector<float> samples(size.x * size.y * size.z);
     source.read(block.low, block.size, samples);
     for (float& sample : samples)
-        sample = static_cast<float>(scaled_value(volume, static_cast<double>(sample)));
+        sample = scaled_sample(volume, sample);
     return samples;
 }
 

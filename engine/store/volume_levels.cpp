@@ -14,6 +14,7 @@ std::shared_ptr<const Volume> outline(const Volume& volume, int level) {
     out->max_value = volume.max_value;
     out->name = volume.name;
     out->stored_type = volume.stored_type;
+    out->value_scale = volume.value_scale;
     out->checksum = volume.checksum;
     return out;
 }

@@ -10,7 +10,8 @@ namespace {
 
 /// The allowed value nearest to `value`, given the `others`; nullopt if there is none.
 std::optional<double> free_value(const std::vector<double>& others, const Volume& volume, double value) {
-    const auto low = static_cast<double>(volume.min_value), high = static_cast<double>(volume.max_value);
+    const double low = volume.in_file_unit(static_cast<double>(volume.min_value));
+    const double high = volume.in_file_unit(static_cast<double>(volume.max_value));
     const double gap = kIsoGap * (high - low);
     if (!(gap > 0) || !std::isfinite(value)) return std::nullopt;
     const auto allowed = [&](double v) {
@@ -100,8 +101,8 @@ std::size_t apply_material_preset(SceneDocument& document, const Volume& volume,
     taken.name = look.name.empty() ? preset.name : look.name;
     material_choice(document, material) = std::move(taken);
     if (material == 0 || content.iso_values.empty()) return material;
-    const double value = content.iso_values.front();
-    if (!(value > static_cast<double>(volume.min_value) && value <= static_cast<double>(volume.max_value)))
+    const double value = content.iso_values.front(), sample = value / volume.value_scale;
+    if (!(sample > static_cast<double>(volume.min_value) && sample <= static_cast<double>(volume.max_value)))
         return material;
     return move_iso_value(document, volume, material - 1, value) + 1;
 }

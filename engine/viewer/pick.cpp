@@ -68,6 +68,13 @@ class March {
         for (const TransferPoint& point : scene.transfer)
             cuts_.push_back(point.value);
         std::sort(cuts_.begin(), cuts_.end());
+        const Volume& volume = samples.volume();
+        if (draws_missing_samples(scene, volume))
+            missing_from_ =
+                static_cast<int>((scene.transfer.empty() ? std::ranges::upper_bound(
+                                                               scene.iso_values, static_cast<double>(volume.min_value))
+                                                         : scene.iso_values.end()) -
+                                 scene.iso_values.begin());
     }
 
     /// Marches along a stretch. Returns true if the rest of the ray is not needed.
@@ -134,6 +141,11 @@ class March {
             static_cast<int>(std::upper_bound(scene_.iso_values.begin(), scene_.iso_values.end(), middle_value) -
                              scene_.iso_values.begin());
         const auto sigma = [&](double w) { return extinction(f(w), material); };
+        // Matter of the smallest value is not there where samples contain no data.
+        if (missing_from_ >= material && is_missing(ray_.at((begin + std::lerp(first, last, to)) / 2))) {
+            solid_ = false;
+            return false;
+        }
         const bool solid = sigma((from + to) / 2) >= solid_from_;
         if (solid && !solid_) {
             const bool at_start = begin == start_->first;
@@ -161,9 +173,15 @@ class March {
         return next_ == targets_.size();
     }
 
+    bool is_missing(const glm::dvec3& voxel) const {
+        const Volume& volume = samples_.volume();
+        return !volume.has_data(glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), volume.geometry.dims - 1));
+    }
+
     const Samples& samples_;
     const Scene& scene_;
     IndexRay ray_;
+    int missing_from_ = -1;  ///< the highest material that may be missing; -1: none
     double solid_from_ = 0;  ///< extinction per mm
     std::vector<double> cuts_;
     std::array<double, 3> targets_{}, reached_{kInfinity, kInfinity, kInfinity};

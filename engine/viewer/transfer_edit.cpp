@@ -68,14 +68,14 @@ void use_transfer_preset(SceneDocument& document, const Volume& volume, const Sc
     changed.iso_values = preset.content.iso_values;
     changed.materials.clear();
     changed.below = {};
-    write_out_materials(changed, resolve_scene(changed, volume));
+    write_out_materials(changed, resolve_scene(changed, volume), volume);
     document = std::move(changed);
 }
 
 void use_materials(SceneDocument& document, const Volume& volume) {
     SceneDocument changed = document;
     use_transfer(changed, {});
-    write_out_materials(changed, resolve_scene(changed, volume));
+    write_out_materials(changed, resolve_scene(changed, volume), volume);
     document = std::move(changed);
 }
 

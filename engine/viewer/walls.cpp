@@ -31,6 +31,23 @@ std::shared_ptr<const Volume> limited_resolution(std::shared_ptr<const Volume> v
     return volume;
 }
 
+/// The volume with samples that are not solid where it has no data, if its smallest value is solid; `values` changes to
+/// match.
+std::shared_ptr<const Volume> without_missing(std::shared_ptr<const Volume> volume, SolidValues& values) {
+    const auto low = static_cast<double>(volume->min_value), high = static_cast<double>(volume->max_value);
+    if (!volume->no_data || !values.solid(low)) return volume;
+    const double range = high > low ? high - low : 1;
+    const double below = (values.flips.empty() ? low : std::min(low, values.flips.front())) - range;
+    if (values.solid_below) {
+        values.flips.insert(values.flips.begin(), below + range / 2);
+        values.solid_below = false;
+    }
+    auto changed = std::make_shared<Volume>(*volume);
+    for (std::size_t i = 0; i < changed->values.size(); ++i)
+        if (!changed->has_data(i)) changed->values[i] = static_cast<float>(below);
+    return changed;
+}
+
 Clip with_unit_normals(Clip clip) {
     for (auto* planes : {&clip.keep, &clip.remove})
         for (Plane& plane : *planes)
@@ -41,9 +58,9 @@ Clip with_unit_normals(Clip clip) {
 }  // namespace
 
 struct Walls::Matter {
+    SolidValues values;
     std::shared_ptr<const Volume> volume;
     VolumeGeometry geometry;
-    SolidValues values;
     CellField field;
     std::vector<float> distances;  ///< signed, mm, at the voxels' centres
     std::vector<bool> crossed;
@@ -52,9 +69,9 @@ struct Walls::Matter {
     bool any = false, all = false;
 
     Matter(const std::shared_ptr<const Volume>& given, const Scene& scene)
-        : volume(limited_resolution(given)),
+        : values(solid_values(scene, given->geometry.mean_spacing())),
+          volume(without_missing(limited_resolution(given), values)),
           geometry(volume->geometry),
-          values(solid_values(scene, given->geometry.mean_spacing())),
           field(*volume) {
         const glm::dvec3 spacing = geometry.spacing();
         const glm::dmat3 rows = glm::transpose(field.to_index);

@@ -13,9 +13,10 @@ bool same_grid(const VolumeGeometry& a, const VolumeGeometry& b) {
 }  // namespace
 
 std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
-    const bool comparable = same_grid(before.geometry, now.geometry) && before.min_value == now.min_value &&
-                            before.max_value == now.max_value && !before.values.empty() &&
-                            before.values.size() == now.values.size();
+    const bool comparable =
+        same_grid(before.geometry, now.geometry) && before.min_value == now.min_value &&
+        before.max_value == now.max_value && !before.values.empty() && before.values.size() == now.values.size() &&
+        (before.no_data == now.no_data || (before.no_data && now.no_data && *before.no_data == *now.no_data));
     if (!comparable) return std::nullopt;
     const glm::ivec3 dims = now.geometry.dims;
     const auto width = static_cast<std::size_t>(dims.x);

@@ -19,6 +19,12 @@ class VolumeChecksum {
         for (const float value : samples)
             add(std::bit_cast<std::uint32_t>(value));
     }
+    /// Adds the position of a sample without data.
+    void add_missing(std::size_t sample) {
+        add(static_cast<std::uint32_t>(sample));
+        add(static_cast<std::uint32_t>(std::uint64_t{sample} >> 32));
+    }
+    void add_scale(double value_scale) { add(value_scale); }
     std::uint64_t value() const { return hash_; }
 
   private:

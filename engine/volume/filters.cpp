@@ -1,6 +1,9 @@
 #include "engine/volume/filters.h"
 
+#include <zlib.h>
+
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "engine/error.h"
@@ -15,7 +18,11 @@ Volume like(const Volume& volume) {
     result.in_patient = volume.in_patient;
     result.name = volume.name;
     result.stored_type = volume.stored_type;
+    result.format = volume.format;
+    result.geometry_source = volume.geometry_source;
+    result.length_unit = volume.length_unit;
     result.notes = volume.notes;
+    result.no_data = volume.no_data;
     result.values.resize(volume.values.size());
     return result;
 }
@@ -57,18 +64,25 @@ Volume box_filter(const Volume& volume) {
     require_samples(volume, "the box filter");
     const auto& dims = volume.geometry.dims;
     Volume result = like(volume);
+    result.value_scale = volume.value_scale;
     const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
             for (int x = 0; x < dims.x; ++x) {
                 double sum = 0;
+                int count = 0;
                 for (int dz = -1; dz <= 1; ++dz)
                     for (int dy = -1; dy <= 1; ++dy)
-                        for (int dx = -1; dx <= 1; ++dx)
-                            sum += static_cast<double>(volume.at(std::clamp(x + dx, 0, dims.x - 1),
-                                                                 std::clamp(y + dy, 0, dims.y - 1),
-                                                                 std::clamp(z + dz, 0, dims.z - 1)));
-                result.values[static_cast<std::size_t>(z * slice + y * row + x)] = static_cast<float>(sum / 27);
+                        for (int dx = -1; dx <= 1; ++dx) {
+                            const std::size_t at =
+                                volume.index_of(std::clamp(x + dx, 0, dims.x - 1), std::clamp(y + dy, 0, dims.y - 1),
+                                                std::clamp(z + dz, 0, dims.z - 1));
+                            if (!volume.has_data(at)) continue;
+                            sum += static_cast<double>(volume.values[at]);
+                            ++count;
+                        }
+                result.values[static_cast<std::size_t>(z * slice + y * row + x)] =
+                    static_cast<float>(sum / std::max(count, 1));
             }
     finish_volume(result);
     return result;
@@ -106,19 +120,26 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
     result.geometry.dims = high - low + 1;
     result.geometry.origin = volume.geometry.to_world(glm::dvec3(low));
     result.values.clear();
+    result.no_data.reset();
     for (int z = low.z; z <= high.z; ++z)
         for (int y = low.y; y <= high.y; ++y)
             for (int x = low.x; x <= high.x; ++x)
-                result.values.push_back(volume.at(x, y, z));
+                result.values.push_back(volume.sample(volume.index_of(x, y, z)));
     finish_volume(result);
     return result;
+}
+
+float scaled_sample(const Volume& volume, float value) {
+    if (std::isnan(value)) return kScaledNoData;
+    // Rounding in a packed file may leave the range.
+    return std::max(static_cast<float>(scaled_value(volume, static_cast<double>(value))), 0.0F);
 }
 
 std::vector<float> scaled_field(const Volume& volume) {
     require_samples(volume, "the scaled field");
     std::vector<float> field(volume.values.size());
-    std::transform(volume.values.begin(), volume.values.end(), field.begin(),
-                   [&](float value) { return static_cast<float>(scaled_value(volume, static_cast<double>(value))); });
+    for (std::size_t i = 0; i < field.size(); ++i)
+        field[i] = scaled_sample(volume, volume.sample(i));
     return field;
 }
 
@@ -129,7 +150,7 @@ std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box) {
     for (int z = box.low.z; z <= box.high.z; ++z)
         for (int y = box.low.y; y <= box.high.y; ++y)
             for (int x = box.low.x; x <= box.high.x; ++x)
-                field.push_back(static_cast<float>(scaled_value(volume, static_cast<double>(volume.at(x, y, z)))));
+                field.push_back(scaled_sample(volume, volume.sample(volume.index_of(x, y, z))));
     return field;
 }
 
@@ -187,6 +208,36 @@ SplineTaps spline_taps(double place, int size) {
     return taps;
 }
 
+double mean_of(const Volume& volume) {
+    if (volume.packed) return volume.packed->mean();
+    // Neumaier's sum: values that cancel leave exactly 0.
+    double sum = 0, lost = 0;
+    for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        if (!volume.has_data(i)) continue;
+        const auto value = static_cast<double>(volume.values[i]);
+        const double next = sum + value;
+        lost += std::abs(sum) >= std::abs(value) ? (sum - next) + value : (value - next) + sum;
+        sum = next;
+    }
+    return (sum + lost) / static_cast<double>(std::max<std::size_t>(volume.values.size() - volume.non_finite_count, 1));
+}
+
+std::uint32_t samples_crc32(const Volume& volume) {
+    static_assert(std::endian::native == std::endian::little);
+    require_samples(volume, "the checksum of samples");
+    constexpr std::size_t kPart = std::size_t{1} << 16;
+    std::vector<float> part;
+    uLong crc = crc32(0, nullptr, 0);
+    for (std::size_t first = 0; first < volume.values.size(); first += kPart) {
+        part.resize(std::min(kPart, volume.values.size() - first));
+        for (std::size_t i = 0; i < part.size(); ++i)
+            part[i] = static_cast<float>(volume.in_file_unit(static_cast<double>(volume.sample(first + i))));
+        crc = crc32(crc, reinterpret_cast<const Bytef*>(part.data()),  // NOLINT: zlib's interface
+                    static_cast<uInt>(part.size() * sizeof(float)));
+    }
+    return static_cast<std::uint32_t>(crc);
+}
+
 Histogram histogram(const Volume& volume, int bins) {
     if (bins < 1) fail("histogram: {} bins; at least 1 is needed", bins);
     Histogram result;
@@ -202,8 +253,8 @@ Histogram histogram(const Volume& volume, int bins) {
             result.counts[(2 * bin + 1) * result.counts.size() / (2 * stored.counts.size())] += stored.counts[bin];
         return result;
     }
-    for (const float value : volume.values)
-        ++result.counts[bin_of(value, result.low, scale, result.counts.size())];
+    for (std::size_t i = 0; i < volume.values.size(); ++i)
+        if (volume.has_data(i)) ++result.counts[bin_of(volume.values[i], result.low, scale, result.counts.size())];
     return result;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -11,20 +12,27 @@
 
 namespace edgesplat {
 
-/// Mean over 3x3x3 voxels (clamped at the border); the paper applies it to binary data. Keeps geometry, name and notes;
-/// the result is finished.
+/// Mean over 3x3x3 voxels (clamped at the border); the paper applies it to binary data. Samples without data count in
+/// no mean and stay without. Keeps geometry, name and notes; the result is finished.
 Volume box_filter(const Volume& volume);
 
-/// 1 where the sample is >= `iso_value`, else 0. Keeps geometry, name and notes; the result is finished.
+/// 1 where the sample is >= `iso_value`, else 0; samples without data stay without. Keeps geometry, name and notes; the
+/// result is finished.
 Volume threshold(const Volume& volume, double iso_value);
 
 /// The box of voxels from low to high, both included; world positions do not change. Throws Error unless the box lies
 /// in the volume and has at least 2 voxels along each axis.
 Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& high);
 
-/// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, stored as float; all 0 if
-/// the volume is constant. Same order as `Volume::values`.
+/// The scaled field of a sample without data. All others are >= 0, so its sign tells it apart; to interpolation it is
+/// 0.
+inline constexpr float kScaledNoData = -1e-30F;
+
+/// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, stored as float; 0 if the
+/// volume is constant; kScaledNoData without data. Same order as `Volume::values`.
 std::vector<float> scaled_field(const Volume& volume);
+/// The scaled field of one sample; NaN: without data.
+float scaled_sample(const Volume& volume, float value);
 /// The scaled field of a box of the volume.
 std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box);
 /// The same scaling of one value, e.g. of a transfer point; the result may lie outside [0, 1]. 0 if the volume is
@@ -49,6 +57,13 @@ struct SplineTaps {
 /// `place` may be any number: the spline continues linearly beyond the outermost samples. size >= 1.
 SplineTaps spline_taps(double place, int size);
 
+/// Mean of the samples with data; 0 if there are none. Of a packed volume as its file states it.
+double mean_of(const Volume& volume);
+
+/// CRC-32 of zlib over the samples as little-endian float32 in the file's unit, x fastest; NaN (0x7fc00000) without
+/// data. For comparison with other programs. Throws Error for a packed volume.
+std::uint32_t samples_crc32(const Volume& volume);
+
 struct Histogram {
     /// value range; bin i covers low + [i, i+1) * (high - low) / bins, the last bin is closed
     double low = 0, high = 0;
@@ -58,9 +73,9 @@ struct Histogram {
     }
 };
 
-/// Counts all samples in `bins` >= 1 equal bins from the smallest to the largest sample. All samples of a constant
-/// volume are in bin 0. For a packed volume, the bins of its file are added up: exact if their number is a multiple of
-/// `bins`.
+/// Counts all samples with data in `bins` >= 1 equal bins from the smallest to the largest one. All samples of a
+/// constant volume are in bin 0. For a packed volume, the bins of its file are added up: exact if their number is a
+/// multiple of `bins`.
 Histogram histogram(const Volume& volume, int bins);
 
 struct IsoSuggestion {

@@ -46,13 +46,20 @@ class Walker {
     }
     std::ptrdiff_t stride(int axis) const { return strides_.at(static_cast<std::size_t>(axis)); }
 
-    /// Gradient by central differences, one-sided at the border; per mm along the volume's axes.
+    bool has_data(const float* sample) const {
+        return volume_.has_data(static_cast<std::size_t>(sample - volume_.values.data()));
+    }
+
+    /// Gradient by central differences, one-sided at the border and beside missing samples; per mm along the volume's
+    /// axes.
     glm::vec3 gradient(const glm::ivec3& voxel) const {
         const float* here = at(voxel);
         glm::vec3 g(0);
         for (int axis = 0; axis < 3; ++axis) {
-            const std::ptrdiff_t up = voxel[axis] + 1 < volume_.geometry.dims[axis] ? stride(axis) : 0;
-            const std::ptrdiff_t down = voxel[axis] > 0 ? stride(axis) : 0;
+            std::ptrdiff_t up = voxel[axis] + 1 < volume_.geometry.dims[axis] ? stride(axis) : 0;
+            std::ptrdiff_t down = voxel[axis] > 0 ? stride(axis) : 0;
+            if (!has_data(here + up)) up = 0;
+            if (!has_data(here - down)) down = 0;
             const auto steps = static_cast<float>((up > 0) + (down > 0));
             if (steps > 0) g[axis] = (here[up] - here[-down]) / (steps * static_cast<float>(spacing_[axis]));
         }
@@ -72,13 +79,15 @@ bool has_padding(const Volume& volume, const Walker& walker) {
     const float pad = volume.min_value, high = volume.max_value;
     float next = high;
     std::size_t count = 0;
-    for (const float value : volume.values) {
+    for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        if (!volume.has_data(i)) continue;
+        const float value = volume.values[i];
         if (value == pad)
             ++count;
         else
             next = std::min(next, value);
     }
-    const auto all = static_cast<double>(volume.values.size());
+    const auto all = static_cast<double>(volume.values.size() - volume.non_finite_count);
     const auto padded = static_cast<double>(count);
     if (padded < kFewest * all || padded > (1 - kMeasured) * all ||
         next - pad < static_cast<float>(kGap) * (high - pad))
@@ -89,7 +98,9 @@ bool has_padding(const Volume& volume, const Walker& walker) {
         for (int y = 0; y < dims.y; ++y) {
             const float* line = walker.at({0, y, z});
             for (int x = 0; x + 1 < dims.x; ++x)
-                if ((line[x] == pad) != (line[x + 1] == pad)) beside.push_back(std::max(line[x], line[x + 1]));
+                if ((line[x] == pad) != (line[x + 1] == pad) && walker.has_data(line + x) &&
+                    walker.has_data(line + x + 1))
+                    beside.push_back(std::max(line[x], line[x + 1]));
         }
     if (beside.empty()) return false;
     std::ranges::sort(beside);
@@ -113,13 +124,19 @@ void follow(const Volume& volume, const Walker& walker, glm::ivec3 voxel, int ax
     const int length = volume.geometry.dims[axis];
     const std::ptrdiff_t stride = walker.stride(axis) * direction;
     const float* sample = walker.at(voxel);
+    bool begun = walker.has_data(sample);  // whether the ray has met data
     float before = *sample;
     for (int i = 1; i < length && before < volume.max_value; ++i) {
         sample += stride;
         voxel[axis] += direction;
-        if (*sample <= before) continue;
+        if (!walker.has_data(sample)) continue;
+        const bool first_data = !begun;
+        begun = true;
+        if (*sample <= before && !first_data) continue;
         const float from = before;
         before = *sample;
+        // The end of the data is no surface.
+        if (first_data || !walker.has_data(sample - stride)) continue;
         if (padding && from == *padding) continue;
         // Value i is the centre of bin i.
         const auto first = static_cast<std::size_t>((from - low) * per_bin + 0.5F);
@@ -212,8 +229,8 @@ std::vector<IsoSuggestion> suggest_iso_values(const Volume& volume, int count) {
     const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
     if (!(range > 0) || count < 1) return {};
     std::vector<std::size_t> counts(kBins, 0);
-    for (const float value : volume.values)
-        ++counts[bin_of(value, low, kBins / range, kBins)];
+    for (std::size_t i = 0; i < volume.values.size(); ++i)
+        if (volume.has_data(i)) ++counts[bin_of(volume.values[i], low, kBins / range, kBins)];
     const auto occupied = std::ranges::count_if(counts, [](std::size_t n) { return n > 0; });
     std::vector<IsoSuggestion> result;
     if (occupied > 40) result = peaks(scores(first_surfaces(volume)), low, range / kBins);

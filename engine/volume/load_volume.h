@@ -30,8 +30,9 @@ struct LoadOptions {
     /// The part of the path after the colon: a name inside the file ("data.vti:density" gives "density"). `load_volume`
     /// sets it; callers leave it empty.
     std::string inner;
-    std::string raw;        ///< layout of a raw file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
-    bool resample = false;  ///< interpolates unevenly spaced DICOM slices at even positions
+    std::string raw;                ///< layout of a raw file: "64x64x64:uint8:little[:sx,sy,sz[:skip]]", see `load_raw`
+    bool resample = false;          ///< interpolates unevenly spaced DICOM slices at even positions
+    std::optional<double> no_data;  ///< samples with this value contain no data
     std::optional<glm::dvec3> spacing;  ///< mm, replaces the file's spacing along i, j, k; directions are kept
     /// Progress callback with a fraction in [0, 1] and the current step. Called on the loading thread only.
     std::function<void(double fraction, std::string_view what)> progress;

@@ -55,11 +55,12 @@ class MemorySource final : public PackSource {
     explicit MemorySource(Volume&& volume) : owned_(std::move(volume)), volume_(&owned_) { describe(); }
     bool streamed() const override { return false; }
     void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
-        const glm::i64vec3 dims(volume_->geometry.dims);
         float* to = out.data();
         for (int z = low.z; z < low.z + size.z; ++z)
             for (int y = low.y; y < low.y + size.y; ++y)
-                to = std::copy_n(volume_->values.begin() + (z * dims.y + y) * dims.x + low.x, size.x, to);
+                for (int x = 0; x < size.x; ++x)
+                    *to++ = static_cast<float>(volume_->in_file_unit(
+                        static_cast<double>(volume_->sample(volume_->index_of(low.x + x, y, z)))));
     }
 
   private:
@@ -69,7 +70,9 @@ class MemorySource final : public PackSource {
         description.name = volume_->name;
         description.stored_type = volume_->stored_type;
         description.notes = volume_->notes;
-        description.non_finite_count = volume_->non_finite_count;
+        description.min_value = volume_->min_value;
+        description.max_value = volume_->max_value;
+        description.value_scale = volume_->value_scale;
     }
     Volume owned_;
     const Volume* volume_;
@@ -159,7 +162,8 @@ std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptio
             layout = nrrd_layout(path, description);
         else if (path.ends_with(".mha") || path.ends_with(".mhd"))
             layout = meta_layout(path, description);
-        if (layout) {
+        // Values that no header declares are looked for in the samples.
+        if (layout && !options.no_data) {
             apply_spacing(description, options);
             return file_source(*layout, description);
         }

@@ -264,7 +264,10 @@ void write_attributes(Hdf5File& file, const Volume& volume, const Scan& scan, co
     file.set_number("in_patient", SampleType::UInt8, volume.in_patient ? 1 : 0);
     file.set_number("min", SampleType::Float32, static_cast<double>(volume.min_value));
     file.set_number("max", SampleType::Float32, static_cast<double>(volume.max_value));
-    file.set_number("mean", SampleType::Float64, scan.sum / static_cast<double>(geometry.voxel_count()));
+    const auto missing = static_cast<double>(volume.non_finite_count);
+    const double with_data = std::max(static_cast<double>(geometry.voxel_count()) - missing, 1.0);
+    const double sum = scan.sum - missing * static_cast<double>(volume.min_value);
+    file.set_number("mean", SampleType::Float64, sum / with_data);
     file.set_whole_number("non_finite_count", volume.non_finite_count);
     file.set_text("stored_type", volume.stored_type);
     file.set_whole_number("checksum", scan.checksum);
@@ -316,6 +319,11 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
         fail("quantise: {} bits, expected 8 or 16", options.quantise);
     Volume volume = source.description;
     check_dims(volume);
+    const double largest = std::max(std::abs(volume.in_file_unit(static_cast<double>(volume.min_value))),
+                                    std::abs(volume.in_file_unit(static_cast<double>(volume.max_value))));
+    if (volume.value_scale != 1 && !(largest < 1e38 && largest > 1e-30))
+        fail("{}: its values reach {:.3g}, which a packed volume cannot store; expected 1e-30 to 1e38", volume.name,
+             largest);
     const auto levels = level_geometries(volume.geometry);
     Progress progress(options, output);
     const std::size_t voxels = volume.geometry.voxel_count();
@@ -325,7 +333,7 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
     Scan found = scan(source, nullptr, progress);
     const Coding coding = coding_for(found, options.quantise);
     if (!options.compress) check_space(output, levels, coding);
-    volume.non_finite_count += found.bad;
+    volume.non_finite_count = found.bad;
     if (coding.quantised() || found.bad > 0) {
         progress.expect(voxels);
         found = scan(source, &coding, progress);
@@ -333,6 +341,9 @@ PackSummary pack(const PackSource& source, const std::string& output, const Pack
     volume.min_value = found.low;
     volume.max_value = found.high;
     if (source.streamed()) add_value_notes(volume);
+    if (volume.non_finite_count > 0)
+        volume.notes.push_back(fmt::format("{} samples without data became {}, as packed volumes do not mark them.",
+                                           volume.non_finite_count, volume.min_value));
     if (coding.quantised())
         volume.notes.push_back(
             fmt::format("Quantised to {} bits when it was packed: samples are off by at most {:.3g}.", options.quantise,

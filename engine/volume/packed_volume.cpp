@@ -106,6 +106,8 @@ Histogram read_histogram(const Hdf5File& file, const std::string& path, const Vo
     const auto total = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
     if (total != volume.geometry.voxel_count())
         fail("{}: /histogram: counts {} samples, expected {}", path, total, volume.geometry.voxel_count());
+    // Samples without data are stored as the smallest value.
+    counts.front() -= std::min<std::uint64_t>(counts.front(), volume.non_finite_count);
     return {
         static_cast<double>(volume.min_value), static_cast<double>(volume.max_value), {counts.begin(), counts.end()}};
 }

@@ -14,17 +14,22 @@ class InMemory : public SampleSource {
 
     ValueRange range(const glm::ivec3& low, const glm::ivec3& size) const override {
         ValueRange out{volume_->max_value, volume_->min_value};
-        for_rows(low, size, [&](const float* row, std::size_t) {
+        for_rows(low, size, [&](std::size_t first, std::size_t) {
+            const float* row = &volume_->values[first];
             const auto [least, most] = std::minmax_element(row, row + size.x);
             out.low = std::min(out.low, *least);
             out.high = std::max(out.high, *most);
+            for (std::size_t i = first; volume_->no_data && i < first + static_cast<std::size_t>(size.x); ++i)
+                out.complete = out.complete && volume_->has_data(i);
         });
         return out;
     }
 
     void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
-        for_rows(low, size, [&](const float* row, std::size_t number) {
-            std::copy_n(row, size.x, &out[number * static_cast<std::size_t>(size.x)]);
+        for_rows(low, size, [&](std::size_t first, std::size_t number) {
+            const auto width = static_cast<std::size_t>(size.x);
+            for (std::size_t i = 0; i < width; ++i)
+                out[number * width + i] = volume_->sample(first + i);
         });
     }
 
@@ -35,7 +40,7 @@ class InMemory : public SampleSource {
         std::size_t number = 0;
         for (std::size_t z = first.z; z < first.z + static_cast<std::size_t>(size.z); ++z)
             for (std::size_t y = first.y; y < first.y + static_cast<std::size_t>(size.y); ++y)
-                body(&volume_->values[(z * dims.y + y) * dims.x + first.x], number++);
+                body((z * dims.y + y) * dims.x + first.x, number++);
     }
 
     std::shared_ptr<const Volume> volume_;
@@ -47,7 +52,7 @@ class InFile : public SampleSource {
     const VolumeGeometry& geometry() const override { return file_->geometry(level_); }
     ValueRange range(const glm::ivec3& low, const glm::ivec3& size) const override {
         const PackedVolume::Range range = file_->range(level_, low, size);
-        return {range.low, range.high};
+        return {range.low, range.high, true};
     }
     void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
         file_->read(level_, low, size, out);
@@ -94,6 +99,8 @@ Volume halved(const Volume& volume) {
     out.stored_type = volume.stored_type;
     out.checksum = volume.checksum;
     out.notes = volume.notes;
+    out.value_scale = volume.value_scale;
+    const auto no_data = volume.no_data ? std::make_shared<std::vector<bool>>() : nullptr;
     out.values.reserve(out.geometry.voxel_count());
     const glm::ivec3 last = volume.geometry.dims - 1;
     glm::ivec3 p;
@@ -102,13 +109,20 @@ Volume halved(const Volume& volume) {
             for (p.x = 0; p.x < out.geometry.dims.x; ++p.x) {
                 const glm::ivec3 low = 2 * p, high = glm::min(low + 1, last);
                 double sum = 0;
+                int count = 0;
                 for (int z = low.z; z <= high.z; ++z)
                     for (int y = low.y; y <= high.y; ++y)
                         for (int x = low.x; x <= high.x; ++x)
-                            sum += static_cast<double>(volume.at(x, y, z));
-                const glm::ivec3 count = high - low + 1;
-                out.values.push_back(static_cast<float>(sum / (count.x * count.y * count.z)));
+                            if (volume.has_data({x, y, z})) {
+                                sum += static_cast<double>(volume.at(x, y, z));
+                                ++count;
+                            }
+                const glm::ivec3 size = high - low + 1;
+                const bool enough = 2 * count >= size.x * size.y * size.z;
+                if (no_data) no_data->push_back(!enough);
+                out.values.push_back(enough ? static_cast<float>(sum / count) : volume.min_value);
             }
+    out.no_data = no_data;
     return out;
 }
 

@@ -65,10 +65,13 @@ void check_axes(const Volume& volume) {
 
 void finish_volume(Volume& volume) {
     check_geometry(volume);
+    if (volume.no_data && volume.no_data->size() != volume.values.size())
+        fail("{}: {} marks of missing data for {} samples", volume.name, volume.no_data->size(), volume.values.size());
     float low = std::numeric_limits<float>::infinity(), high = -low;
     std::size_t bad = 0;
-    for (const float value : volume.values) {
-        if (!std::isfinite(value)) {
+    for (std::size_t i = 0; i < volume.values.size(); ++i) {
+        const float value = volume.values[i];
+        if (!std::isfinite(value) || !volume.has_data(i)) {
             ++bad;
             continue;
         }
@@ -81,17 +84,22 @@ void finish_volume(Volume& volume) {
     volume.max_value = any ? high : 0.0F;
     if (bad > 0) {
         auto no_data = std::make_shared<std::vector<bool>>(volume.values.size());
-        if (volume.no_data) *no_data = *volume.no_data;
         for (std::size_t i = 0; i < volume.values.size(); ++i) {
-            if (std::isfinite(volume.values[i])) continue;
+            if (std::isfinite(volume.values[i]) && volume.has_data(i)) continue;
             (*no_data)[i] = true;
             volume.values[i] = volume.min_value;
         }
         volume.no_data = std::move(no_data);
+    } else {
+        volume.no_data.reset();
     }
 
     detail::VolumeChecksum checksum(volume.geometry);
     checksum.add(volume.values);
+    if (volume.value_scale != 1) checksum.add_scale(volume.value_scale);
+    // Which samples are missing changes the picture, too.
+    for (std::size_t i = 0; bad > 0 && i < volume.values.size(); ++i)
+        if (!volume.has_data(i)) checksum.add_missing(i);
     volume.checksum = checksum.value();
 }
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -62,12 +63,17 @@ struct Volume {
     bool in_patient = false;    ///< the world axes are the patient's: +x left, +y back, +z up
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
-    std::size_t non_finite_count = 0;  ///< samples that were NaN or infinite: they contain no data
-    /// Per sample whether it contains no data: NaN, infinite, or the fill value that the file declares. Not set: none.
+    std::size_t non_finite_count = 0;  ///< samples without data (`no_data`)
+    /// Per sample whether it contains no data: NaN, infinite, or the fill value that the file or the user declares. Not
+    /// set: none. Such samples are transparent and count in no statistics.
     std::shared_ptr<const std::vector<bool>> no_data;
+    /// A value in the file's unit is `value_scale` times a sample: a power of two, 1 unless the values are too large or
+    /// too small for products of floats. Scenes, `min_value`, and everything in the engine use the samples' unit.
+    double value_scale = 1;
     std::shared_ptr<const LabelTable> labels;  ///< set if the samples are labels that the reader recognised
     std::string geometry_source;     ///< the header's fields that define the geometry, e.g. "sform"; "none" if assumed
     std::string length_unit;         ///< the file's unit of length as its header names it; empty: none, mm are assumed
+    std::string format;              ///< name of the format as its reader names it, e.g. "NRRD"; empty: none
     std::string name;                ///< path, or "builtin:NAME"
     std::string stored_type;         ///< component type in the file, e.g. "int16"
     std::uint64_t checksum = 0;      ///< FNV-1a over dims, geometry and samples
@@ -76,17 +82,22 @@ struct Volume {
     /// If set, `values` is empty and samples are read from this file on demand (packed_volume.h).
     std::shared_ptr<const PackedVolume> packed;
 
-    float at(int x, int y, int z) const {
-        return values[(static_cast<std::size_t>(z) * static_cast<std::size_t>(geometry.dims.y) +
-                       static_cast<std::size_t>(y)) *
-                          static_cast<std::size_t>(geometry.dims.x) +
-                      static_cast<std::size_t>(x)];
+    std::size_t index_of(int x, int y, int z) const {
+        return (static_cast<std::size_t>(z) * static_cast<std::size_t>(geometry.dims.y) + static_cast<std::size_t>(y)) *
+                   static_cast<std::size_t>(geometry.dims.x) +
+               static_cast<std::size_t>(x);
     }
+    float at(int x, int y, int z) const { return values[index_of(x, y, z)]; }
+    bool has_data(std::size_t sample) const { return !no_data || !(*no_data)[sample]; }
+    bool has_data(const glm::ivec3& i) const { return !no_data || !(*no_data)[index_of(i.x, i.y, i.z)]; }
+    /// The sample, or NaN if it contains no data.
+    float sample(std::size_t i) const { return has_data(i) ? values[i] : std::numeric_limits<float>::quiet_NaN(); }
+    double in_file_unit(double value) const { return value * value_scale; }
 };
 
-/// Completes a volume with given geometry and values: replaces non-finite samples by the smallest finite one (0 if
-/// there is none), counts them and marks them in `no_data`; sets min, max and checksum. Throws Error if dims and values
-/// disagree.
+/// Completes a volume with given geometry and values: samples that are not finite, or already marked in `no_data`,
+/// contain no data. They are replaced by the smallest of the others (0 if there is none), counted and marked. Sets min,
+/// max and checksum. Throws Error if dims and values disagree.
 void finish_volume(Volume& volume);
 
 }  // namespace edgesplat

@@ -39,7 +39,23 @@ def samples_of(source: Any, name: str | None, frame: int | None) -> Samples:
             found = Samples(np.asanyarray(source), np.eye(3), np.zeros(3), False, "array")
     found.name = name if name is not None else found.name
     _check(found.array, found.name)
+    if isinstance(found.array, np.ma.MaskedArray) and np.ma.is_masked(found.array):
+        found.array = np.ma.filled(found.array.astype(np.float64), np.nan)
     return found
+
+
+def fitted(array: np.ndarray) -> tuple[np.ndarray, float]:
+    """The array divided by a power of two if float32 cannot hold its values, and that power; else the array and 1. Values
+    above 1e100 are no measurements."""
+    if array.dtype.kind != "f" or array.dtype.itemsize < 8 or array.size == 0:
+        return array, 1.0
+    size = np.abs(array)
+    size = size[size <= 1e100]
+    largest = float(size.max()) if size.size else 0.0
+    if largest == 0 or 1e-30 <= largest <= float(np.finfo(np.float32).max):
+        return array, 1.0
+    scale = 2.0 ** int(np.floor(np.log2(largest)))
+    return array / scale, scale
 
 
 def _has(source: Any, *parts: str) -> bool:
@@ -51,8 +67,6 @@ def _check(array: np.ndarray, name: str) -> None:
         raise Error(f"name: {name!r}: reserved for builtin volumes; expected another name")
     if array.dtype.kind not in "biuf":
         raise Error(f"{name}: dtype {array.dtype}: expected integers, floats or bool")
-    if isinstance(array, np.ma.MaskedArray) and np.ma.is_masked(array):
-        raise Error(f"{name}: a masked array: expected one without masked values, such as array.filled(0)")
     if array.ndim != 3:
         raise Error(f"{name}: shape {array.shape}: expected three axes, z, y, x")
 

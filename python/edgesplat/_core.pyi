@@ -17,12 +17,26 @@ _Triple = tuple[float, float, float]
 class Volume:
     @staticmethod
     def load(
-        path: str, component: int | None, frame: int | None, level: int | None, series: str, raw: str,
-        spacing: _Triple | None, /
+        path: str,
+        component: int | None,
+        frame: int | None,
+        level: int | None,
+        series: str,
+        raw: str,
+        spacing: _Triple | None,
+        no_data: float | None,
+        /,
     ) -> Volume: ...
     @staticmethod
     def from_array(
-        array: np.ndarray, axes: Sequence[_Triple], origin: _Triple, patient: bool, name: str, /
+        array: np.ndarray,
+        axes: Sequence[_Triple],
+        origin: _Triple,
+        patient: bool,
+        name: str,
+        value_scale: float,
+        no_data: float | None,
+        /,
     ) -> Volume: ...
     @property
     def array(self) -> np.ndarray: ...
@@ -41,6 +55,10 @@ class Volume:
     @property
     def max(self) -> float: ...
     @property
+    def value_scale(self) -> float: ...
+    @property
+    def no_data(self) -> np.ndarray | None: ...
+    @property
     def non_finite_count(self) -> int: ...
     @property
     def name(self) -> str: ...
@@ -50,6 +68,8 @@ class Volume:
     def checksum(self) -> str: ...
     @property
     def notes(self) -> list[str]: ...
+    @property
+    def warnings(self) -> list[str]: ...
     def suggest_iso_values(self, count: int, /) -> list[tuple[float, float]]: ...
     def measure(
         self, iso_values: Sequence[float], /

@@ -10,7 +10,7 @@ from typing import Any, Sequence, Tuple
 import numpy as np
 
 from . import _core
-from ._arrays import samples_of
+from ._arrays import fitted, samples_of
 from ._core import Error
 
 PathLike = (str, os.PathLike)
@@ -81,7 +81,10 @@ class Volume:
     component, frame, level, series, raw: choose data in a file, as ``--component`` and so on; `frame` also in a 4-D
         nibabel image.
 
-    Samples that are not finite are replaced by the smallest finite one, with a warning.
+    no_data: value of samples without data.
+
+    Samples that are NaN, infinite, masked, or `no_data` contain no data: they are transparent and count in no
+    statistics (`Volume.no_data`), with a warning.
     Raises Error with the program's messages.
     """
 
@@ -99,6 +102,7 @@ class Volume:
         level: int | None = None,
         series: str | int = "",
         raw: str = "",
+        no_data: float | None = None,
     ) -> None:
         lengths = None if spacing is None else _vector(spacing, "spacing")
         if lengths is not None and not np.all(lengths > 0):
@@ -111,7 +115,9 @@ class Volume:
                 if value is not None:
                     raise Error(f"{key}: only for arrays; a file defines it")
             given = None if lengths is None else _triple(lengths)
-            self._core = _core.Volume.load(os.fspath(source), component, frame, level, str(series), raw, given)
+            self._core = _core.Volume.load(
+                os.fspath(source), component, frame, level, str(series), raw, given, no_data
+            )
         else:
             for key, value in of_files.items():
                 if value is not None:
@@ -120,16 +126,19 @@ class Volume:
             axes = _axes(found.axes, direction, lengths)
             at = _triple(found.origin if origin is None else _vector(origin, "origin"))
             in_patient = found.patient if patient is None else bool(patient)
-            with np.errstate(over="ignore"):  # values beyond float32 become infinite; the warning below reports them
-                self._core = _core.Volume.from_array(found.array, axes, at, in_patient, found.name)
+            array, scale = fitted(found.array)
+            with np.errstate(over="ignore", invalid="ignore"):  # larger values become infinite; a warning reports them
+                self._core = _core.Volume.from_array(array, axes, at, in_patient, found.name, scale, no_data)
         self._warn()
 
     def _warn(self) -> None:
         if self._core.non_finite_count:
             warnings.warn(
-                f"{self.name}: {self._core.non_finite_count} samples are not finite; they are replaced by {self.min}",
+                f"{self.name}: {self._core.non_finite_count} samples contain no data; they are transparent",
                 stacklevel=3,
             )
+        for text in self._core.warnings:
+            warnings.warn(f"{self.name}: {text}", stacklevel=3)
 
     @classmethod
     def _of(cls, held: _core.Volume) -> Volume:
@@ -139,8 +148,14 @@ class Volume:
 
     @property
     def array(self) -> np.ndarray:
-        """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory."""
-        return self._core.array
+        """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory. A float64 copy if the values are
+        above 1e15 or below 1e-15 in magnitude. Where there are no data: the smallest sample."""
+        return self._core.array if self._core.value_scale == 1 else self._core.array * self._core.value_scale
+
+    @property
+    def no_data(self) -> np.ndarray | None:
+        """Which samples contain no data: bool, shape (z, y, x). None: all contain data."""
+        return self._core.no_data
 
     @property
     def shape(self) -> tuple[int, int, int]:
@@ -171,12 +186,12 @@ class Volume:
 
     @property
     def min(self) -> float:
-        """The smallest finite sample."""
+        """The smallest sample with data."""
         return self._core.min
 
     @property
     def max(self) -> float:
-        """The largest finite sample."""
+        """The largest sample with data."""
         return self._core.max
 
     @property

@@ -112,7 +112,13 @@ void add_pictures(py::module_& module) {
                                    const Camera& c = self.camera;
                                    return py::make_tuple(triple(c.eye), triple(c.direction), triple(c.up), c.fov_y);
                                })
-        .def_property_readonly("iso_values", [](const Picture& self) { return self.scene.iso_values; })
+        .def_property_readonly("iso_values",
+                               [](const Picture& self) {
+                                   std::vector<double> values = self.scene.iso_values;
+                                   for (double& value : values)
+                                       value = self.volume.volume->in_file_unit(value);
+                                   return values;
+                               })
         .def_property_readonly("scene_text", scene_of)
         .def_property_readonly("volume", [](const Picture& self) { return self.volume; })
         .def("statistics", [](const Picture& self) { return json_text(described(self).statistics); })

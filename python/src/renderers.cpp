@@ -27,7 +27,8 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     reading.path = none.path = volume.source.path;
     if (reading != none && reading != volume.source)
         fail(
-            "volume: {} is already read; expected component, frame, level, series, raw and spacing as arguments of "
+            "volume: {} is already read; expected component, frame, level, series, raw, no_data and spacing as "
+            "arguments of "
             "Volume",
             volume.source.path);
     scene.volume = volume.source;

@@ -5,6 +5,7 @@
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/load_volume.h"
+#include "engine/volume/no_data.h"
 #include "engine/volume/packed_volume.h"
 #include "python/src/signals.h"
 
@@ -13,13 +14,14 @@ namespace {
 
 SharedVolume load(const std::string& path, std::optional<int> component, std::optional<int> frame,
                   std::optional<int> level, const std::string& series, const std::string& raw,
-                  const std::optional<Triple>& spacing) {
+                  const std::optional<Triple>& spacing, std::optional<double> no_data) {
     VolumeSource source;
     source.component = component;
     source.frame = frame;
     source.level = level;
     source.series = series;
     source.raw = raw;
+    source.no_data = no_data;
     if (spacing) source.spacing = vector(*spacing);
     source.path = path;
     return read_from(std::move(source), volume_folders({}));
@@ -42,9 +44,9 @@ glm::ivec3 dims_of(const py::array& array, const std::string& name) {
 }
 
 /// A volume from an array. `array`: numbers with three axes z, y, x, any byte order and strides. `axes`: steps of a
-/// voxel along x, y and z, mm.
+/// voxel along x, y and z, mm. `value_scale`: as of Volume.
 SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axes, const Triple& origin, bool patient,
-                        const std::string& name) {
+                        const std::string& name, double value_scale, std::optional<double> no_data) {
     Volume volume;
     volume.name = name;
     volume.stored_type = py::str(array.dtype());
@@ -58,7 +60,12 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
     const py::array_t<float> target({array.shape(0), array.shape(1), array.shape(2)}, volume.values.data(), py::none());
     py::module_::import("numpy").attr("copyto")(target, array, py::arg("casting") = "unsafe");
     const py::gil_scoped_release release;
+    volume.value_scale = value_scale;
+    if (no_data && declare_no_data(volume, *no_data) == 0) fail("{}: no_data: no sample is {}", name, *no_data);
     finish_volume(volume);
+    fit_to_floats(volume);
+    for (const SuspectedFill& fill : suspected_fill(volume))
+        volume.warnings.push_back(text_of(fill, volume));
     VolumeSource source;
     source.path = name;
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
@@ -71,11 +78,21 @@ py::array values(const py::object& self) {
     return view_of<float>({dims.z, dims.y, dims.x}, volume.values.data(), self);
 }
 
+/// Which samples contain no data, in the shape of the samples; None: all do.
+py::object no_data(const SharedVolume& self) {
+    const Volume& volume = *self.volume;
+    if (!volume.no_data) return py::none();
+    const glm::ivec3& dims = volume.geometry.dims;
+    py::array_t<bool> marks({dims.z, dims.y, dims.x});
+    std::copy(volume.no_data->begin(), volume.no_data->end(), marks.mutable_data());
+    return std::move(marks);
+}
+
 std::vector<std::pair<double, double>> suggestions(const SharedVolume& self, int count) {
     const py::gil_scoped_release release;
     std::vector<std::pair<double, double>> found;
     for (const IsoSuggestion& suggestion : suggest_iso_values(*self.volume, count))
-        found.emplace_back(suggestion.value, suggestion.strength);
+        found.emplace_back(self.volume->in_file_unit(suggestion.value), suggestion.strength);
     return found;
 }
 
@@ -93,8 +110,11 @@ std::pair<std::vector<Numbers>, std::vector<Numbers>> measured(const SharedVolum
                                                                const std::vector<double>& iso_values) {
     return without_lock([&] {
         Signals signals;
+        std::vector<double> samples = iso_values;
+        for (double& value : samples)
+            value /= self.volume->value_scale;
         const auto extents =
-            measure::measure_extents(*self.volume, iso_values, {}, [&](double) { return !signals.request_stop(); });
+            measure::measure_extents(*self.volume, samples, {}, [&](double) { return !signals.request_stop(); });
         return std::pair(numbers(extents.volumes), numbers(extents.surfaces));
     });
 }
@@ -120,6 +140,7 @@ VolumeSource reading_part(const VolumeSource& source) {
     part.frame = source.frame;
     part.level = source.level;
     part.spacing = source.spacing;
+    part.no_data = source.no_data;
     return part;
 }
 
@@ -153,15 +174,24 @@ void add_volumes(py::module_& module) {
                                [](const SharedVolume& self) { return triple(self.volume->geometry.spacing()); })
         .def_property_readonly("origin", [](const SharedVolume& self) { return triple(self.volume->geometry.origin); })
         .def_property_readonly("patient", [](const SharedVolume& self) { return self.volume->in_patient; })
-        .def_property_readonly("min", [](const SharedVolume& self) { return self.volume->min_value; })
-        .def_property_readonly("max", [](const SharedVolume& self) { return self.volume->max_value; })
+        .def_property_readonly("min",
+                               [](const SharedVolume& self) {
+                                   return self.volume->in_file_unit(static_cast<double>(self.volume->min_value));
+                               })
+        .def_property_readonly("max",
+                               [](const SharedVolume& self) {
+                                   return self.volume->in_file_unit(static_cast<double>(self.volume->max_value));
+                               })
+        .def_property_readonly("value_scale", [](const SharedVolume& self) { return self.volume->value_scale; })
+        .def_property_readonly("no_data", no_data)
         .def_property_readonly("non_finite_count",
                                [](const SharedVolume& self) { return self.volume->non_finite_count; })
         .def_property_readonly("name", [](const SharedVolume& self) { return self.volume->name; })
         .def_property_readonly("stored_type", [](const SharedVolume& self) { return self.volume->stored_type; })
         .def_property_readonly("checksum",
                                [](const SharedVolume& self) { return fmt::format("{:016x}", self.volume->checksum); })
-        .def_property_readonly("notes", [](const SharedVolume& self) { return self.volume->notes; });
+        .def_property_readonly("notes", [](const SharedVolume& self) { return self.volume->notes; })
+        .def_property_readonly("warnings", [](const SharedVolume& self) { return self.volume->warnings; });
     module.def("builtin_names", [] {
         std::vector<std::string> names;
         for (const auto& name : analytic_scene_names())

@@ -3,6 +3,9 @@
 
 float voxel(ivec3 p) { return imageLoad(volume, p).r; }
 
+// Samples lie between 0 and 1. Without data they are -1e-30, which is 0 to interpolation.
+bool has_data(float value) { return value >= 0.0; }
+
 // Interpolates in the cell with the corners c and e at the fraction t.
 float within_cell(ivec3 c, ivec3 e, vec3 t) {
     vec4 low = vec4(voxel(c), voxel(ivec3(c.x, e.y, c.z)), voxel(ivec3(c.x, c.y, e.z)), voxel(ivec3(c.x, e.y, e.z)));

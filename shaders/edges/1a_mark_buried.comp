@@ -22,7 +22,8 @@ layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params
 bool opaque(ivec3 p) {
     if (AXIS != 0u) return imageLoad(buried, p).r != 0u;
     if (is_cut_away(vec3(p), 0.0)) return false;
-    return in_mask(params.scene.opaque_mask, material_of(imageLoad(volume, p).r));
+    float value = imageLoad(volume, p).r;
+    return value >= 0.0 && in_mask(params.scene.opaque_mask, material_of(value));
 }
 
 void main() {

@@ -80,7 +80,11 @@ void main() {
         Beside beside = Beside(0u, 0u);
         if (SURFELS || params.scene.translucent_mask != 0u) {
             vec2 around = values_around(p);
-            beside = Beside(material - material_of(around.x), material_of(around.y) - material);
+            uint lowest = material_of(around.x);
+            // Matter of a missing sample's own material is not there.
+            bool missing = has_data(value) && !has_data(around.x);
+            IF_ANY(missing) lowest = missing ? min(lowest + 1u, material_of(least_data_around(p))) : lowest;
+            beside = Beside(material - lowest, material_of(around.y) - material);
             if (SURFELS) e = find_surfel(p, value, low, high, around);
         }
         if (e.state == EDGE_NONE) {

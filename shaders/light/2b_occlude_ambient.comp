@@ -28,6 +28,7 @@ float extinction_at(ivec3 p) {
     float value = imageLoad(volume, p).r;
     float extinction = TRANSFER == 1u ? transfer_at(TransferRef(params.scene.transfer), value).a
                                       : occlusion.at.extinction[material_of(value)];
+    extinction = value >= 0.0 ? extinction : 0.0;  // no data
     if (CLIP_KEEP + CLIP_REMOVE > 0u) extinction = is_cut_away(vec3(p), 0.0) ? 0.0 : extinction;
     return extinction;
 }

@@ -52,7 +52,7 @@ void main() {
     vec4 sum = vec4(0.0);
     float previous = 0.0, current = 0.0;
     IF_ANY(count > 0) previous = field(at(ray, ray.first));
-    uint from = material_of(previous), to = from;
+    uint from = material_of(previous), to = from, lowest = material_of(0.0);
     bool was_visible = is_visible(from);
     float light = 1.0, lit_at = -1e9, stale = 0.0;  // depth of the last lighting, and opacity drawn with it since
     float alpha_step = 0.0;            // opacity of a whole step in the current material
@@ -81,6 +81,8 @@ void main() {
                 to = material_of(current);
                 bool changes = was_visible ? to != from : is_visible(to);
                 float weight = (1.0 - sum.a) * alpha_step;
+                // Matter of the smallest value is not there where samples contain no data.
+                if (NO_DATA == 1u) weight = from == lowest && is_missing(at(ray, t - 0.5 * step)) ? 0.0 : weight;
                 bool dark = LIGHT != LIGHT_NONE && stale + weight > STALE_LIGHT && t - 0.5 * step - lit_at >= STALE_WAY;
                 found = changes || (was_visible && (dark || i == count || alpha_step == 0.0));
                 weight = found ? 0.0 : weight;
@@ -110,6 +112,7 @@ void main() {
             }
             vec4 material = params.rays.materials[from];
             float weight = (1.0 - sum.a) * opacity(material.a * ray.mm * (c - a));
+            if (NO_DATA == 1u) weight = from == lowest && is_missing(at(ray, 0.5 * (a + c))) ? 0.0 : weight;
             stale += weight;
             // Surfaces are lit at the crossing, independent of the sample positions.
             float here = entered ? a : 0.5 * (a + c);

@@ -7,6 +7,7 @@ layout(constant_id = SPEC_RAY_LIGHT) const uint LIGHT = 1u;
 layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;
 layout(constant_id = SPEC_SKIP) const uint SKIP = 1u;
 layout(constant_id = SPEC_RAY_FILTER) const uint FILTER = FILTER_TRILINEAR;
+layout(constant_id = SPEC_NO_DATA) const uint NO_DATA = 0u;
 const uint LIGHT_NONE = 0u, LIGHT_HEADLIGHT = 1u;
 
 // A new gradient is computed after at least STALE_WAY voxels, once the opacity drawn with the old one exceeds
@@ -40,6 +41,9 @@ uint material_of(float value) {
     for (uint j = 0u; j < ISO_COUNT; ++j) material += iso_values[j] <= value ? 1u : 0u;
     return material;
 }
+
+// Whether the voxel nearest to p contains no data.
+bool is_missing(vec3 p) { return !has_data(voxel(ivec3(within_samples(p) + 0.5))); }
 
 bool is_visible(uint material) { return (visible_mask >> material & 1u) == 1u; }
 

@@ -22,6 +22,23 @@ vec3 border_beside(vec3 p) {
     return nearest < BORDER_LIGHT ? axis : vec3(0.0);
 }
 
+// The field at p from the samples with data; `otherwise` if there are none.
+float field_of_data(vec3 p, float otherwise) {
+    if (NO_DATA == 0u) return field(p);
+    p = within_samples(p);
+    ivec3 c = ivec3(p), e = min(c + 1, dims - 1);
+    vec3 t = p - vec3(c);
+    float sum = 0.0, weights = 0.0;
+    for (int i = 0; i < 8; ++i) {
+        bvec3 upper = bvec3(i & 1, i & 2, i & 4);
+        vec3 w = mix(1.0 - t, t, upper);
+        float value = voxel(mix(c, e, upper)), weight = has_data(value) ? w.x * w.y * w.z : 0.0;
+        sum += weight * value;
+        weights += weight;
+    }
+    return weights > 0.0 ? sum / weights : otherwise;
+}
+
 void main() {
     ivec2 pixel = pixel_of_invocation();
     if (any(greaterThanEqual(pixel, params.rays.size))) return;
@@ -43,18 +60,23 @@ void main() {
             way = leap(ray, at(ray, t));
             i = way > 0.0 ? max(i + 1, int(ceil((t + way - 1e-3 - ray.first) * per_step))) : i;
         }
-        IF_ANY(i <= count && empty) previous = field(at(ray, min(ray.first + float(i - 1) * step, ray.last)));
+        IF_ANY(i <= count && empty) previous = field_of_data(at(ray, min(ray.first + float(i - 1) * step, ray.last)), -1.0);
         empty = false;
         bool dark = false;  // light must be computed before anything else is drawn
         float middle = 0.0;
         while (i <= count && !dark && !empty) {
             float a = min(ray.first + float(i - 1) * step, ray.last), b = min(ray.first + float(i) * step, ray.last);
-            float current = field(at(ray, b));
-            float depth = ray.mm * (b - a) * transfer_between(rows, previous, current).a;
             middle = 0.5 * (a + b);
+            float current = field_of_data(at(ray, b), previous);
+            bool missing = false;
+            if (NO_DATA == 1u) {
+                missing = is_missing(at(ray, middle));
+                previous = previous < 0.0 ? current : previous;
+            }
+            float depth = missing ? 0.0 : ray.mm * (b - a) * transfer_between(rows, previous, current).a;
             float weight = (1.0 - sum.a) * opacity(depth);
             dark = LIGHT != LIGHT_NONE && depth > 0.0 && (lit_at < -1e8 || (stale + weight > STALE_LIGHT && middle > lit_at));
-            int pieces = dark ? 0 : int(clamp(ceil(depth / PIECE_DEPTH), 1.0, MOST_PIECES));
+            int pieces = dark || missing ? 0 : int(clamp(ceil(depth / PIECE_DEPTH), 1.0, MOST_PIECES));
             for (int k = 0; k < pieces; ++k) {
                 vec4 matter = transfer_between(rows, mix(previous, current, float(k) / float(pieces)), mix(previous, current, float(k + 1) / float(pieces)));
                 float part = (1.0 - sum.a) * opacity(ray.mm * (b - a) / float(pieces) * matter.a);

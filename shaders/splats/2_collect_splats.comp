@@ -45,7 +45,8 @@ void main() {
     ivec3 p = low;
     uint out_at = write == 1u ? offsets.at[run] : 0u;
     for (int v = 0; v < extent.x * extent.y; ++v) {
-        uint own = material_at(p);
+        float sample_here = voxel(p);
+        uint own = material_of(sample_here);
         bool there = true;
         if (BURIED == 1u) there = imageLoad(buried, p).r == 0u;
         if (CLIP_KEEP + CLIP_REMOVE > 0u) there = there && !is_cut_away(vec3(p), params.scene.reach);
@@ -54,12 +55,12 @@ void main() {
         Beside beside = unpack_beside(code.y);
         for (uint material = 0u; material <= ISO_COUNT; ++material) {
             bool carried = material + beside.below >= own && material <= own + beside.above;
-            bool visible = there && (material == own ? in_mask(params.scene.visible_mask, own)
+            bool visible = there && (material == own ? has_data(sample_here) && in_mask(params.scene.visible_mask, own)
                                                      : carried && in_mask(params.scene.translucent_mask, material));
             float value = 0.0;
             if (TRANSFER == 1u) {
                 Edge e = unpack_edge(code.x, code.y);
-                IF_ANY(visible) value = material == own ? classified_value(p, voxel(p), own, e) : carried_value(p, own, material, e);
+                IF_ANY(visible) value = material == own ? classified_value(p, sample_here, own, e) : carried_value(p, own, material, e);
                 visible = visible && transfer_at(TransferRef(params.scene.transfer), value).a > 0.0;
             }
             if (visible) {

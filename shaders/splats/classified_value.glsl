@@ -24,6 +24,8 @@ float carried_value(ivec3 p, uint own, uint material, Edge e) {
     IF_ANY(outermost) {
         vec2 around = values_around(p);
         value = material == 0u ? around.x : outermost ? around.y : value;
+        bool missing = material == 0u && !has_data(around.x);
+        IF_ANY(missing) value = missing ? least_data_around(p) : value;
     }
     bool ahead = e.state >= EDGE_LOWER && (e.state == EDGE_UPPER) == (material > own);
     IF_ANY(ahead) {

@@ -145,8 +145,8 @@ class RaycastInDouble : public testing::TestWithParam<RaycastFilter> {
         reference::DirectOptions options;
         options.tolerance = 1e-5;
         const Image expected =
-            reference::truth(reference::interpolated_scene(*shot.volume, how.filter), shot.volume->geometry, shot.scene,
-                             shot.camera, shot.width, shot.height, options)
+            reference::truth(reference::interpolated_scene(*shot.volume, how.filter, shot.scene), shot.volume->geometry,
+                             shot.scene, shot.camera, shot.width, shot.height, options)
                 .image;
         const Image color = cast(shot, how).color;
         std::vector<double> errors;

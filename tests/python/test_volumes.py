@@ -97,7 +97,7 @@ def test_an_axis_too_long():
 def test_not_finite():
     array = np.ones((3, 3, 3))
     array[0, 0, 0], array[1, 1, 1], array[2, 2, 2] = np.nan, np.inf, -np.inf
-    with pytest.warns(UserWarning, match="3 samples are not finite; they are replaced by 1"):
+    with pytest.warns(UserWarning, match="3 samples contain no data; they are transparent"):
         volume = Volume(array)
     assert np.all(volume.array == 1)
 
@@ -105,14 +105,15 @@ def test_not_finite():
 def test_beyond_float32():
     array = np.ones((2, 2, 2))
     array[0, 0, 0] = 1e300
-    with pytest.warns(UserWarning, match="1 samples are not finite"):
+    with pytest.warns(UserWarning, match="1 samples contain no data"):
         Volume(array)
 
 
 def test_masked():
     array = np.ma.masked_equal(np.arange(8).reshape(2, 2, 2), 3)
-    with pytest.raises(Error, match="masked"):
-        Volume(array)
+    with pytest.warns(UserWarning, match="1 samples contain no data"):
+        volume = Volume(array)
+    assert np.array_equal(volume.no_data, array.mask)
     assert Volume(array.filled(0)).max == 7
 
 

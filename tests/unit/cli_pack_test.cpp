@@ -53,7 +53,7 @@ TEST_F(CliPackTest, InfoDescribesPackedVolume) {
     const auto in_file = nlohmann::json::parse(run("info vol.esv --bins 64 --json -").out);
     const auto in_memory = nlohmann::json::parse(run("info builtin:phantom:100 --bins 64 --json -").out);
     for (const char* key : {"dims", "type", "spacing_mm", "directions", "origin_mm", "range", "checksum", "histogram",
-                            "suggested_iso_values", "non_finite"})
+                            "suggested_iso_values", "no_data"})
         EXPECT_EQ(in_file[key], in_memory[key]) << key;
     EXPECT_NEAR(in_file["mean"].get<double>(), in_memory["mean"].get<double>(), 1e-9);
     EXPECT_EQ(in_file["packed"]["levels"], nlohmann::json::parse("[[100,100,100],[50,50,50]]"));

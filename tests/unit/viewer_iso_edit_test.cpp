@@ -175,7 +175,7 @@ TEST(IsoEdit, WrittenOutMaterialsGiveTheSameScene) {
     SceneDocument d;
     d.iso_values = {0.6, 0.3};
     const Scene scene = resolve_scene(d, v);
-    write_out_materials(d, scene);
+    write_out_materials(d, scene, v);
     EXPECT_EQ(d.iso_values, scene.iso_values);
     const Scene again = resolve_scene(d, v);
     EXPECT_EQ(again.iso_values, scene.iso_values);

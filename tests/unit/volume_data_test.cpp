@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include "engine/volume/filters.h"
 #include "volume_test_files.h"
 
 namespace {
@@ -20,13 +21,6 @@ class Data : public testing::Test {
         if (data("").empty()) GTEST_SKIP() << "EDGESPLAT_DATA is not set: no folder of real volumes";
     }
 };
-
-double mean_of(const Volume& volume) {
-    double sum = 0;
-    for (const float value : volume.values)
-        sum += static_cast<double>(value);
-    return sum / static_cast<double>(volume.values.size());
-}
 
 TEST_F(Data, VolumesHaveExpectedDimsSpacingAndRange) {
     struct Case {

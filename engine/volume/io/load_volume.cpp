@@ -18,7 +18,9 @@
 #include "engine/volume/io/tiff.h"
 #include "engine/volume/io/zarr.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/no_data.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/value_text.h"
 
 namespace edgesplat {
 namespace {
@@ -63,12 +65,16 @@ constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 
 bool is_packed_volume(const std::string& path) {
     std::error_code error;
-    return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5) &&
-           is_packed(path);
+    return fs::is_regular_file(path, error) && first_bytes(path).starts_with(kHdf5) && is_packed(path);
 }
 
 void refuse_level(const std::string& path, const LoadOptions& options) {
     if (options.level) fail("{}: --level {}: only OME-Zarr images have levels", path, *options.level);
+}
+
+Volume named(Volume volume, std::string_view format) {
+    if (volume.format.empty()) volume.format = format;
+    return volume;
 }
 
 Volume load_packed(const std::string& path, const LoadOptions& options) {
@@ -78,7 +84,9 @@ Volume load_packed(const std::string& path, const LoadOptions& options) {
     refuse_level(path, options);
     if (options.spacing)
         fail("{}: --spacing: a packed volume keeps the spacing it was packed with (edgesplat pack --spacing)", path);
-    return open_packed(path);
+    if (options.no_data)
+        fail("{}: --no-data: a packed volume keeps the values it was packed with (edgesplat pack --no-data)", path);
+    return named(open_packed(path), "packed volume");
 }
 
 Volume load_folder(const std::string& path, const LoadOptions& options);
@@ -203,7 +211,7 @@ ArchiveLoader archive_loader(int depth) {
 Volume load_file(const std::string& path, const LoadOptions& options, int depth) {
     if (!options.raw.empty()) {
         refuse_inner(path, options, "a raw file");
-        return load_raw(path, options);
+        return named(load_raw(path, options), "raw data");
     }
     const std::string head = first_bytes(path);
     const Start start{path, head};
@@ -215,10 +223,10 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
                          ".mha.gz", ".mhd.gz", ".mrc.gz", ".ccp4.gz", ".rec.gz", ".mnc.gz"});
     if (is_archive(path, head) && is_zarr_zip(path)) {
         refuse_inner(path, options, "a Zarr archive");
-        return load_zarr(path, options);
+        return named(load_zarr(path, options), "Zarr");
     }
     refuse_level(path, options);
-    if (is_archive(path, head) && start.is_named({".npz"})) return load_npz(path, options);
+    if (is_archive(path, head) && start.is_named({".npz"})) return named(load_npz(path, options), "NumPy");
     // Archives can be nested without end.
     if ((compressed || !is_compressed(head)) && is_archive(path, head)) {
         if (depth > 0) fail("{}: an archive in an archive", path);
@@ -231,7 +239,7 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
     for (const Format& format : kFormats)
         if (format.recognises(start)) {
             if (!format.takes_inner) refuse_inner(path, options, fmt::format("a file of the format {}", format.name));
-            return format.load(path, options);
+            return named(format.load(path, options), format.name);
         }
     refuse_inner(path, options, "a file of this format");
     const std::string kind = foreign_kind(path, head);
@@ -241,9 +249,10 @@ Volume load_file(const std::string& path, const LoadOptions& options, int depth)
             "{}: has no header; open the header that belongs to it (.nhdr, .mhd, .dat), or describe it with "
             "--raw DXxDYxDZ:TYPE:little|big[:sx,sy,sz[:skip]]",
             path);
-    if (is_image_file(path)) return load_images(path, {path}, options);
+    if (is_image_file(path)) return named(load_images(path, {path}, options), "images");
     fail(
-        "{}: unknown volume format{}{}. Supported are {}images, packed volumes, archives (zip, tar) and compressed files "
+        "{}: unknown volume format{}{}. Supported are {}images, packed volumes, archives (zip, tar) and compressed "
+        "files "
         "of these, or raw data described with --raw DXxDYxDZ:TYPE:little|big",
         path, kind.empty() ? "" : ": ", kind, format_names());
 }
@@ -271,7 +280,7 @@ std::vector<std::string> dicom_files_below(const std::string& path) {
 Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (!options.raw.empty()) fail("{}: --raw describes a file, this is a folder", path);
     refuse_inner(path, options, "a folder of slices");
-    if (is_zarr_folder(path)) return load_zarr(path, options);
+    if (is_zarr_folder(path)) return named(load_zarr(path, options), "Zarr");
     refuse_level(path, options);
     std::vector<std::string> dicom, images;
     std::size_t others = 0, folders = 0;
@@ -299,12 +308,12 @@ Volume load_folder(const std::string& path, const LoadOptions& options) {
     if (others > 0) notes.push_back(fmt::format("{} other files in the folder were ignored.", others));
     Volume volume;
     if (!dicom.empty()) {
-        volume = load_dicom(path, dicom, options);
+        volume = named(load_dicom(path, dicom, options), "DICOM");
     } else if (!images.empty()) {
         images = ordered_slices(path, images, notes);
-        volume = load_images(path, images, options);
+        volume = named(load_images(path, images, options), "images");
     } else if (const auto below = folders > 0 ? dicom_files_below(path) : std::vector<std::string>(); !below.empty()) {
-        volume = load_dicom(path, below, options);
+        volume = named(load_dicom(path, below, options), "DICOM");
     } else {
         if (fs::exists(fs::path(path) / "attributes.json"))
             fail("{}: an N5 container, which is not read; convert it to OME-Zarr", path);
@@ -327,13 +336,13 @@ Volume load_slices(const std::string& path, std::vector<std::string> files, cons
         check_readable_file(file);
         if (!is_dicom(file)) images.push_back(file);
     }
-    if (images.empty()) return load_dicom(path, files, options);
+    if (images.empty()) return named(load_dicom(path, files, options), "DICOM");
     if (images.size() < files.size())
         fail("{}: {} of the {} files that match are DICOM, and {} is not; expected one kind", path,
              files.size() - images.size(), files.size(), images.front());
     std::vector<std::string> notes;
     files = ordered_slices(path, files, notes);
-    auto volume = load_images(path, files, options);
+    auto volume = named(load_images(path, files, options), "images");
     volume.notes.insert(volume.notes.end(), notes.begin(), notes.end());
     return volume;
 }
@@ -375,6 +384,17 @@ Volume load_glob(const std::string& path, const LoadOptions& options) {
 
 }  // namespace
 
+std::string detail::format_of_file(const std::string& path) {
+    std::error_code error;
+    if (!fs::is_regular_file(path, error) || fs::file_size(path, error) == 0) return "";
+    const std::string head = first_bytes(path);
+    const Start start{path, head};
+    for (const Format& format : kFormats)
+        if (format.recognises(start)) return std::string(format.name);
+    if (is_compressed(head) || is_archive(path, head)) return "archive";
+    return start.is_named({".tif", ".tiff", ".png", ".bmp", ".jpg", ".jpeg", ".pgm", ".tga"}) ? "images" : "";
+}
+
 void detail::add_value_notes(Volume& volume) {
     const float largest = std::max(std::abs(volume.min_value), std::abs(volume.max_value));
     const bool wide =
@@ -384,8 +404,18 @@ void detail::add_value_notes(Volume& volume) {
         std::ranges::find(volume.notes, kRounded) == volume.notes.end())
         volume.notes.emplace_back(kRounded);
     if (volume.non_finite_count > 0)
-        volume.notes.push_back(fmt::format("{} samples are not finite; {} replaces them.", volume.non_finite_count,
-                                           static_cast<double>(volume.min_value)));
+        volume.notes.push_back(
+            fmt::format("{} of {} samples contain no data.", volume.non_finite_count, volume.geometry.voxel_count()));
+    // Few steps of float32 between the values: a type with more digits distinguished more.
+    const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
+    if (wide && volume.stored_type != "float32" && range > 0 && range < std::ldexp(static_cast<double>(largest), -16))
+        volume.notes.push_back(
+            fmt::format("The values lie close together ({} to {}), and are rounded to 24 significant bits: to steps of "
+                        "{:.2g}. Subtract an offset before saving to keep more digits.",
+                        value_text(volume, volume.min_value), value_text(volume, volume.max_value),
+                        volume.in_file_unit(std::ldexp(1.0, std::ilogb(largest) - 23))));
+    for (const SuspectedFill& fill : suspected_fill(volume))
+        volume.warnings.push_back(text_of(fill, volume));
     if (const std::size_t count = labels_of(volume).size(); count > 0)
         volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
 }
@@ -400,7 +430,7 @@ InnerPath split_inner(const std::string& path) {
 }
 
 Volume load_volume(const std::string& full_path, const LoadOptions& given) {
-    if (is_builtin(full_path)) return builtin_volume(full_path);
+    if (is_builtin(full_path)) return named(builtin_volume(full_path), "builtin");
     if (full_path.empty()) fail("no volume given");
     const auto [path, inner] = split_inner(full_path);
     LoadOptions options = given;
@@ -427,7 +457,10 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
     volume.name = full_path;
     apply_spacing(volume, options);
     report(options, 0.9, "checking voxels");
+    if (options.no_data && declare_no_data(volume, *options.no_data) == 0)
+        volume.warnings.push_back(fmt::format("--no-data {}: no sample has this value.", *options.no_data));
     finish_volume(volume);
+    fit_to_floats(volume);
     add_value_notes(volume);
     report(options, 1.0, "done");
     return volume;

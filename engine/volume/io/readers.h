@@ -153,6 +153,9 @@ Volume load_archive(const std::string& path, const LoadOptions& options, const A
 /// Reads a compressed file.
 Volume load_compressed(const std::string& path, const LoadOptions& options, const ArchiveLoader& loader);
 
+/// The format of a file by signature or name, as messages call it; "images" by name alone; empty: unknown.
+std::string format_of_file(const std::string& path);
+
 bool is_image_file(const std::string& path);
 /// Reads slices in this order; one file may contain a stack. `name` is the user's path.
 Volume load_images(const std::string& name, const std::vector<std::string>& files, const LoadOptions& options);

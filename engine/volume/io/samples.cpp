@@ -92,6 +92,24 @@ bool take_ranks(const StoredSamples& stored, Volume& volume) {
     return true;
 }
 
+/// The power of two by which samples are divided because floats cannot hold them; 1: they can. Larger samples than
+/// kLargest are no measurements: they become infinite, and so contain no data.
+double scale_for(const StoredSamples& stored, std::size_t count) {
+    constexpr double kLargest = 1e100, kSmallest = 1e-30;
+    if (size_of(stored.type) < 8 && stored.slope == 1 && stored.intercept == 0) return 1;
+    double largest = 0;
+    for_type(stored.type, [&](auto example) {
+        using T = decltype(example);
+        for (std::size_t i = 0; i < count; ++i) {
+            const auto value = static_cast<double>(stored_at<T>(stored, i));
+            const double size = std::abs(stored.slope * value + stored.intercept);
+            if (size > largest && size <= kLargest && !(stored.fill && value == *stored.fill)) largest = size;
+        }
+    });
+    const bool fits = largest <= static_cast<double>(std::numeric_limits<float>::max()) && largest >= kSmallest;
+    return fits || largest == 0 ? 1 : std::ldexp(1.0, std::ilogb(largest));
+}
+
 /// Whether an integer sample is not exact as a float.
 bool loses_digits(const StoredSamples& stored, std::size_t count) {
     bool loses = false;
@@ -134,7 +152,12 @@ void take_samples(const StoredSamples& stored, Volume& volume) {
         if (ranked) return;
         volume.notes.emplace_back("Samples beyond 2^24 are rounded to 24 significant bits.");
     }
-    convert_stored(stored, count, volume.values.data());
+    const double scale = scale_for(stored, count);
+    StoredSamples scaled = stored;
+    scaled.slope /= scale;
+    scaled.intercept /= scale;
+    volume.value_scale = scale;
+    convert_stored(scaled, count, volume.values.data());
 }
 
 std::optional<double> millimetres_in(std::string_view unit) {
