@@ -25,6 +25,7 @@ std::string title(const edgesplat::Scene& scene, const edgesplat::Volume& volume
     const std::vector<std::string> iso = edgesplat::value_texts(values, range);
     std::string text = scene.materials[m].name;
     if (!text.empty()) text += ", ";
+    if (!scene.label_colors.empty()) return text + (m == 0 ? "around the labels" : "labels");
     if (iso.empty()) return text + "all values";
     if (m == 0) return text + fmt::format("below {}", iso.front());
     text += fmt::format("from {}", iso[m - 1]);
@@ -71,7 +72,8 @@ bool iso_value(AppState& state, std::size_t m) {
 void details(AppState& state, std::size_t m) {
     auto& session = state.session;
     const bool materials = session.document().transfer.empty();
-    if (m > 0 && !iso_value(state, m)) return;
+    const bool labels = session.volume().shown_labels != nullptr;
+    if (m > 0 && !labels && !iso_value(state, m)) return;
     const edgesplat::Material material = session.scene().materials.at(m);
     if (materials) {
         const auto scale = viewer::ExtinctionScale::of(session.volume().geometry);
@@ -91,7 +93,8 @@ void details(AppState& state, std::size_t m) {
 void material(AppState& state, std::size_t m) {
     const bool materials = state.session.document().transfer.empty();
     const Scope scope(state, fmt::format("material{}", m));
-    if (materials) {
+    const bool labels = m > 0 && state.session.volume().shown_labels;
+    if (materials && !labels) {
         color(state, "##colour", state.session.scene().materials[m].color,
               [m](SceneDocument& d, const glm::dvec3& v) { viewer::material_choice(d, m).color = v; });
         ImGui::SameLine();

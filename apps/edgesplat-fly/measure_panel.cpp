@@ -2,6 +2,21 @@
 #include <imgui.h>
 
 #include "apps/edgesplat-fly/panels.h"
+#include "engine/scene/label_choice.h"
+#include "engine/volume/labels.h"
+
+namespace {
+
+/// The label or the value at a picked place.
+std::string value_text(const edgesplat::Volume& volume, const edgesplat::viewer::Pick& pick) {
+    if (!volume.shown_labels) return fmt::format("value {:g}", pick.value);
+    const glm::ivec3 dims = volume.geometry.dims;
+    const glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::round(pick.voxel)), glm::ivec3(0), dims - 1);
+    const std::uint32_t number = edgesplat::label_near(volume.shown_labels->at, dims, voxel);
+    return number == 0 ? "" : "label " + text_of(*volume.labels, volume.labels->labels[number - 1]);
+}
+
+}  // namespace
 
 void measure_panel(AppState& state) {
     if (!state.session.is_open()) return;
@@ -16,8 +31,8 @@ void measure_panel(AppState& state) {
     for (std::size_t i = picks.size(); i-- > 0 && i + 6 > picks.size();) {
         const auto& p = picks[i];
         ImGui::Text("%zu  %.2f, %.2f, %.2f mm", i + 1, p.world.x, p.world.y, p.world.z);
-        ImGui::TextDisabled("   voxel %.2f, %.2f, %.2f  value %.8g", p.voxel.x, p.voxel.y, p.voxel.z,
-                            state.session.volume().in_file_unit(p.value));
+        ImGui::TextDisabled("   voxel %.2f, %.2f, %.2f  %s", p.voxel.x, p.voxel.y, p.voxel.z,
+                            value_text(session.volume(), p).c_str());
         ImGui::TextDisabled("   %.2f ± %.2f mm away", p.distance, p.uncertainty);
     }
 }

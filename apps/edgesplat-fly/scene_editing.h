@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "engine/scene/scene_presets.h"
@@ -53,7 +54,17 @@ struct ClipHand {
     std::optional<double> start;                    ///< mm along its normal, where the drag began
 };
 
+/// State of the list of labels.
+struct LabelList {
+    std::string search;
+    const edgesplat::Volume* samples = nullptr;  ///< whose labels `shown` chooses
+    std::vector<std::string> only, hide;         ///< as `shown` chooses them
+    std::vector<bool> shown;                     ///< by place in the table
+    std::size_t background = 0;                  ///< place in the table
+};
+
 struct SceneEditing {
+    LabelList labels;
     ValueCounter counter;
     PlotState plot;
     ClipHand clip;

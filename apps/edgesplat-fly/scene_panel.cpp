@@ -36,6 +36,7 @@ void values_panel(AppState& state) {
             d.volume = read;
         });
     });
+    if (state.session.volume().shown_labels) return materials_panel(state);
     color_source(state);
     histogram_panel(state);
     if (!state.session.document().transfer.empty()) transfer_panel(state);
@@ -58,6 +59,14 @@ void scene_panel(AppState& state) {
         if (!open) continue;
         panel(state);
         ImGui::EndTabItem();
+    }
+    if (state.session.opened().samples) {
+        const bool open = ImGui::BeginTabItem("Labels");
+        note(state, "Labels");
+        if (open) {
+            labels_panel(state);
+            ImGui::EndTabItem();
+        }
     }
     ImGui::EndTabBar();
 }

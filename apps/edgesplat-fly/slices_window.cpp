@@ -9,8 +9,10 @@
 #include "apps/edgesplat-fly/pen.h"
 #include "apps/edgesplat-fly/widgets.h"
 #include "engine/error.h"
+#include "engine/scene/label_choice.h"
 #include "engine/viewer/samples.h"
 #include "engine/viewer/screen.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/value_text.h"
 
 namespace {
@@ -20,6 +22,15 @@ using viewer::Slice;
 
 constexpr ImU32 kGround = IM_COL32(13, 13, 16, 255), kFrame = IM_COL32(70, 72, 84, 255);
 constexpr ImU32 kCross = IM_COL32(255, 210, 60, 190), kEye = IM_COL32(90, 220, 255, 255);
+
+/// The volume; of drawn labels its samples as read.
+const std::shared_ptr<const edgesplat::Volume>& sliced_volume(const AppState& state) {
+    const viewer::Opened& opened = state.session.opened();
+    return opened.volume->shown_labels ? opened.samples : opened.volume;
+}
+const edgesplat::Volume& sliced(const AppState& state) {
+    return *sliced_volume(state);
+}
 
 bool inside(const edgesplat::VolumeGeometry& geometry, const glm::dvec3& world) {
     const glm::dvec3 voxel = geometry.to_index(world);
@@ -44,9 +55,20 @@ viewer::ScreenPicture grey_picture(const Slice& slice) {
     return out;
 }
 
+/// The label at a voxel, or the interpolated value.
+std::string text_there(const edgesplat::Volume& volume, const glm::dvec3& voxel) {
+    const glm::ivec3 at = glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), volume.geometry.dims - 1);
+    if (!volume.has_data(at)) return "no data";
+    if (!volume.labels)
+        return edgesplat::value_text(volume.in_file_unit(viewer::interpolated(volume, voxel)),
+                                     volume.in_file_unit(static_cast<double>(volume.max_value - volume.min_value)));
+    const std::size_t place = place_of_label(*volume.labels, volume.at(at.x, at.y, at.z));
+    return place < volume.labels->labels.size() ? text_of(*volume.labels, volume.labels->labels[place]) : "";
+}
+
 void update(AppState& state, int axis, const glm::dvec3& voxel) {
     SlicePicture& shown = state.slice_pictures[static_cast<std::size_t>(axis)];
-    const auto& volume = state.session.volume();
+    const auto& volume = sliced(state);
     const SliceView& view = state.slice_view;
     const int depth = std::clamp(static_cast<int>(std::lround(voxel[axis])), 0, volume.geometry.dims[axis] - 1);
     // A failed read is not repeated until another slice is requested.
@@ -81,7 +103,7 @@ struct Cell {
 };
 
 void letters(const AppState& state, const Cell& cell) {
-    const auto& volume = state.session.volume();
+    const auto& volume = sliced(state);
     if (!volume.in_patient) return;
     const auto side = viewer::slice_letters(cell.slice, volume.geometry);
     const auto letter = [&](std::size_t i) { return std::string(1, side[i]); };
@@ -107,7 +129,7 @@ void cross(const Cell& cell) {
 
 /// Draws the eye and its view direction, projected into the slice. An eye outside the slice is drawn at its side.
 void eye(const AppState& state, const Cell& cell) {
-    const auto& geometry = state.session.volume().geometry;
+    const auto& geometry = sliced(state).geometry;
     const auto& camera = state.session.motion().camera();
     const auto seen = [&](const glm::dvec3& world) {
         return cell.place(viewer::pixel_at(cell.slice, geometry.to_index(world)));
@@ -134,7 +156,7 @@ void eye(const AppState& state, const Cell& cell) {
 }
 
 void mouse(AppState& state, const Cell& cell, const glm::dvec3& voxel) {
-    const auto& geometry = state.session.volume().geometry;
+    const auto& geometry = sliced(state).geometry;
     glm::dvec3 to = voxel;
     const ImVec2 at = ImGui::GetIO().MousePos;
     const float wheel = ImGui::IsItemHovered() ? ImGui::GetIO().MouseWheel : 0;
@@ -178,17 +200,9 @@ void show(AppState& state, int axis, const glm::dvec3& voxel, const glm::dvec2& 
     mouse(state, cell, voxel);
 }
 
-/// The value at a place in index space, for reading.
-std::string value_there(const edgesplat::Volume& volume, const glm::dvec3& voxel) {
-    const glm::ivec3 nearest = glm::clamp(glm::ivec3(glm::round(voxel)), glm::ivec3(0), volume.geometry.dims - 1);
-    if (!volume.has_data(nearest)) return "no data";
-    return edgesplat::value_text(volume.in_file_unit(viewer::interpolated(volume, voxel)),
-                                 volume.in_file_unit(static_cast<double>(volume.max_value - volume.min_value)));
-}
-
 void window_sliders(AppState& state) {
     SliceView& view = state.slice_view;
-    const auto& volume = state.session.volume();
+    const auto& volume = sliced(state);
     const auto least = static_cast<double>(volume.min_value), most = static_cast<double>(volume.max_value);
     ImGui::SetNextItemWidth(-3.5F * static_cast<float>(state.em));
     ImGui::SliderScalar("black", ImGuiDataType_Double, &view.low, &least, &most, "%.5g");
@@ -215,7 +229,7 @@ void mark(const AppState& state, const glm::dvec3& world) {
 
 void contents(AppState& state) {
     const Scope scope(state, "slices");
-    const auto& volume = state.session.volume();
+    const auto& volume = sliced(state);
     const glm::dvec3 world = linked_point(state), voxel = volume.geometry.to_index(world);
     mark(state, world);
     const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
@@ -236,8 +250,7 @@ void contents(AppState& state) {
     window_sliders(state);
     ImGui::Text("%.1f, %.1f, %.1f mm", world.x, world.y, world.z);
     if (inside(volume.geometry, world))
-        ImGui::TextDisabled("voxel %.1f, %.1f, %.1f: %s", voxel.x, voxel.y, voxel.z,
-                            value_there(volume, voxel).c_str());
+        ImGui::TextDisabled("voxel %.1f, %.1f, %.1f: %s", voxel.x, voxel.y, voxel.z, text_there(volume, voxel).c_str());
     ImGui::EndGroup();
 }
 
@@ -245,7 +258,7 @@ void contents(AppState& state) {
 
 void slices_window(AppState& state) {
     if (!state.slices || !state.session.is_open()) return;
-    const auto& volume = state.session.opened().volume;
+    const std::shared_ptr<const edgesplat::Volume> volume = sliced_volume(state);
     if (state.slice_view.volume != volume) {
         state.slice_view = {volume, static_cast<double>(volume->min_value), static_cast<double>(volume->max_value)};
         state.slice_pictures = {};

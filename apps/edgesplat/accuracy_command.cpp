@@ -55,14 +55,13 @@ edgesplat::SceneDocument document_of(const AccuracyCommand& command) {
     return document;
 }
 
-ReportInput input_of(const edgesplat::SceneDocument& document, bool quiet, const std::string& command_line) {
-    const edgesplat::VolumeSource& source = document.volume;
+ReportInput input_of(edgesplat::SceneDocument document, bool quiet, const std::string& command_line) {
     ReportInput input;
     input.volume =
-        std::make_shared<const edgesplat::Volume>(load_with_progress(source, edgesplat::volume_folders({}), quiet));
+        std::make_shared<const edgesplat::Volume>(load_with_progress(document, edgesplat::volume_folders({}), quiet));
     require_samples(*input.volume, "accuracy");
     input.scene = resolve_scene(document, *input.volume);
-    input.analytic = edgesplat::accuracy::analytic_scene_of(source);
+    input.analytic = edgesplat::accuracy::analytic_scene_of(document.volume);
     input.program = "edgesplat " EDGESPLAT_VERSION;
     input.command = command_line;
     return input;

@@ -31,9 +31,7 @@ void show_volume(Film& film, edgesplat::Renderer& renderer, SceneDocument& docum
     if (document.volume == film.source) return;
     film.source = document.volume;
     document.volume.checksum.clear();  // that of the first frame
-    edgesplat::Volume volume = load_source(document.volume, film.folders, {});
-    recognise_labels(document, volume);
-    film.volume = std::make_shared<const edgesplat::Volume>(std::move(volume));
+    film.volume = std::make_shared<const edgesplat::Volume>(load_scene_volume(document, film.folders, {}));
     renderer.set_volume(film.volume);
 }
 

@@ -12,6 +12,7 @@
 #include <span>
 
 #include "apps/edgesplat/json_output.h"
+#include "apps/edgesplat/label_table.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/labels.h"
@@ -211,13 +212,19 @@ void print(const nlohmann::json& json, const std::array<std::string, 2>& range_e
     for (std::size_t i = 0; i < texts.size(); ++i)
         std::cout << fmt::format(" {} ({:.2f})", texts[i], json["suggested_iso_values"][i]["strength"].get<double>());
     std::cout << (json["suggested_iso_values"].empty() ? " none\n" : "\n");
+    print_labels(json);
 }
 
 void run(const InfoOptions& options) {
     edgesplat::VolumeSource source{.path = options.path};
     apply(options.volume, source);
-    const Volume volume = load_with_progress(source, edgesplat::volume_folders({}), false);
-    const auto json = description(volume, options.bins);
+    const Volume volume = load_with_progress(
+        [&](const edgesplat::LoadProgress& progress) {
+            return read_source(source, edgesplat::volume_folders({}), progress);
+        },
+        false);
+    auto json = description(volume, options.bins);
+    add_labels(json, volume);
     if (options.json.empty())
         print(json, {value_text(volume, volume.min_value), value_text(volume, volume.max_value)});
     else

@@ -16,6 +16,7 @@
 #include "apps/edgesplat/document_edits.h"
 #include "apps/edgesplat/effects_options.h"
 #include "apps/edgesplat/json_output.h"
+#include "apps/edgesplat/label_table.h"
 #include "apps/edgesplat/progress_bar.h"
 #include "apps/edgesplat/render_command.h"
 #include "apps/edgesplat/scene_options.h"
@@ -26,7 +27,6 @@
 #include "engine/measure/places.h"
 #include "engine/viewer/contour.h"
 #include "engine/viewer/pick.h"
-#include "engine/volume/labels.h"
 
 namespace {
 
@@ -114,7 +114,8 @@ Json places_measured(const MeasureCommand& command, const SceneDocument& documen
     Json json;
     for (const Place& place : places) {
         Json entry{{"world_mm", {place.world.x, place.world.y, place.world.z}}, {"uncertainty_mm", place.uncertainty}};
-        if (place.iso) entry["iso_value"] = volume.in_file_unit(*place.iso);
+        if (place.iso && !volume.shown_labels) entry["iso_value"] = volume.in_file_unit(*place.iso);
+        if (const Json label = label_at(volume, place.world); !label.is_null()) entry.update(label);
         json["places"].push_back(entry);
     }
     for (std::size_t i = 1; i < places.size(); ++i)
@@ -150,14 +151,6 @@ Json extents_measured(const MeasureCommand& command, const Volume& volume, const
     return json;
 }
 
-Json labels_measured(const Volume& volume) {
-    Json json;
-    for (const auto& label : edgesplat::measure::measure_labels(volume))
-        json["labels"].push_back(
-            {{"label", label.label}, {"voxels", label.voxels}, {"volume_mm3", to_json(label.volume)}});
-    return json;
-}
-
 /// An iso-value with all its digits, up to ten.
 std::string value(const Json& iso) {
     return fmt::format("{:.10g}", iso.get<double>());
@@ -172,6 +165,11 @@ std::string interval(const Json& material) {
     return words;
 }
 
+/// "7 spleen"
+std::string label_text(const Json& entry) {
+    return entry["label"].dump() + (entry.contains("name") ? " " + entry["name"].get<std::string>() : "");
+}
+
 void print(const Json& json) {
     int number = 0;
     for (const Json& place : json.value("places", Json::array())) {
@@ -181,6 +179,9 @@ void print(const Json& json) {
         if (place.contains("iso_value"))
             std::cout << fmt::format(" ± {:.2g}, on the surface at {}", place["uncertainty_mm"].get<double>(),
                                      value(place["iso_value"]));
+        else if (place["uncertainty_mm"].get<double>() > 0)
+            std::cout << fmt::format(" ± {:.2g}", place["uncertainty_mm"].get<double>());
+        if (place.contains("label")) std::cout << fmt::format(", label {}", label_text(place));
         std::cout << '\n';
     }
     number = 0;
@@ -198,8 +199,8 @@ void print(const Json& json) {
     for (const Json& surface : json.value("surfaces", Json::array()))
         std::cout << fmt::format("surface at {}: {} mm^2\n", value(surface["iso_value"]), text(surface["area_mm2"]));
     for (const Json& label : json.value("labels", Json::array()))
-        std::cout << fmt::format("label {:g}: {} mm^3, {} voxels\n", label["label"].get<double>(),
-                                 text(label["volume_mm3"]), label["voxels"].get<std::size_t>());
+        std::cout << fmt::format("label {}: {} mm^3, {} voxels\n", label_text(label), text(label["volume_mm3"]),
+                                 label["voxels"].get<std::size_t>());
 }
 
 void run(const MeasureCommand& command) {
@@ -212,19 +213,12 @@ void run(const MeasureCommand& command) {
         constexpr std::array<std::string_view, 1> kJson{".json"};
         edgesplat::check_output_path(command.json, kJson);
     }
-    Volume volume = load_with_progress(document.volume, folders, command.quiet);
+    const Volume volume = load_with_progress(document, folders, command.quiet);
     Json json{{"volume", volume.name}};
-    // recognise_labels() changes the values of labels, so labels are measured first.
-    Json labels;
-    if (command.spots.empty() && !edgesplat::labels_of(volume).empty()) labels = labels_measured(volume);
-    recognise_labels(document, volume);
-    if (!labels.empty() && document.volume.labels.value_or(false)) {
-        json.update(labels);
-    } else {
-        const Scene scene = resolve_scene(document, volume);
-        json.update(command.spots.empty() ? extents_measured(command, volume, scene)
-                                          : places_measured(command, document, volume, scene));
-    }
+    const Scene scene = resolve_scene(document, volume);
+    json.update(!command.spots.empty() ? places_measured(command, document, volume, scene)
+                : volume.shown_labels  ? labels_measured(volume, scene.effects.clip)
+                                       : extents_measured(command, volume, scene));
     if (command.json.empty())
         print(json);
     else
@@ -259,7 +253,8 @@ void add_measure_command(CLI::App& app) {
     add_volume_options(sub, command->volume);
     sub.footer(
         "Measures the volume of each material between iso-values and the area of each iso-surface, inside the clip\n"
-        "planes. The number after ± is the uncertainty from rounding, spacing and blur of the samples. It does not\n"
+        "planes; of a segmentation the volume of each label that is shown. The number after ± is the uncertainty from "
+        "rounding, spacing and blur of the samples. It does not\n"
         "include noise or a wrong iso-value.\n"
         "Examples:\n"
         "  edgesplat measure head.nrrd --iso 300\n"

@@ -209,8 +209,7 @@ void run(const MovieCommand& command, int& exit_status) {
     std::vector<fs::path> folders;
     SceneDocument document = document_of(command, folders);
     start_volume(document);
-    edgesplat::Volume volume = load_with_progress(document.volume, folders, command.quiet);
-    recognise_labels(document, volume);
+    edgesplat::Volume volume = load_with_progress(document, folders, command.quiet);
     Film film =
         film_of(document, folders, std::make_shared<const edgesplat::Volume>(std::move(volume)), command.seconds);
     const FrameRange range = range_of(command, film);

@@ -55,11 +55,14 @@ void check(const PictureRequest& request) {
 }
 
 edgesplat::Volume load(PictureRequest& request) {
-    edgesplat::Volume volume = load_with_progress(request.document.volume, request.folders, request.quiet);
+    edgesplat::Volume volume = load_with_progress(request.document, request.folders, request.quiet);
     if (volume.non_finite_count > 0 && !request.quiet)
         fmt::print(stderr, "edgesplat: warning: {}: {} of {} samples contain no data; they are transparent\n",
                    volume.name, volume.non_finite_count, volume.geometry.voxel_count());
-    recognise_labels(request.document, volume);
+    const auto& materials = request.document.materials;
+    if (volume.shown_labels && !materials.empty() && materials.front().color && !request.quiet)
+        fmt::print(stderr, "edgesplat: all {} labels have the colour of --color instead of their own\n",
+                   volume.shown_labels->largest.size());
     return volume;
 }
 
@@ -106,12 +109,22 @@ std::string recorded_path(const PictureRequest& request) {
     return std::filesystem::proximate(found, folder.empty() ? "." : folder).string();
 }
 
+/// The file of label names in the same way.
+std::string recorded_names(const PictureRequest& request) {
+    namespace fs = std::filesystem;
+    const std::string& written = request.document.volume.label_names;
+    if (written.empty() || fs::path(written).is_absolute() || fs::exists(written)) return written;
+    const fs::path folder = fs::path(request.document.output.file).parent_path();
+    return fs::proximate(edgesplat::find_file(written, request.folders), folder.empty() ? "." : folder).string();
+}
+
 /// Text of the drawn scene, with nothing left open, for the picture's metadata.
 std::string scene_of_picture(const PictureRequest& request, const edgesplat::Volume& volume,
                              const edgesplat::Scene& scene, const edgesplat::Camera& camera,
                              const edgesplat::Settings& settings) {
     edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
     document.volume.path = recorded_path(request);
+    document.volume.label_names = recorded_names(request);
     return scene_text(document);
 }
 

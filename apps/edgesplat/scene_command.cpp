@@ -45,8 +45,7 @@ void run_new(const NewOptions& options) {
     read_source(options.source, document, folders);
     apply(options.volume, document.volume);
     options.edits.apply(document);
-    edgesplat::Volume volume = load_with_progress(document.volume, folders, false);
-    recognise_labels(document, volume);
+    edgesplat::Volume volume = load_with_progress(document, folders, false);
     const edgesplat::Scene scene = resolve_scene(document, volume);
     const edgesplat::Camera camera = resolve_camera(document, volume, scene);
     write_out_materials(document, scene, volume);
@@ -62,7 +61,10 @@ void run_new(const NewOptions& options) {
     const std::string found = edgesplat::is_builtin(document.volume.path)
                                   ? document.volume.path
                                   : edgesplat::find_volume(document.volume.path, folders);
-    document.volume.path = path_in_scene(found, fs::path(options.output).parent_path());
+    const fs::path folder = fs::path(options.output).parent_path();
+    document.volume.path = path_in_scene(found, folder);
+    if (!document.volume.label_names.empty())
+        document.volume.label_names = path_in_scene(document.volume.label_names, folder);
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
     if (options.output.empty()) {

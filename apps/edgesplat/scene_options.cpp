@@ -164,6 +164,23 @@ void add_scene_options(CLI::App& command, DocumentEdits& edits) {
             "Whether samples are labels, each drawn in its own colour. Default: detected, unless surfaces are given")
         ->type_name("on|off")
         ->group(kGroup);
+    const auto add_labels = [&](const char* option, const char* help, auto list) {
+        command
+            .add_option_function<std::vector<std::string>>(
+                option,
+                [&edits, list](const std::vector<std::string>& entries) {
+                    edits.add([entries, list](SceneDocument& d) { list(d) = entries; });
+                },
+                help)
+            ->type_name("LABEL,...")
+            ->allow_extra_args(false)
+            ->group(kGroup);
+    };
+    add_labels(
+        "--only", "Labels to show, by number, name, or name with * for any letters; repeatable. Default: all",
+        [](SceneDocument & d) -> auto& { return d.volume.only; });
+    add_labels(
+        "--hide", "Labels to hide, in the same way", [](SceneDocument & d) -> auto& { return d.volume.hide; });
 }
 
 void add_settings_options(CLI::App& command, DocumentEdits& edits) {

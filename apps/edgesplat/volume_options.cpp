@@ -53,6 +53,11 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
     command.add_option("--spacing", options.spacing, "Voxel spacing in mm, instead of the file's")->expected(3);
     command.add_option("--no-data", options.no_data,
                        "Value of samples without data: transparent, and in no statistics (NaN always is)");
+    command
+        .add_option("--label-names", options.label_names,
+                    "Names and colours of labels: a Slicer colour table, an ITK-SNAP label description, a FreeSurfer "
+                    "lookup table, or a table with the columns id and name")
+        ->type_name("FILE");
 }
 
 void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
@@ -61,20 +66,32 @@ void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (options.level >= 0) source.level = options.level;
     if (!options.series.empty()) source.series = options.series;
     if (!options.raw.empty()) source.raw = options.raw;
+    if (!options.label_names.empty()) source.label_names = options.label_names;
     if (options.resample) source.resample = true;
     if (options.no_data) source.no_data = options.no_data;
     if (options.spacing.size() == 3)
         source.spacing = glm::dvec3(options.spacing[0], options.spacing[1], options.spacing[2]);
 }
 
+edgesplat::Volume load_with_progress(edgesplat::SceneDocument& document,
+                                     const std::vector<std::filesystem::path>& folders, bool quiet) {
+    return load_with_progress([&](const auto& progress) { return load_scene_volume(document, folders, progress); },
+                              quiet);
+}
+
 edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
                                      const std::vector<std::filesystem::path>& folders, bool quiet) {
-    std::function<void(double, std::string_view)> progress;
+    return load_with_progress([&](const auto& progress) { return load_source(source, folders, progress); }, quiet);
+}
+
+edgesplat::Volume load_with_progress(const std::function<edgesplat::Volume(const edgesplat::LoadProgress&)>& load,
+                                     bool quiet) {
+    edgesplat::LoadProgress progress;
     edgesplat::Volume volume;
     {
         ProgressLine line;
         if (!quiet) progress = [&line](double fraction, std::string_view what) { line.update(fraction, what); };
-        volume = edgesplat::load_source(source, folders, progress);
+        volume = load(progress);
     }
     for (const std::string& warning : volume.warnings)
         std::fprintf(stderr, "edgesplat: warning: %s\n", warning.c_str());

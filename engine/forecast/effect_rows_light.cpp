@@ -5,7 +5,9 @@
 
 #include "engine/forecast/effect_rows.h"
 #include "engine/plan/plan.h"
+#include "engine/scene/default_materials.h"
 #include "engine/store/light.h"
+#include "engine/volume/labels.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
@@ -80,6 +82,32 @@ void faint(FrameRequest& request) {
     const double least = kFaintest * request.scene.materials.back().extinction;
     for (Material& material : request.scene.materials)
         material.extinction = std::max(material.extinction, least);
+}
+
+/// Makes the volume that of a mask, drawn in one colour.
+void mask(FrameRequest& request) {
+    const Volume& volume = *request.volume;
+    auto made = std::make_shared<Volume>(volume);
+    const double iso = request.scene.iso_values.back();
+    std::vector<std::uint32_t> labels;
+    for (float& sample : made->values) {
+        sample = static_cast<double>(sample) >= iso ? 1.0F : 0.0F;
+        labels.push_back(sample > 0 ? 1 + static_cast<std::uint32_t>(labels.size() % 2) : 0);
+    }
+    auto table = std::make_shared<LabelTable>();
+    table->labels = {{.id = 1, .value = 1, .name = {}, .color = {}}, {.id = 2, .value = 2, .name = {}, .color = {}}};
+    made->labels = std::move(table);
+    made->shown_labels = sorted_labels(std::move(labels));
+    made->min_value = 0;
+    made->max_value = 1;
+    request.volume = std::move(made);
+    request.scene.iso_values = {0.5};
+    request.scene.materials = {request.scene.materials.front(), request.scene.materials.back()};
+}
+
+/// Gives the labels their colours.
+void label(FrameRequest& request) {
+    request.scene.label_colors = label_colors(*request.volume->labels);
 }
 
 }  // namespace
@@ -225,6 +253,20 @@ std::vector<Effect> light_effects() {
                     .constants = {{shader::SPEC_TRANSFER, "SPEC_TRANSFER"}},
                     .frame_fields = {"transfer", "values"},
                     .scene_fields = {"transfer", "values"}});
+    rows.push_back({.name = "labels",
+                    .help = "every label of a segmentation has its own colour",
+                    .call = "volume.labels, or --labels on",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        if (!shows_labels(r.scene, *r.volume)) return "";
+                        return fmt::format("the volume has {} labels", r.scene.label_colors.size());
+                    },
+                    .turn_on = label,
+                    .base = mask,
+                    .resources = {"labels", "splat labels", "label colours"},
+                    .record = {{"label", 4}},
+                    .constants = {{shader::SPEC_LABELS, "SPEC_LABELS"}},
+                    .frame_fields = {"labels", "label_colors"},
+                    .scene_fields = {"labels"}});
     return rows;
 }
 

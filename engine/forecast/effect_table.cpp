@@ -37,6 +37,7 @@ FrameRequest plain_request(FrameRequest request) {
         scene.materials = {{}, {.extinction = 1}};
     }
     scene.transfer.clear();
+    scene.label_colors.clear();
     for (Material& material : scene.materials)
         material.response = {};
     Settings plain;

@@ -94,6 +94,9 @@ void Targets::provide(FramePlan& plan, const SplatLists& splats) {
         p.*row.drawn = address_of(splats.*row.list);
     p.transfer = address_of(splats.transfer);
     std::ranges::copy(plan.batches, resources_.batches.mapped<glm::uvec2>(plan.batches.size()).begin());
+    if (resources_.label_colors)
+        std::ranges::copy(plan.label_colors,
+                          resources_.label_colors.mapped<glm::vec3>(plan.label_colors.size()).begin());
     if (!plan.variant.tiles) {
         const shader::SheetGroup empty{0, 0, {0, 0}, {p.size, 0, 0}};
         std::ranges::fill(resources_.groups.mapped<shader::SheetGroup>(p.group_count), empty);

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <memory>
+#include <set>
 
+#include "engine/error.h"
 #include "engine/measure/field_lines.h"
 #include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/viewer/contour.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat::measure {
@@ -236,32 +239,140 @@ Extents measure_extents(const Volume& volume, std::span<const double> iso_values
     return extents;
 }
 
-std::vector<LabelExtent> measure_labels(const Volume& volume) {
+namespace {
+
+/// The share of a voxel that clip planes keep.
+class KeptShare {
+  public:
+    explicit KeptShare(const IndexClip& clip) : clip_(clip) {}
+
+    double of(const glm::dvec3& voxel) const {
+        if (clip_.empty()) return 1;
+        const IndexPlane* cutting = nullptr;
+        int cuts = 0;
+        const auto look = [&](const std::vector<IndexPlane>& planes) {
+            for (const IndexPlane& plane : planes)
+                if (std::abs(plane.distance(voxel)) < half_width(plane)) {
+                    cutting = &plane;
+                    ++cuts;
+                }
+        };
+        look(clip_.keep);
+        look(clip_.remove);
+        if (cuts == 0) return clip_.cuts_away(voxel) ? 0 : 1;
+        if (cuts == 1 && clip_.remove.empty()) {
+            const bool kept = std::ranges::all_of(
+                clip_.keep, [&](const IndexPlane& plane) { return &plane == cutting || plane.distance(voxel) <= 0; });
+            return kept ? share_below(*cutting, voxel) : 0;
+        }
+        constexpr int kPoints = 8;  // along each side
+        int kept = 0;
+        for (int z = 0; z < kPoints; ++z)
+            for (int y = 0; y < kPoints; ++y)
+                for (int x = 0; x < kPoints; ++x)
+                    kept += clip_.cuts_away(voxel + (glm::dvec3(x, y, z) + 0.5) / double{kPoints} - 0.5) ? 0 : 1;
+        return kept / std::pow(kPoints, 3);
+    }
+
+  private:
+    static double half_width(const IndexPlane& plane) {
+        const glm::dvec3 n = glm::abs(plane.normal);
+        return 0.5 * (n.x + n.y + n.z);
+    }
+
+    /// Share of the unit cube on the near side of a plane that cuts it: by inclusion and exclusion of corners.
+    static double share_below(const IndexPlane& plane, const glm::dvec3& voxel) {
+        constexpr double kSmall = 1e-9;
+        const glm::dvec3 n = glm::max(glm::abs(plane.normal), kSmall);
+        const double d = 0.5 * (n.x + n.y + n.z) - plane.distance(voxel);
+        const bool flat = std::min({n.x, n.y, n.z}) < 1e-4;
+        if (flat) {
+            // Nearly parallel to an axis, where the formula below cancels: a mean over lines along the largest
+            // component.
+            const int axis = n.x >= n.y && n.x >= n.z ? 0 : n.y >= n.z ? 1 : 2;
+            constexpr int kLinesAcross = 32;
+            double sum = 0;
+            for (int i = 0; i < kLinesAcross; ++i)
+                for (int j = 0; j < kLinesAcross; ++j)
+                    sum += std::clamp((d - n[(axis + 1) % 3] * (i + 0.5) / kLinesAcross -
+                                       n[(axis + 2) % 3] * (j + 0.5) / kLinesAcross) /
+                                          n[axis],
+                                      0.0, 1.0);
+            return sum / (kLinesAcross * kLinesAcross);
+        }
+        const auto cube = [](double v) { return v > 0 ? v * v * v : 0; };
+        double sum = 0;
+        for (int corner = 0; corner < 8; ++corner) {
+            const glm::dvec3 c(corner & 1, corner >> 1 & 1, corner >> 2);
+            const int bits = (corner & 1) + (corner >> 1 & 1) + (corner >> 2);
+            sum += (bits % 2 == 0 ? 1 : -1) * cube(d - glm::dot(n, c));
+        }
+        return std::clamp(sum / (6 * n.x * n.y * n.z), 0.0, 1.0);
+    }
+
+    const IndexClip& clip_;
+};
+
+/// A table of all distinct samples.
+std::shared_ptr<const LabelTable> table_of_values(const Volume& volume) {
+    const std::set<float> values(volume.values.begin(), volume.values.end());
+    auto table = std::make_shared<LabelTable>();
+    for (const float value : values)
+        table->labels.push_back({0, value, {}, {}});
+    return table;
+}
+
+}  // namespace
+
+std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip) {
     require_samples(volume, "measuring labels");
     const glm::ivec3 dims = volume.geometry.dims;
     const double voxel = std::abs(glm::determinant(volume.geometry.index_to_world_axes));
+    const auto known = labels_of(volume);
+    const auto table = known ? known : table_of_values(volume);
+    std::vector<std::uint32_t> drawn;
+    if (!volume.shown_labels) {
+        for (std::size_t at = 0; at < volume.values.size(); ++at)
+            drawn.push_back(volume.no_data && (*volume.no_data)[at]
+                                ? 0
+                                : static_cast<std::uint32_t>(place_of_label(*table, volume.values[at])) + 1);
+    }
+    const std::vector<std::uint32_t>& numbers = volume.shown_labels ? volume.shown_labels->at : drawn;
     struct Count {
-        std::size_t voxels = 0, beside_others = 0;
+        std::size_t voxels = 0;
+        double kept = 0, beside_others = 0;
     };
-    std::map<float, Count> counts;
+    std::vector<Count> counts(table->labels.size() + 1);
+    const IndexClip planes = index_clip(clip, volume.geometry);
+    const KeptShare share(planes);
+    const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
+    std::size_t at = 0;
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x) {
-                if (!volume.has_data({x, y, z})) continue;
-                const float label = volume.at(x, y, z);
-                const auto other = [&](int i, int j, int k) { return volume.at(i, j, k) != label; };
-                Count& count = counts[label];
-                ++count.voxels;
-                count.beside_others += (x > 0 && other(x - 1, y, z)) || (x + 1 < dims.x && other(x + 1, y, z)) ||
-                                       (y > 0 && other(x, y - 1, z)) || (y + 1 < dims.y && other(x, y + 1, z)) ||
-                                       (z > 0 && other(x, y, z - 1)) || (z + 1 < dims.z && other(x, y, z + 1));
+            for (int x = 0; x < dims.x; ++x, ++at) {
+                const std::uint32_t number = numbers[at];
+                if (number == 0) continue;
+                const double kept = share.of({x, y, z});
+                if (!(kept > 0)) continue;
+                Count& count = counts[number];
+                count.kept += kept;
+                if (!planes.cuts_away({x, y, z})) ++count.voxels;
+                const bool beside =
+                    (x > 0 && numbers[at - 1] != number) || (x + 1 < dims.x && numbers[at + 1] != number) ||
+                    (y > 0 && numbers[at - row] != number) || (y + 1 < dims.y && numbers[at + row] != number) ||
+                    (z > 0 && numbers[at - slice] != number) || (z + 1 < dims.z && numbers[at + slice] != number);
+                if (beside) count.beside_others += kept;
             }
     std::vector<LabelExtent> extents;
-    for (const auto& [label, count] : counts)
-        extents.push_back(
-            {static_cast<double>(label),
-             count.voxels,
-             {voxel * static_cast<double>(count.voxels), voxel * static_cast<double>(count.beside_others) / 2}});
+    for (std::size_t place = 0; place < table->labels.size(); ++place) {
+        const Count& count = counts[place + 1];
+        if (!(count.kept > 0)) continue;
+        const Label& label = table->labels[place];
+        extents.push_back({label,
+                           known ? table->number_of(label) : fmt::format("{}", label.value),
+                           count.voxels,
+                           {voxel * count.kept, voxel * count.beside_others / 2}});
+    }
     return extents;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "engine/reference/pixel_rows.h"
@@ -36,14 +37,17 @@ struct Extents {
 Extents measure_extents(const Volume& volume, std::span<const double> iso_values, const Clip& clip = {},
                         const reference::Progress& progress = {});
 
-/// One label of a segmentation; results ascend by label.
+/// One label of a segmentation.
 struct LabelExtent {
-    double label = 0;
-    std::size_t voxels = 0;
-    Quantity volume;  ///< mm^3; half of the voxels next to another label are uncertain
+    Label label;
+    std::string number;      ///< the file's number
+    std::size_t voxels = 0;  ///< voxels whose centre is kept
+    Quantity volume;         ///< mm^3; half of the voxels next to another label are uncertain
 };
 
-/// Throws Error for a volume that is not in memory.
-std::vector<LabelExtent> measure_labels(const Volume& volume);
+/// The labels of a volume from drawn_labels, or all labels of another volume (labels_of; every distinct value if it is
+/// no segmentation), by ascending number; inside `clip`, which cuts voxels. Throws Error for a volume that is not in
+/// memory.
+std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip = {});
 
 }  // namespace edgesplat::measure

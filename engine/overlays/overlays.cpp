@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/scene/label_choice.h"
 #include "engine/scene/views.h"
 #include "engine/volume/value_text.h"
 
@@ -66,24 +67,42 @@ double range_of(const Volume& volume) {
     return volume.in_file_unit(static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value));
 }
 
-Canvas material_legend(const Scene& scene, const Volume& volume, const Measures& size) {
+struct LegendRow {
+    glm::dvec3 color;
+    std::string text;
+};
+
+std::vector<LegendRow> material_rows(const Scene& scene, const Volume& volume) {
     std::vector<double> values = scene.iso_values;
     for (double& value : values)
         value = volume.in_file_unit(value);
     const std::vector<std::string> iso = value_texts(values, range_of(volume));
-    struct Row {
-        glm::dvec3 color;
-        std::string text;
-    };
-    std::vector<Row> rows;
-    int widest = 0;
+    std::vector<LegendRow> rows;
     for (std::size_t m = scene.materials.size(); m-- > 0;) {
         const Material& material = scene.materials[m];
         if (!(material.extinction > 0)) continue;
         const std::string range = range_text(iso, m);
         rows.push_back({material.color, material.name.empty() ? range : material.name + "  " + range});
-        widest = std::max(widest, text_size(rows.back().text, size.letters).x);
     }
+    return rows;
+}
+
+/// The largest labels, by number and name, as many as fit into `most` rows.
+std::vector<LegendRow> label_rows(const Scene& scene, const Volume& volume, std::size_t most) {
+    std::vector<LegendRow> rows;
+    const LabelTable& table = *volume.labels;
+    const std::vector<std::uint32_t>& largest = volume.shown_labels->largest;
+    const std::size_t shown = largest.size() > most ? most - 1 : largest.size();
+    for (std::size_t i = 0; i < shown; ++i)
+        rows.push_back({scene.label_colors[largest[i] - 1], text_of(table, table.labels[largest[i] - 1])});
+    if (shown < largest.size()) rows.push_back({glm::dvec3(0), fmt::format("and {} more", largest.size() - shown)});
+    return rows;
+}
+
+Canvas swatch_legend(const std::vector<LegendRow>& rows, const Measures& size) {
+    int widest = 0;
+    for (const LegendRow& row : rows)
+        widest = std::max(widest, text_size(row.text, size.letters).x);
     const int step = size.letters * 3 / 2, left = size.margin + size.rim, gap = size.letters / 2;
     Canvas canvas({0, 0, 2 * left + size.letters + gap + widest + 4, 2 * left + step * static_cast<int>(rows.size())},
                   size.rim);
@@ -207,8 +226,14 @@ std::vector<PixelBox> draw_overlays(Image& image, const Volume& volume, const Sc
             lay(canvas);
         }
     }
-    if (overlays.legend)
-        lay(scene.transfer.empty() ? material_legend(scene, volume, size) : transfer_legend(scene, volume, size));
+    if (overlays.legend && volume.shown_labels && !scene.label_colors.empty()) {
+        constexpr double kMostHeight = 0.8;  // of the picture
+        const double rows = kMostHeight * image.height / (size.letters * 1.5);
+        lay(swatch_legend(label_rows(scene, volume, static_cast<std::size_t>(std::max(rows, 2.0))), size));
+    } else if (overlays.legend) {
+        lay(scene.transfer.empty() ? swatch_legend(material_rows(scene, volume), size)
+                                   : transfer_legend(scene, volume, size));
+    }
     return boxes;
 }
 

@@ -16,6 +16,7 @@ struct CollectSplats {
     bool faces = false;                              ///< faces are fitted to the surface around each splat
     ClipCount clip{};                                ///< voxels whose kernels are clipped completely are culled
     bool transfer = false;                           ///< splats are classified by a transfer function
+    bool labels = false;                             ///< splats get the label of their voxel
 };
 
 /// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.

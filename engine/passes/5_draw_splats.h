@@ -20,6 +20,7 @@ struct DrawVariant {
     std::uint32_t shadows = 0;  ///< number of lights with shadows
     std::uint32_t nodes = 5;    ///< quadrature nodes per piece of a footprint: 4, 5 or 10
     bool transfer = false;      ///< colour and extinction are from a transfer function
+    bool labels = false;        ///< every label has its own colour
     bool response = false;      ///< materials have their own light responses
     bool gloss = false;         ///< some materials have highlights
     bool lit_edges = false;     ///< splats without an edge are shaded as if without a normal

@@ -36,7 +36,8 @@ gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how) {
 
 void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, std::uint64_t tiles,
                  const TileRound& round) {
-    commands.dispatch("5_trace_faces.comp", trace_constants(variant, how), pushed(round), commands.groups_for(tiles, 1));
+    commands.dispatch("5_trace_faces.comp", trace_constants(variant, how), pushed(round),
+                      commands.groups_for(tiles, 1));
     commands.barrier();
 }
 

@@ -178,6 +178,14 @@ std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
 }
 
+bool shows_labels(const Scene& scene, const Volume& volume) {
+    return volume.shown_labels && !scene.label_colors.empty();
+}
+
+std::vector<glm::vec3> label_colors(const Scene& scene) {
+    return {scene.label_colors.begin(), scene.label_colors.end()};
+}
+
 bool needs_normals(const Scene& scene) {
     return !scene.lights.empty() || scene.effects.silhouette;
 }
@@ -187,11 +195,12 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     const auto& b = other.params;
     return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
            edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
-           faces == other.faces && std::ranges::equal(transfer, other.transfer) && a.estimate_mask == b.estimate_mask &&
-           a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) && a.visible_mask == b.visible_mask &&
-           a.translucent_mask == b.translucent_mask && a.opaque_mask == b.opaque_mask &&
-           a.bury_distance == b.bury_distance && a.band == b.band && a.reach == b.reach && clip == other.clip &&
-           std::ranges::equal(a.clip_keep, b.clip_keep) && std::ranges::equal(a.clip_remove, b.clip_remove);
+           faces == other.faces && labels == other.labels && std::ranges::equal(transfer, other.transfer) &&
+           a.estimate_mask == b.estimate_mask && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
+           a.visible_mask == b.visible_mask && a.translucent_mask == b.translucent_mask &&
+           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
+           a.reach == b.reach && clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
+           std::ranges::equal(a.clip_remove, b.clip_remove);
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
@@ -226,6 +235,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
+    plan.labels = shows_labels(scene, volume);
     params.reach = static_cast<float>(kernel_reach(settings));
     params.translucent_mask = materials_carried_beside(settings, scene, volume.geometry);
     // A face is fitted to both sides of a surface, also to a side that is not drawn.
@@ -297,6 +307,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.may_refine = plan.refined;
     plan.variant.transfer = !scene.transfer.empty();
+    plan.variant.labels = shows_labels(scene, volume);
+    if (plan.variant.labels) plan.label_colors = label_colors(scene);
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 

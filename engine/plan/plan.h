@@ -15,6 +15,12 @@ namespace edgesplat {
 /// Whether splats need normals even without edges.
 bool needs_normals(const Scene& scene);
 
+/// Whether the volume's labels are drawn in the scene's colours.
+bool shows_labels(const Scene& scene, const Volume& volume);
+
+/// Scene::label_colors for the device.
+std::vector<glm::vec3> label_colors(const Scene& scene);
+
 /// The ray casters' light, the scene's first: 0 without lights, else 1 + Light::Kind.
 std::uint32_t light_code(const Scene& scene);
 
@@ -31,6 +37,7 @@ struct CollectionPlan {
     bool faces = false;  ///< edges are faces: estimated on both sides, with second derivatives stored per splat
     /// Whether edges are estimated on the B-spline through the samples.
     bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }
+    bool labels = false;  ///< every splat gets the label of its voxel (Volume::shown_labels)
     /// Clip planes; none unless `buried`. With `buried`, clipped voxels occlude nothing and are culled. Otherwise the
     /// splat list does not depend on the planes: they move without a new collection.
     passes::ClipCount clip{};
@@ -53,17 +60,18 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 /// Plan of passes 3 to 7 for one picture.
 struct FramePlan {
     passes::DrawVariant variant{};
-    bool gradient = false;               ///< the background has two colours
-    bool wide_marks = false;             ///< a mark covers 4 x 2 pixels (4_mark_pixels)
-    bool refined = false;                ///< some pixels are drawn, others interpolated (5_refine_pixels)
-    bool may_refine = false;             ///< `refined` before the splats' sizes are known
-    std::uint32_t sheets_per_splat = 1;  ///< upper bound of a splat's entries in the sorted order
-    std::uint32_t sort_segments = 1;     ///< number of segments of each of the sort's blocks
-    double reach = 0;                    ///< farthest reach of any kernel, voxels
-    std::vector<std::uint32_t> bricks;   ///< numbers of the bricks in view; empty without culling
-    std::vector<glm::uvec2> batches;     ///< FrameParams::batches; empty without culling
-    std::uint64_t splats_examined = 0;   ///< splats examined
-    shader::FrameParams params{};        ///< addresses unset
+    bool gradient = false;                ///< the background has two colours
+    bool wide_marks = false;              ///< a mark covers 4 x 2 pixels (4_mark_pixels)
+    bool refined = false;                 ///< some pixels are drawn, others interpolated (5_refine_pixels)
+    bool may_refine = false;              ///< `refined` before the splats' sizes are known
+    std::uint32_t sheets_per_splat = 1;   ///< upper bound of a splat's entries in the sorted order
+    std::uint32_t sort_segments = 1;      ///< number of segments of each of the sort's blocks
+    double reach = 0;                     ///< farthest reach of any kernel, voxels
+    std::vector<std::uint32_t> bricks;    ///< numbers of the bricks in view; empty without culling
+    std::vector<glm::vec3> label_colors;  ///< FrameParams::label_colors; empty without labels
+    std::vector<glm::uvec2> batches;      ///< FrameParams::batches; empty without culling
+    std::uint64_t splats_examined = 0;    ///< splats examined
+    shader::FrameParams params{};         ///< addresses unset
 };
 
 /// Restricts the picture to the first `splats` of the list and turns brick culling off.

@@ -83,6 +83,10 @@ const std::array kVolumeImages{
                                       &V::coefficients, shader::BIND_COEFFICIENTS,
                                       volume_of(vk::Format::eR32Sfloat, Usage::eStorage | Usage::eTransferDst),
                                       [](const CollectionPlan& p) { return p.takes_coefficients(); }),
+    row<VolumeImageRow<VolumeImages>>(text("labels", "(z, y, x) label of each voxel", "host", "2"), &V::labels,
+                                      shader::BIND_LABELS,
+                                      volume_of(vk::Format::eR32Uint, Usage::eStorage | Usage::eTransferDst),
+                                      [](const CollectionPlan& p) { return p.labels; }),
 };
 
 const std::array kFieldImages{
@@ -116,6 +120,8 @@ const std::array kSplatLists{
                       [](const CollectionPlan& p) { return p.faces ? kPair : 0; }),
     row<SplatListRow>(text("classified values", "(splats) float", "2", "5"), &L::values, &S::values, &F::values,
                       [](const CollectionPlan& p) { return p.transfer.empty() ? 0 : kWord; }),
+    row<SplatListRow>(text("splat labels", "(splats) uint", "2", "5"), &L::labels, &S::labels, &F::labels,
+                      [](const CollectionPlan& p) { return p.labels ? kWord : 0; }),
 };
 
 const std::array kLightLists{
@@ -172,6 +178,10 @@ const std::array kTargetBuffers{
         text("batches of splats", "(batches) first, count", "host", "3, 4"), &T::batches, &F::batches, Place::Shared,
         kNoTexels, kUnbound,
         [](const FramePlan& p, const Profile&) { return (splats(p) / shader::SPLAT_BATCH + 1) * kPair; }),
+    row<TargetBufferRow>(
+        text("label colours", "(labels) vec3", "host", "4, 5"), &T::label_colors, &F::label_colors, Place::Host,
+        kNoTexels, kUnbound,
+        [](const FramePlan& p, const Profile&) { return p.label_colors.size() * std::uint64_t{sizeof(glm::vec3)}; }),
     row<TargetBufferRow>(text("sheets of splats", "(slots) uint", "3", "4, 5"), &T::sheet_of, &F::sheets, Place::Device,
                          kNoTexels, kUnbound, [](const FramePlan& p, const Profile&) { return splats(p) * kWord; }),
     row<TargetBufferRow>(text("splat order", "(splats x sheets each) uint", "4", "5"), &T::order, &F::order,
@@ -265,6 +275,7 @@ gpu::ImageShape texel(gpu::ImageShape kind) {
 const std::array kPlaceholders{texel(volume_of(vk::Format::eR32Sfloat, Usage::eStorage)),
                                texel(volume_of(vk::Format::eR32G32Uint, Usage::eStorage)),
                                texel(volume_of(vk::Format::eR8Uint, Usage::eStorage)),
+                               texel(volume_of(vk::Format::eR32Uint, Usage::eStorage)),
                                texel(plane_of(kSums, Usage::eStorage)),
                                texel(layers_of(vk::Format::eR16Sfloat, Usage::eSampled)),
                                texel(plane_of(vk::Format::eR32Sfloat, Usage::eSampled))};

@@ -16,14 +16,14 @@ namespace edgesplat {
 /// Resources that last until the volume or its resolution changes. The row of each (resource_table.h) tells its
 /// contents and when it exists.
 struct VolumeImages {
-    gpu::GpuImage volume, coefficients;
+    gpu::GpuImage volume, coefficients, labels;
 };
 
 /// Resources that last until the volume, the scene's materials or the edge settings change; rows likewise.
 struct SplatLists {
     gpu::GpuImage edges, buried;
     gpu::Buffer scene, run_offsets, transfer;
-    gpu::Buffer splats, traits, values, occlusion, shadows;
+    gpu::Buffer splats, traits, values, labels, occlusion, shadows;
     std::uint64_t splat_count = 0, edge_splat_count = 0, crease_splat_count = 0, traced_splat_count = 0;
     glm::ivec3 box_low{0}, box_high{0};  ///< inclusive bounding box of the splats' voxels
     SplatBricks bricks;                  ///< the list's bricks
@@ -35,6 +35,7 @@ struct SplatLists {
 /// Resources that last until the picture's size or the number of sheets or splats changes; rows likewise.
 struct TargetResources {
     gpu::Buffer frame, drawn, indices;
+    gpu::Buffer label_colors;
     gpu::Buffer batches, sheet_of, order, counters, output;
     gpu::GpuImage footprint_table;
     gpu::Buffer footprints;

@@ -37,7 +37,9 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
                     raycast.skip_empty,
                     static_cast<std::uint32_t>(raycast.filter),
                     draws_missing_samples(scene, volume),
+                    collection.labels,
                     !scene.transfer.empty()};
+    if (collection.labels) plan.label_colors = label_colors(scene);
     plan.transfer = collection.transfer;
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;
@@ -91,6 +93,13 @@ void RaycastResources::prepare(const gpu::Device& device, const RaycastPlan& pla
                                     gpu::Buffer::Place::Host, "ray caster's transfer function");
         std::ranges::copy(plan.transfer, transfer_.mapped<shader::TransferRow>(plan.transfer.size()).begin());
         block.scene.transfer = transfer_.address();
+    }
+    label_colors_ = {};
+    if (!plan.label_colors.empty()) {
+        label_colors_ = gpu::Buffer(device, plan.label_colors.size() * sizeof(glm::vec3), gpu::Buffer::Place::Host,
+                                    "ray caster's label colours");
+        std::ranges::copy(plan.label_colors, label_colors_.mapped<glm::vec3>(plan.label_colors.size()).begin());
+        block.rays.label_colors = label_colors_.address();
     }
     block.rays.pixels = output_.address();
     bindings_.write_volume(volume);

@@ -15,6 +15,7 @@ namespace edgesplat {
 struct RaycastPlan {
     passes::RaycastVariant variant;
     std::vector<shader::TransferRow> transfer;  ///< TRANSFER_ROWS + 1; empty without a transfer function
+    std::vector<glm::vec3> label_colors;        ///< FramePlan::label_colors
     glm::ivec2 size{0};
     shader::RaycastBlock block{};  ///< addresses unset
 };
@@ -55,6 +56,7 @@ class RaycastResources {
     };
     std::array<Bricks, kRaycastFilterNames.size()> bricks_;  ///< by filter; an image once the filter was used
     gpu::Buffer transfer_;                                   ///< TransferRow, mapped; only with a transfer function
+    gpu::Buffer label_colors_;                               ///< (labels) vec3, mapped; only with labels
     gpu::Buffer block_;                                      ///< RaycastBlock, mapped
     gpu::Buffer output_;                                     ///< (height, width) vec4, mapped
     glm::ivec2 size_{0};

@@ -7,6 +7,7 @@
 #include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
+#include "engine/volume/labels.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -94,6 +95,14 @@ double carried_value(const Field& field, const ScaledScene& scaled, const std::v
     return m == last ? most : 0.5 * (scaled.lower(m) + scaled.upper(m));
 }
 
+std::optional<TransferPoint> labelled(const Field& field, const ScaledScene& scaled, const Scene& scene,
+                                      std::size_t voxel, int material) {
+    if (!scaled.labels || material == 0) return std::nullopt;
+    const std::uint32_t label = label_near(scaled.labels->at, field.dims, field.voxel(voxel));
+    const Material& matter = scene.materials[static_cast<std::size_t>(material)];
+    return TransferPoint{0, label == 0 ? matter.color : scene.label_colors[label - 1], matter.extinction};
+}
+
 std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& scaled,
                                         const std::vector<VoxelEdge>& edges, const Scene& scene,
                                         const VolumeGeometry& geometry, const Settings& settings, const glm::dvec3& eye,
@@ -132,7 +141,8 @@ std::vector<SplatRecord> collect_splats(const Field& field, const ScaledScene& s
         const auto add = [&](int m, const VoxelEdge& edge, double value) {
             SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
             record.weight = border_weight(field, scaled, settings, field.voxel(at), m);
-            if (!scaled.transfer.empty()) record.classified = transfer_at(scaled.transfer, value);
+            record.classified =
+                scaled.transfer.empty() ? labelled(field, scaled, scene, at, m) : transfer_at(scaled.transfer, value);
             if (there && (!record.classified || record.classified->extinction > 0)) records.push_back(record);
         };
         for (; !carried.empty() && carried.front().voxel == at && carried.front().material < own;

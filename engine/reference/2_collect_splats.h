@@ -16,7 +16,7 @@ struct SplatRecord {
     std::uint32_t material = 0;  ///< index into Scene::materials
     VoxelEdge edge;
     std::optional<TransferPoint>
-        classified{};   ///< with a transfer function: replaces the material's colour and extinction
+        classified{};   ///< with a transfer function or labels: replaces the material's colour and extinction
     double weight = 1;  ///< factor on the kernel: above 1 next to the volume's border, beyond which there are no voxels
     /// The light that reaches the splat (passes 2b and 2d); `turned_ambient`: the ambient light at a wall's other face.
     Reach reach{};
@@ -50,6 +50,10 @@ std::vector<double> classified_values(const Field& field, const ScaledScene& sca
 /// of the material's interval. For the lowest and highest material: the smallest or largest sample around.
 double carried_value(const Field& field, const ScaledScene& scaled, const std::vector<VoxelEdge>& edges,
                      const CarriedEdge& carried);
+
+/// The material's extinction with the colour of the voxel's label; nullopt without labels in their own colours.
+std::optional<TransferPoint> labelled(const Field& field, const ScaledScene& scaled, const Scene& scene,
+                                      std::size_t voxel, int material);
 
 /// The splats in ascending order of voxel index, and of material within a voxel. `edges` has one entry per voxel; so
 /// has `values` with a transfer function (classified_values). `carried`: splats of translucent matter at voxels outside

@@ -61,8 +61,8 @@ glm::dvec3 payload_of(const SplatRecord& record, const Field& field, const Scene
     return normal;
 }
 
-glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
-                       const Scene& scene, const View& view, Payload payload) {
+glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face,
+                       const glm::dvec3& entry, const Scene& scene, const View& view, Payload payload) {
     switch (payload) {
         case Payload::Color:
             return shade(scene,

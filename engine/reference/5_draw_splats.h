@@ -19,8 +19,8 @@ enum class Payload { Color, Depth, Distance, Normal };
 /// The payload where a ray enters the splat's matter through a clip plane at `entry` (index space): colour lit by the
 /// plane's normal, depth of the entry, or the plane's normal. Distance is that of the splat. `face`: the plane's
 /// normal, index space; `own`: payload_of the splat.
-glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face, const glm::dvec3& entry,
-                       const Scene& scene, const View& view, Payload payload);
+glm::dvec3 cap_payload(const SplatRecord& record, const glm::dvec3& own, const glm::dvec3& face,
+                       const glm::dvec3& entry, const Scene& scene, const View& view, Payload payload);
 
 /// Depth range that a kernel is cut to, mm along the view axis from the eye.
 struct DepthRange {

@@ -144,8 +144,8 @@ class RayWalker {
             const double along = glm::dot(off, u);
             const glm::dvec3 p = off - along * u;
             const bool shows_cut = face && footprints_.in_matter(*splat->edge, p, u, along);
-            emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->record, glm::dvec3(0), *face,
-                                                                            entry, scene_, view_, Payload::Color)
+            emission_.push_back(shows_cut ? splat->extinction * cap_payload(splat->record, glm::dvec3(0), *face, entry,
+                                                                            scene_, view_, Payload::Color)
                                           : splat->extinction * own_light(*splat, p, u));
             paths_.emplace_back();
             if (!footprints_.cuts(*splat->edge)) continue;

@@ -70,6 +70,7 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         scaled.is_translucent.push_back((translucent_mask >> m & 1U) != 0);
     scaled.transfer = scaled_transfer(scene, volume);
+    if (!scene.label_colors.empty()) scaled.labels = volume.shown_labels.get();
     scaled.light = !scene.lights.empty() || scene.effects.silhouette;
     return scaled;
 }

@@ -137,8 +137,7 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
                 const bool far = light.kind == Light::Kind::Directional;
                 const glm::dvec3 to_light = glm::normalize(far ? light.direction : light.position - at);
                 const glm::dvec3 place = lit_place(record, f, geometry, band, to_light, pixel, clip);
-                record.reach.lights[l] =
-                    light_reach(records, f, scene_, geometry, footprints_, light, place, clip);
+                record.reach.lights[l] = light_reach(records, f, scene_, geometry, footprints_, light, place, clip);
             }
         }
     });

@@ -14,7 +14,8 @@ SplatCloud::SplatCloud(const PreparedVolume& prepared, const View& view, const F
     const auto& transfer = prepared.scaled_scene().transfer;
     const auto add = [&](std::size_t at, int m, const VoxelEdge& edge, const double* classified) {
         SplatRecord record{static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), edge};
-        if (!transfer.empty()) record.classified = transfer_at(transfer, *classified);
+        record.classified = transfer.empty() ? labelled(field_, prepared.scaled_scene(), scene, at, m)
+                                             : transfer_at(transfer, *classified);
         record.weight = border_weight(field_, prepared.scaled_scene(), prepared.settings(), field_.voxel(at), m);
         const double extinction = record.extinction(scene);
         const bool nothing = edge.has_edge && edge.D <= -kKernelRadius;

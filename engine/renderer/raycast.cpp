@@ -37,6 +37,8 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     auto start = Clock::now();
     if (self.splats.provide_volume(raycast.filter == RaycastFilter::Cubic))
         stats.setup_milliseconds += milliseconds_since(start);
+    if (shows_labels(scene, *self.splats.original()) && self.splats.provide_labels())
+        stats.setup_milliseconds += milliseconds_since(start);
     const VolumeStore& store = self.splats.level().volume;
     const Volume& volume = *store.volume();
     if (raycast.filter == RaycastFilter::Cubic && !scene.transfer.empty() && volume.no_data)

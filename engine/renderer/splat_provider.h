@@ -28,6 +28,8 @@ class SplatProvider {
     void provide(const FrameRequest& request, RenderStats& stats);
     /// Uploads the whole volume for ray casting; with `coefficients` also its spline. Returns whether any were missing.
     bool provide_volume(bool coefficients);
+    /// Uploads the labels of that volume. Returns whether they were missing.
+    bool provide_labels() { return shown_.volume.provide_labels(); }
     /// Frees resources that pictures with these settings do not use.
     void release_unused(const Settings& drawn);
 

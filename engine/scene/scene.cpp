@@ -99,7 +99,6 @@ Light directional_light(const glm::dvec3& towards) {
 
 std::string raycast_obstacle(const Scene& scene) {
     const Effects& effects = scene.effects;
-    if (scene.labels) return "labels in their own colours";
     if (scene.lights.size() > 1) return "more than one light";
     for (const Light& light : scene.lights) {
         if (light.kind == Light::Kind::Point) return "a point light";
@@ -133,6 +132,8 @@ void validate(const Scene& scene) {
     }
     check_materials(scene);
     check_transfer(scene.transfer);
+    for (std::size_t i = 0; i < scene.label_colors.size(); ++i)
+        check_color(fmt::format("label_colors[{}]", i), scene.label_colors[i]);
     check_color("background", scene.background);
     check_share("ambient", scene.ambient);
     check_lights(scene.lights);

@@ -69,7 +69,9 @@ struct Scene {
     std::vector<Material> materials;  ///< iso_values.size() + 1, lowest interval first
     /// ascending; if not empty, it defines colour and extinction, and the materials only define reflection
     std::vector<TransferPoint> transfer;
-    bool labels = false;                 ///< the volume holds label numbers (drawn_labels), which are not interpolated
+    /// colour of each label of a volume from drawn_labels, by its place in Volume::labels; linear light. They replace
+    /// the materials' colours except below the lowest iso-value. Empty: no labels are drawn
+    std::vector<glm::dvec3> label_colors;
     double ambient = 0.15;               ///< ambient light, >= 0
     std::vector<Light> lights{Light{}};  ///< 0..4; with none, colours are unlit
     Lit lit = Lit::Everywhere;

@@ -27,7 +27,9 @@ struct VolumeSource {
     std::optional<glm::dvec3> spacing;              ///< mm, instead of the file's
     std::optional<double> no_data;                  ///< samples with this value contain no data
     std::optional<double> threshold;                ///< 1 from this value up, else 0
-    std::optional<bool> labels;                     ///< draws labels (drawn_labels); not given: see `recognise_labels`
+    std::optional<bool> labels;                     ///< draws labels (drawn_labels); not given: see `choose_labels`
+    std::vector<std::string> only, hide;            ///< labels that are shown, or hidden (chosen_labels)
+    std::string label_names;                        ///< file with names and colours of labels; empty: none
     bool box_filter = false;                        ///< mean over 3x3x3 voxels
     std::optional<glm::ivec3> crop_low, crop_high;  ///< first and last voxel kept; both or none
     std::string checksum;  ///< of the preprocessed samples, 16 hexadecimal digits; empty: not checked
@@ -156,24 +158,47 @@ std::vector<std::filesystem::path> volume_folders(const std::filesystem::path& f
 /// listing the folders that were searched.
 std::string find_volume(const std::string& path, const std::vector<std::filesystem::path>& folders);
 
-/// Finds, reads and preprocesses the volume, and verifies its checksum. Throws Error.
+/// A file that a scene names, in the first of the folders that has it; else the path itself.
+std::filesystem::path find_file(const std::string& path, const std::vector<std::filesystem::path>& folders);
+
+using LoadProgress = std::function<void(double fraction, std::string_view what)>;
+
+/// Finds and reads the volume, with the names of its labels, without preprocessing. Throws Error.
+Volume read_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
+                   const LoadProgress& progress = {});
+
+/// Reads and preprocesses the volume, and verifies its checksum. Throws Error.
 Volume load_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
-                   const std::function<void(double fraction, std::string_view what)>& progress = {});
+                   const LoadProgress& progress = {});
+
+/// Reads a scene's volume, decides whether its labels are drawn (choose_labels), preprocesses it and verifies its
+/// checksum. If the scene leaves `volume.labels` open, its checksum is that of the samples or of the drawn labels.
+/// Throws Error.
+Volume load_scene_volume(SceneDocument& document, const std::vector<std::filesystem::path>& folders,
+                         const LoadProgress& progress = {});
+/// The same for a volume that is read already.
+Volume prepared_volume(SceneDocument& document, Volume volume);
+
+/// Names the labels of a volume from a file (read_label_names). Throws Error if it is no segmentation.
+void name_labels(Volume& volume, const std::filesystem::path& path);
 
 /// Preprocesses a volume as `load_source` does: threshold or labels, box filter, crop, in this order; then verifies the
 /// checksum. Throws Error.
 Volume preprocessed(Volume volume, const VolumeSource& source);
 
-/// Recognises a segmentation in a `volume` from `load_source`: sets `document.volume.labels` and converts the volume,
-/// so that each label gets its own colour. Requires at least 3 labels in memory, no builtin volume, and a scene without
-/// iso-values, materials, transfer function, threshold, box filter, `max_error` and `volume.labels`. Scenes that use
-/// ray casting are not changed: it does not support labels.
-void recognise_labels(SceneDocument& document, Volume& volume);
+/// Decides whether the labels of a volume from `read_source` are drawn, each in its own colour, and sets
+/// `document.volume.labels`. Iso-values, a transfer function and a threshold are about the file's numbers, so with them
+/// labels are not drawn, whatever `volume.labels` says. Otherwise they are if `volume.labels` is true, if labels are
+/// chosen (`volume.only`, `volume.hide`), or if `volume.labels` is omitted and the volume is a segmentation in memory
+/// of at least 3 labels, or 2 of which one has a name, and neither builtin nor filtered. Throws Error if labels are
+/// chosen that are not drawn.
+void choose_labels(SceneDocument& document, const Volume& volume);
 
 /// The scene for a volume from `load_source`. Omitted iso-values come from, in this order: `iso_sigmas`; the materials'
-/// presets; the builtin scene; 0.5 after a threshold and for labels (with a colour each); the strongest suggestion for
-/// the volume. Omitted extinctions: 8 per voxel of mean spacing for the highest material, 0.15 for those below it, 0
-/// below the lowest iso-value. Throws Error.
+/// presets; the builtin scene; 0.5 after a threshold and for drawn labels; the strongest suggestion for the volume.
+/// Drawn labels have the colours of their table, by default one by number; with a material's colour all have that.
+/// Omitted extinctions: 8 per voxel of mean spacing for the highest material, 0.15 for those below it, 0 below the
+/// lowest iso-value. Throws Error.
 Scene resolve_scene(const SceneDocument& document, const Volume& volume);
 
 /// The camera for the size in `document.output`. By default: front of a builtin volume and of a patient (top if that is

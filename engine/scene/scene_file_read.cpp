@@ -167,11 +167,20 @@ class Reader {
             case KeyType::Text:
                 return node.is_string() ? std::optional<KeyValue>(*node.value<std::string>()) : std::nullopt;
             case KeyType::Texts: {
-                if (!array) return std::nullopt;
+                // Numbers of labels are texts, too, so that 64 bits stay exact.
+                const auto text = [](const toml::node& item) -> std::optional<std::string> {
+                    if (item.is_integer()) return fmt::format("{}", *item.value<std::int64_t>());
+                    return item.value_exact<std::string>();
+                };
                 std::vector<std::string> texts;
+                if (!array) {
+                    const auto one = text(node);
+                    return one ? std::optional<KeyValue>(std::vector{*one}) : std::nullopt;
+                }
                 for (auto&& item : *array) {
-                    if (!item.is_string()) return std::nullopt;
-                    texts.push_back(*item.value<std::string>());
+                    const auto one = text(item);
+                    if (!one) return std::nullopt;
+                    texts.push_back(*one);
                 }
                 return texts;
             }
@@ -274,6 +283,7 @@ toml::table node_of(const SceneKey* key, std::string text) {
     if (key && key->type == KeyType::Text && !text.starts_with('"') && !text.starts_with('\''))
         return toml::table{{"v", text}};
     if (list && !text.starts_with('[')) {
+        if (textual && text.starts_with('"')) return toml::parse("v = " + text);
         if (textual) {
             toml::array items;
             std::istringstream in(text);

@@ -67,7 +67,15 @@ void add_volume(KeyTable& t) {
           {.unit = "the volume's", .help = "Step 1, binarise: 1 for samples >= this value, else 0", .absent = "none"});
     t.add("volume.labels", MEMBER(volume.labels),
           {.help = "Step 1 for segmentations: samples are labels, each drawn in its own colour",
-           .absent = "detected if the scene sets no iso-values, materials or transfer function"});
+           .absent = "detected if the scene sets no iso-values and no transfer function"});
+    t.add("volume.only", MEMBER(volume.only),
+          {.help = "Labels to show, by number, name, or name with * for any letters",
+           .absent = "all but the background"});
+    t.add("volume.hide", MEMBER(volume.hide), {.help = "Labels to hide, in the same way", .absent = "none"});
+    t.add("volume.label_names", MEMBER(volume.label_names),
+          {.help = "File with names and colours of labels: a Slicer colour table, an ITK-SNAP label description, a "
+                   "FreeSurfer lookup table, or a table with the columns id and name; relative to the scene file",
+           .absent = "the volume's own"});
     t.add("volume.box_filter", MEMBER(volume.box_filter), {.help = "Step 2: mean over 3x3x3 voxels"});
     t.add("volume.crop_low", MEMBER(volume.crop_low),
           {.unit = "voxels", .help = "Step 3: crop, first voxel to keep", .range = {0, 65535}, .absent = "the first"});

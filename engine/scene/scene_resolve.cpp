@@ -60,17 +60,10 @@ std::vector<double> iso_values_of_sigmas(const std::vector<double>& sigmas, cons
     return values;
 }
 
-/// A colour for each label number in a volume from drawn_labels.
-std::vector<TransferPoint> label_colors(const Volume& volume) {
-    const double extinction = default_extinction(true, volume.geometry);
-    const auto most = std::lround((static_cast<double>(volume.max_value) - 1) / kLabelStep);
-    // The surface at 0.5 is the same for all labels; lower values are transparent.
-    std::vector<TransferPoint> points{{kLabelSurface - kLabelStep, default_label_color(1), 0},
-                                      {kLabelSurface, default_label_color(1), extinction}};
-    for (long label = 1; label <= most; ++label)
-        points.push_back({1 + kLabelStep * static_cast<double>(label),
-                          default_label_color(static_cast<std::size_t>(label)), extinction});
-    return points;
+/// The colour that a material chooses, also by its preset.
+std::optional<glm::dvec3> color_of(const MaterialChoice& choice) {
+    if (choice.color || choice.preset.empty()) return choice.color;
+    return scene_preset(choice.preset).content.materials.front().color;
 }
 
 /// The default view. Front for a patient, unless that shows a slab from its narrow side.
@@ -159,6 +152,19 @@ glm::dvec3 default_label_color(std::size_t label) {
     return color;
 }
 
+std::vector<glm::dvec3> label_colors(const LabelTable& table) {
+    // Small numbers have the same colours in every volume.
+    constexpr std::uint64_t kSmall = 256;
+    const bool numbered = std::ranges::all_of(table.labels, [](const Label& label) { return label.id <= kSmall; });
+    std::vector<glm::dvec3> colors;
+    for (std::size_t place = 0; place < table.labels.size(); ++place) {
+        const Label& label = table.labels[place];
+        const std::size_t number = numbered ? std::max<std::uint64_t>(label.id, 1) : place + 1;
+        colors.push_back(label.color.value_or(default_label_color(number)));
+    }
+    return colors;
+}
+
 double default_extinction(bool highest, const VolumeGeometry& geometry) {
     return (highest ? kOpaquePerVoxel : kTranslucentPerVoxel) / geometry.mean_spacing();
 }
@@ -169,10 +175,17 @@ MaterialChoice choice_of(const Material& material) {
 }
 
 void write_out_materials(SceneDocument& document, const Scene& scene, const Volume& volume) {
+    document.below = choice_of(scene.materials.front());
+    if (!scene.label_colors.empty()) {
+        // Labels keep their own colours and surface.
+        MaterialChoice all = choice_of(scene.materials.back());
+        all.color = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
+        document.materials = {all};
+        return;
+    }
     document.iso_values = scene.iso_values;
     for (double& value : document.iso_values)
         value = volume.in_file_unit(value);
-    document.below = choice_of(scene.materials.front());
     document.materials.clear();
     for (std::size_t m = 1; m < scene.materials.size(); ++m)
         document.materials.push_back(choice_of(scene.materials[m]));
@@ -194,13 +207,19 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     for (TransferPoint& point : scene.transfer)
         point.value /= volume.value_scale;
     if (iso.empty() && !document.iso_sigmas.empty()) iso = iso_values_of_sigmas(document.iso_sigmas, volume);
-    if (iso.empty() && scene.transfer.empty() && document.volume.labels.value_or(false)) {
+    if (volume.shown_labels) {
+        if (!iso.empty() || !scene.transfer.empty())
+            fail(
+                "{}: is drawn by its labels, which have their own surfaces and colours; set volume.labels to false "
+                "(--labels off) for {} of its numbers",
+                volume.name, iso.empty() ? "a transfer function" : "surfaces");
         iso = {kLabelSurface};
-        scene.labels = true;
-        if (document.materials.empty()) scene.transfer = label_colors(volume);
+        scene.label_colors = label_colors(*volume.labels);
+        const auto chosen = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
+        if (chosen) std::ranges::fill(scene.label_colors, *chosen);
     }
     if (iso.empty() && scene.transfer.empty()) iso = chosen_iso_values(document, volume);
-    check_iso_values(iso, volume);
+    if (!volume.shown_labels) check_iso_values(iso, volume);
     if (!document.materials.empty() && document.materials.size() != iso.size())
         fail("materials (--color, --extinction, --material): given {} times; expected once per iso-value, {} times",
              document.materials.size(), iso.size());

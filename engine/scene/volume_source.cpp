@@ -1,11 +1,15 @@
 // Finds, loads and preprocesses a scene's volume.
+#include <algorithm>
 #include <cstdlib>
 #include <sstream>
 
 #include "engine/error.h"
+#include "engine/scene/label_choice.h"
 #include "engine/scene/scene_document.h"
+#include "engine/scene/scene_presets.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/label_names.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
 
@@ -23,6 +27,13 @@ bool may_be_opened(const fs::path& path) {
 }
 
 }  // namespace
+
+fs::path find_file(const std::string& path, const std::vector<fs::path>& folders) {
+    std::error_code ignored;
+    for (const fs::path& folder : folders)
+        if (fs::exists(folder / path, ignored)) return folder / path;
+    return path;
+}
 
 std::vector<fs::path> volume_folders(const fs::path& first) {
     std::vector<fs::path> folders{first};
@@ -51,8 +62,7 @@ std::string find_volume(const std::string& path, const std::vector<fs::path>& fo
          places);
 }
 
-Volume load_source(const VolumeSource& source, const std::vector<fs::path>& folders,
-                   const std::function<void(double fraction, std::string_view what)>& progress) {
+Volume read_source(const VolumeSource& source, const std::vector<fs::path>& folders, const LoadProgress& progress) {
     LoadOptions options;
     options.component = source.component;
     options.frame = source.frame;
@@ -64,13 +74,85 @@ Volume load_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.resample = source.resample;
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
-    return preprocessed(load_volume(path, options), source);
+    Volume volume = load_volume(path, options);
+    if (!source.label_names.empty()) name_labels(volume, find_file(source.label_names, folders));
+    return volume;
 }
+
+void name_labels(Volume& volume, const fs::path& path) {
+    const std::vector<Label> named = read_label_names(path);
+    const auto table = labels_of(volume);
+    if (!table)
+        fail("{}: volume.label_names (--label-names): expected a segmentation; its samples are measured values",
+             volume.name);
+    volume.labels = std::make_shared<const LabelTable>(with_names(*table, named));
+}
+
+Volume load_source(const VolumeSource& source, const std::vector<fs::path>& folders, const LoadProgress& progress) {
+    return preprocessed(read_source(source, folders, progress), source);
+}
+
+Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& folders, const LoadProgress& progress) {
+    return prepared_volume(document, read_source(document.volume, folders, progress));
+}
+
+Volume prepared_volume(SceneDocument& document, Volume volume) {
+    const bool open = !document.volume.labels;
+    choose_labels(document, volume);
+    VolumeSource& source = document.volume;
+    if (open && source.labels.value_or(false) && !source.checksum.empty()) {
+        // The checksum may be that of the samples, as `info` prints it.
+        VolumeSource as_read = source;
+        as_read.labels = false;
+        as_read.only.clear();
+        as_read.hide.clear();
+        as_read.checksum.clear();
+        const Volume samples = preprocessed(volume, as_read);
+        if (source.checksum == fmt::format("{:016x}", samples.checksum)) source.checksum.clear();
+        Volume drawn = preprocessed(std::move(volume), source);
+        source.checksum = fmt::format("{:016x}", drawn.checksum);
+        return drawn;
+    }
+    return preprocessed(std::move(volume), source);
+}
+
+namespace {
+
+/// Ranks become the file's numbers, rounded to floats.
+void put_numbers(Volume& volume) {
+    const std::shared_ptr<const LabelTable> table = volume.labels;
+    if (!table) return;
+    const auto number = [&](const Label& label) {
+        return table->is_signed ? static_cast<float>(static_cast<std::int64_t>(label.id))
+                                : static_cast<float>(label.id);
+    };
+    volume.labels = nullptr;
+    if (!has_ranks(*table)) return;
+    for (float& sample : volume.values)
+        sample = number(table->labels[std::min(place_of_label(*table, sample), table->labels.size() - 1)]);
+    volume.notes.push_back("Numbers of labels above 2^24 are rounded to 24 bits.");
+    finish_volume(volume);
+}
+
+}  // namespace
 
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
+    const bool chosen = !source.only.empty() || !source.hide.empty();
+    if (source.labels.value_or(chosen)) {
+        auto table = labels_of(volume);
+        if (!table)
+            fail("{}: volume.{}: expected a segmentation of 2 to {} whole numbers without transitions", volume.name,
+                 !chosen               ? "labels (--labels)"
+                 : source.only.empty() ? "hide (--hide)"
+                                       : "only (--only)",
+                 kMaxRankedLabels);
+        const std::vector<bool> shown = chosen_labels(volume, *table, source.only, source.hide);
+        volume = drawn_labels(volume, std::move(table), shown);
+    } else {
+        put_numbers(volume);
+    }
     if (source.threshold) volume = threshold(volume, *source.threshold / volume.value_scale);
-    if (source.labels.value_or(false)) volume = drawn_labels(volume);
     if (source.box_filter) volume = box_filter(volume);
     if (source.crop_low || source.crop_high)
         volume = cropped(volume, source.crop_low.value_or(glm::ivec3(0)),
@@ -83,19 +165,50 @@ Volume preprocessed(Volume volume, const VolumeSource& source) {
     return volume;
 }
 
-void recognise_labels(SceneDocument& document, Volume& volume) {
+namespace {
+
+/// The first key of the document that draws surfaces or colours of the file's numbers; empty: none.
+std::string_view key_of_numbers(const SceneDocument& document) {
+    if (!document.iso_values.empty()) return "iso_values (--iso)";
+    if (!document.iso_sigmas.empty()) return "iso_sigmas";
+    if (!document.transfer.empty()) return "transfer";
+    if (!document.transfer_preset.empty()) return "transfer_preset (--transfer)";
+    if (document.volume.threshold) return "volume.threshold (--threshold)";
+    for (const MaterialChoice& material : document.materials)
+        if (!material.preset.empty() && !scene_preset(material.preset).content.iso_values.empty())
+            return "a material with an iso-value (--material)";
+    return "";
+}
+
+}  // namespace
+
+void choose_labels(SceneDocument& document, const Volume& volume) {
     constexpr std::size_t kFewest = 3;  // two labels are a mask, which has one surface
-    const VolumeSource& source = document.volume;
-    const bool open = document.iso_values.empty() && document.iso_sigmas.empty() && document.materials.empty() &&
-                      document.transfer.empty() && document.transfer_preset.empty() && !source.threshold &&
-                      !source.box_filter && !source.labels && !document.quality.max_error;
-    const bool splats = document.output.renderer == RendererKind::Splat && !document.output.compare_raycast;
-    if (!open || !splats || volume.packed || is_builtin(volume.name)) return;
-    const std::size_t count = labels_of(volume).size();
-    if (count < kFewest || count > kMaxDrawnLabels + 1) return;
-    volume = drawn_labels(volume);
-    document.volume.labels = true;
-    if (!document.volume.checksum.empty()) document.volume.checksum = fmt::format("{:016x}", volume.checksum);
+    VolumeSource& source = document.volume;
+    const bool chosen = !source.only.empty() || !source.hide.empty();
+    const std::string_view numbers = key_of_numbers(document);
+    if (!numbers.empty()) {
+        if (chosen)
+            fail("volume.{0} (--{0}): chooses labels, but {1} draws the numbers themselves; expected one of them",
+                 source.only.empty() ? "hide" : "only", numbers);
+        if (source.labels.value_or(false) && (!document.transfer.empty() || !document.transfer_preset.empty()))
+            fail(
+                "volume.labels: labels have their own colours, but the scene has a transfer function; expected one of "
+                "them");
+        source.labels = false;
+        return;
+    }
+    if (chosen) {
+        if (source.labels == false)
+            fail("volume.{0} (--{0}): chooses labels, but volume.labels (--labels) is off; expected one of them",
+                 source.only.empty() ? "hide" : "only");
+        source.labels = true;
+    }
+    if (source.labels || source.box_filter || volume.packed || is_builtin(volume.name)) return;
+    const auto table = labels_of(volume);
+    if (!table) return;
+    const bool named = std::ranges::any_of(table->labels, [](const Label& label) { return !label.name.empty(); });
+    if (table->labels.size() >= kFewest || named) source.labels = true;
 }
 
 }  // namespace edgesplat

@@ -41,7 +41,8 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .estimator = plan.estimator,
             .faces = plan.faces,
             .clip = plan.clip,
-            .transfer = !plan.transfer.empty()};
+            .transfer = !plan.transfer.empty(),
+            .labels = plan.labels};
 }
 
 void SplatStore::drop() {
@@ -77,6 +78,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, Se
     lists_.occlusion = {};
     lists_.shadows = {};
     if (wanted.takes_coefficients()) volume.provide_coefficients();
+    if (wanted.labels) volume.provide_labels();
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole);

@@ -2,6 +2,7 @@
 
 #include "engine/plan/resource_table.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
@@ -69,21 +70,34 @@ bool VolumeStore::provide_coefficients() {
     return true;
 }
 
-void VolumeStore::hold_blocks(const glm::ivec3& largest, bool coefficients) {
+bool VolumeStore::provide_labels() {
+    if (images_.labels) return false;
+    make(&VolumeImages::labels, volume_->geometry.dims);
+    upload_image(session_->commands(), session_->device(), images_.labels, volume_->shown_labels->at.data(),
+                 sizeof(std::uint32_t));
+    return true;
+}
+
+void VolumeStore::hold_blocks(const glm::ivec3& largest, bool coefficients, bool labels) {
     images_ = {};
     make(&VolumeImages::volume, largest);
     if (coefficients) make(&VolumeImages::coefficients, largest);
+    if (labels) make(&VolumeImages::labels, largest);
     session_->commands().run([&] {
         session_->commands().prepare({&images_.volume});
         if (coefficients) session_->commands().prepare({&images_.coefficients});
+        if (labels) session_->commands().prepare({&images_.labels});
     });
 }
 
 void VolumeStore::load(const CollectionBlock& block, std::span<const float> samples) {
-    const auto upload = [&](const gpu::GpuImage& image, const float* texels) {
+    const auto upload = [&](const gpu::GpuImage& image, const void* texels) {
         upload_block(session_->commands(), session_->device(), image, block.size, texels, sizeof(float));
     };
     upload(images_.volume, samples.data());
+    if (images_.labels)
+        upload(images_.labels,
+               labels_in_box(volume_->shown_labels->at, volume_->geometry.dims, block.low, block.size).data());
     if (!images_.coefficients) return;
     upload(images_.coefficients, bspline_coefficients({samples.begin(), samples.end()}, block.size).data());
 }

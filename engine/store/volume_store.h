@@ -36,14 +36,16 @@ class VolumeStore {
     void change(std::shared_ptr<const Volume> next, const VoxelBox& box);
     void forget_changes() { changed_.reset(); }
 
-    /// As a whole: upload samples, or spline coefficients, that are not on the device. Return whether any were missing.
+    /// As a whole: upload samples, spline coefficients, or labels, that are not on the device. Return whether any were
+    /// missing.
     bool provide();
     bool provide_coefficients();
+    bool provide_labels();
     void release_coefficients() { images_.coefficients = {}; }
 
     /// In blocks: allocates images for blocks of up to that size; the old images are freed.
-    void hold_blocks(const glm::ivec3& largest, bool coefficients);
-    /// Uploads a block's scaled samples, and their spline coefficients if hold_blocks() allocated them.
+    void hold_blocks(const glm::ivec3& largest, bool coefficients, bool labels);
+    /// Uploads a block's scaled samples, and their spline coefficients and labels if hold_blocks() allocated them.
     void load(const CollectionBlock& block, std::span<const float> samples);
 
   private:

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "engine/scene/scene_file.h"
+#include "engine/volume/labels.h"
 
 namespace edgesplat::viewer {
 
@@ -17,9 +18,11 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
         out.document.volume.path = path;
         out.folders = volume_folders({});
     }
-    Volume volume = load_source(out.document.volume, out.folders, progress);
-    recognise_labels(out.document, volume);
-    out.volume = std::make_shared<const Volume>(std::move(volume));
+    std::string& names = out.document.volume.label_names;
+    if (!names.empty()) names = std::filesystem::absolute(find_file(names, out.folders)).string();
+    Volume volume = read_source(out.document.volume, out.folders, progress);
+    if (labels_of(volume)) out.samples = std::make_shared<const Volume>(volume);
+    out.volume = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));
     return out;
 }
 

@@ -18,7 +18,8 @@ struct Opened {
     std::string path;  ///< as requested
     SceneDocument document;
     std::vector<std::filesystem::path> folders;  ///< folders that were searched for the volume
-    std::shared_ptr<const Volume> volume;
+    std::shared_ptr<const Volume> volume;        ///< preprocessed
+    std::shared_ptr<const Volume> samples;       ///< as read, if it is a segmentation; else null
 };
 
 /// Reads a volume file, a folder, builtin:NAME or a scene file. Throws Error.

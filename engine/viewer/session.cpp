@@ -31,7 +31,8 @@ SceneDocument with_quality_of(const SceneDocument& other, SceneDocument document
 
 /// Whether both scenes have the same solid matter before clipping.
 bool same_matter(const Scene& a, const Scene& b) {
-    return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer;
+    return a.iso_values == b.iso_values && a.materials == b.materials && a.transfer == b.transfer &&
+           a.label_colors == b.label_colors;
 }
 
 }  // namespace
@@ -49,6 +50,7 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     document.remove_box = open.remove_box;
     document.movie = open.movie;
     opened_ = std::move(opened);
+    drawn_source_ = document.volume;
     history_.emplace(std::move(document));
     motion_ = Motion();
     motion_.set_home(camera, opened_.volume->geometry.center());
@@ -64,6 +66,26 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     const bool inside = glm::all(glm::greaterThan(index, glm::dvec3(0))) &&
                         glm::all(glm::lessThan(index, glm::dvec3(opened_.volume->geometry.dims - 1)));
     motion_.set_mode(inside ? MotionMode::Fly : MotionMode::Orbit);
+}
+
+std::shared_ptr<const Volume> Session::relabelled(SceneDocument& document) const {
+    VolumeSource &wanted = document.volume, now = drawn_source_;
+    const bool same = wanted.labels.value_or(false) == now.labels.value_or(false) && wanted.only == now.only &&
+                      wanted.hide == now.hide;
+    if (same || !opened_.samples) return nullptr;
+    wanted.checksum.clear();
+    auto volume = std::make_shared<const Volume>(preprocessed(*opened_.samples, wanted));
+    wanted.checksum = fmt::format("{:016x}", volume->checksum);
+    return volume;
+}
+
+void Session::follow_document() {
+    SceneDocument document = history_->now();
+    if (auto volume = relabelled(document)) {
+        opened_.volume = std::move(volume);
+        drawn_source_ = document.volume;
+    }
+    apply(current_scene());
 }
 
 Scene Session::current_scene() const {
@@ -83,16 +105,22 @@ void Session::apply(Scene scene, bool seen) {
 void Session::edit(const std::function<void(SceneDocument&)>& change, bool finished) {
     SceneDocument document = history_->now();
     Scene scene;
+    std::shared_ptr<const Volume> volume;
     try {
         change(document);
         validate(document.quality.settings);
-        scene = resolve_scene(document, *opened_.volume);
+        volume = relabelled(document);
+        scene = resolve_scene(document, volume ? *volume : *opened_.volume);
     } catch (const Error& error) {
         message_ = error.what();
         return;
     }
     const SceneDocument& now = history_->now();
     const bool same = document == now, seen = !same && !(with_quality_of(now, document) == now);
+    if (volume) {
+        opened_.volume = std::move(volume);
+        drawn_source_ = document.volume;
+    }
     history_->change(std::move(document), finished);
     if (!same) apply(std::move(scene), seen);
 }
@@ -104,13 +132,13 @@ void Session::finish_edit() {
 void Session::undo() {
     if (!can_undo()) return;
     history_->undo();
-    apply(current_scene());
+    follow_document();
 }
 
 void Session::redo() {
     if (!can_redo()) return;
     history_->redo();
-    apply(current_scene());
+    follow_document();
 }
 
 void Session::set_show(Show show) {

@@ -107,11 +107,16 @@ class Session {
     /// `scene`: the document's resolved scene. `seen`: more than the drawing quality has changed.
     void apply(Scene scene, bool seen = true);
     Scene current_scene() const;
+    /// The volume of a document in which other labels are drawn than now; null if the volume stays. Sets its checksum.
+    std::shared_ptr<const Volume> relabelled(SceneDocument& document) const;
+    /// Takes over the volume of the document after an undo or redo.
+    void follow_document();
     void find_walls();
     void poll();
 
     bool wait_;
     Opened opened_;
+    VolumeSource drawn_source_;  ///< whose labels `opened_.volume` shows
     std::optional<History<SceneDocument>> history_;
     Scene scene_;
     std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< change with every scene or quality; with every scene

@@ -16,6 +16,7 @@ std::optional<VoxelBox> changed_box(const Volume& before, const Volume& now) {
     const bool comparable =
         same_grid(before.geometry, now.geometry) && before.min_value == now.min_value &&
         before.max_value == now.max_value && !before.values.empty() && before.values.size() == now.values.size() &&
+        before.shown_labels == now.shown_labels &&
         (before.no_data == now.no_data || (before.no_data && now.no_data && *before.no_data == *now.no_data));
     if (!comparable) return std::nullopt;
     const glm::ivec3 dims = now.geometry.dims;

@@ -25,6 +25,10 @@ class VolumeChecksum {
         add(static_cast<std::uint32_t>(std::uint64_t{sample} >> 32));
     }
     void add_scale(double value_scale) { add(value_scale); }
+    void add(std::span<const std::uint32_t> labels) {
+        for (const std::uint32_t label : labels)
+            add(label);
+    }
     std::uint64_t value() const { return hash_; }
 
   private:

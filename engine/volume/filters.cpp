@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "engine/error.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/packed_internal.h"
 
 namespace edgesplat {
@@ -65,6 +66,10 @@ Volume box_filter(const Volume& volume) {
     const auto& dims = volume.geometry.dims;
     Volume result = like(volume);
     result.value_scale = volume.value_scale;
+    if (volume.shown_labels) {
+        result.labels = volume.labels;
+        result.shown_labels = volume.shown_labels;
+    }
     const auto row = static_cast<std::ptrdiff_t>(dims.x), slice = row * dims.y;
     for (int z = 0; z < dims.z; ++z)
         for (int y = 0; y < dims.y; ++y)
@@ -125,6 +130,8 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
         for (int y = low.y; y <= high.y; ++y)
             for (int x = low.x; x <= high.x; ++x)
                 result.values.push_back(volume.sample(volume.index_of(x, y, z)));
+    if (volume.shown_labels)
+        result.shown_labels = sorted_labels(labels_in_box(volume.shown_labels->at, dims, low, high - low + 1));
     finish_volume(result);
     return result;
 }

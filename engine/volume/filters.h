@@ -13,7 +13,7 @@
 namespace edgesplat {
 
 /// Mean over 3x3x3 voxels (clamped at the border); the paper applies it to binary data. Samples without data count in
-/// no mean and stay without. Keeps geometry, name and notes; the result is finished.
+/// no mean and stay without. Keeps geometry, name, notes and shown labels; the result is finished.
 Volume box_filter(const Volume& volume);
 
 /// 1 where the sample is >= `iso_value`, else 0; samples without data stay without. Keeps geometry, name and notes; the

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "engine/volume/volume.h"
@@ -9,25 +11,46 @@
 namespace edgesplat {
 
 /// Maximum number of labels in a segmentation.
-inline constexpr std::size_t kMaxLabels = 256;
-
-/// Maximum number of labels whose numbers are kept although floats cannot represent them (Volume::labels).
 inline constexpr std::size_t kMaxRankedLabels = 1 << 20;
 
-/// The labels of a segmentation, ascending: 2 to kMaxLabels whole numbers without partial-volume values. The test for
-/// these: if the two outer voxels of three in a row differ by more than one step between values, the middle voxel
-/// almost never has a value between theirs. Empty for other volumes and for volumes that are not in memory.
-std::vector<float> labels_of(const Volume& volume);
+/// The labels of a segmentation: those that the reader recognised, or the volume's 2 to kMaxRankedLabels distinct
+/// values, if they are whole numbers without partial-volume values. The test for these: if the two outer voxels of
+/// three in a row differ by more than one step between values, the middle voxel almost never has a value between
+/// theirs. More than 256 labels must also have large regions whose numbers do not grow or fall together, as measured
+/// values that were enlarged without interpolation do. Null for other volumes and for volumes that are not in memory.
+std::shared_ptr<const LabelTable> labels_of(const Volume& volume);
 
-/// Labels are drawn as 1 + kLabelStep * number, so that the common surface of all labels lies at about 0.5 for every
-/// number.
-inline constexpr double kLabelStep = 1.0 / 1024;
-/// Maximum number of labels that get their own colour.
-inline constexpr std::size_t kMaxDrawnLabels = 250;
+/// Whether the samples are ranks instead of numbers.
+bool has_ranks(const LabelTable& table);
 
-/// The volume that is drawn for a segmentation: 0 for the background (the most frequent label at the volume's border),
-/// else 1 + kLabelStep * number. The number is the label if all labels are from 1 to kMaxDrawnLabels, else its rank,
-/// from 1. Throws Error if `labels_of` finds none or too many.
+/// Place in the table of the label that a sample stands for; the sample must be one of the table's.
+std::size_t place_of_label(const LabelTable& table, float sample);
+
+/// Place in the table of the background: number 0 if it occurs on the volume's sides, else the most frequent label
+/// there.
+std::size_t background_label(const Volume& volume, const LabelTable& table);
+
+/// The volume that is drawn for a segmentation: 1 where a label is shown, else 0, with `labels` = `table` and
+/// `shown_labels`. `shown`: per place in the table. Samples without data show nothing. Throws Error if no voxel has a
+/// shown label.
+Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown);
+
+/// The same with all labels but the background. Throws Error if `labels_of` finds none.
 Volume drawn_labels(const Volume& volume);
+
+/// Shown labels with those numbers.
+std::shared_ptr<const ShownLabels> sorted_labels(std::vector<std::uint32_t> at);
+
+/// The number of the label of voxel p in a volume of drawn_labels: its own, else that of the nearest voxel with one at
+/// most 2 voxels away along each axis; 0 if there is none.
+std::uint32_t label_near(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p);
+
+/// Numbers in a box of the volume: `size` voxels from `low` on, x fastest.
+std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims,
+                                         const glm::ivec3& low, const glm::ivec3& size);
+
+/// Numbers in the volume with voxels of 2 x 2 x 2: the most frequent label in each, the lowest of several; 0 if
+/// there is none.
+std::vector<std::uint32_t> halved_labels(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims);
 
 }  // namespace edgesplat

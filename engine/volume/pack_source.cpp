@@ -12,6 +12,7 @@
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/io/samples.h"
+#include "engine/volume/labels.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -170,6 +171,8 @@ std::unique_ptr<PackSource> open_source(const std::string& path, const LoadOptio
     }
     Volume volume = load_volume(path, options);
     if (volume.packed) fail("{}: is a packed volume already", path);
+    if (volume.labels && has_ranks(*volume.labels))
+        fail("{}: has labels with numbers above 2^24, which a packed volume cannot store", path);
     return std::make_unique<MemorySource>(std::move(volume));
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 
 namespace edgesplat {
@@ -101,6 +102,10 @@ Volume halved(const Volume& volume) {
     out.notes = volume.notes;
     out.value_scale = volume.value_scale;
     const auto no_data = volume.no_data ? std::make_shared<std::vector<bool>>() : nullptr;
+    if (volume.shown_labels) {
+        out.labels = volume.labels;
+        out.shown_labels = sorted_labels(halved_labels(volume.shown_labels->at, volume.geometry.dims));
+    }
     out.values.reserve(out.geometry.voxel_count());
     const glm::ivec3 last = volume.geometry.dims - 1;
     glm::ivec3 p;

@@ -82,6 +82,10 @@ void finish_volume(Volume& volume) {
     const bool any = bad < volume.values.size();
     volume.min_value = any ? low : 0.0F;
     volume.max_value = any ? high : 0.0F;
+    if (volume.shown_labels) {
+        volume.min_value = 0;
+        volume.max_value = 1;
+    }
     if (bad > 0) {
         auto no_data = std::make_shared<std::vector<bool>>(volume.values.size());
         for (std::size_t i = 0; i < volume.values.size(); ++i) {
@@ -100,6 +104,7 @@ void finish_volume(Volume& volume) {
     // Which samples are missing changes the picture, too.
     for (std::size_t i = 0; bad > 0 && i < volume.values.size(); ++i)
         if (!volume.has_data(i)) checksum.add_missing(i);
+    if (volume.shown_labels) checksum.add(volume.shown_labels->at);
     volume.checksum = checksum.value();
 }
 

@@ -56,6 +56,12 @@ struct LabelTable {
     std::string number_of(const Label& label) const;
 };
 
+/// Labels by number: 1 + their place in a LabelTable; 0: none.
+struct ShownLabels {
+    std::vector<std::uint32_t> at;       ///< number per sample, in the order of `Volume::values`
+    std::vector<std::uint32_t> largest;  ///< numbers that occur, most samples first
+};
+
 /// A scalar volume. Every sample is finite: samples without data are replaced by `min_value`, counted and marked.
 struct Volume {
     VolumeGeometry geometry;
@@ -70,7 +76,10 @@ struct Volume {
     /// A value in the file's unit is `value_scale` times a sample: a power of two, 1 unless the values are too large or
     /// too small for products of floats. Scenes, `min_value`, and everything in the engine use the samples' unit.
     double value_scale = 1;
-    std::shared_ptr<const LabelTable> labels;  ///< set if the samples are labels that the reader recognised
+    std::shared_ptr<const LabelTable> labels;  ///< set by load_volume if the samples are labels (labels_of)
+    /// Only of drawn_labels(). `values` is then 1 where a label is shown, else 0; its range counts as 0 to 1 even if
+    /// all are equal.
+    std::shared_ptr<const ShownLabels> shown_labels;
     std::string geometry_source;     ///< the header's fields that define the geometry, e.g. "sform"; "none" if assumed
     std::string length_unit;         ///< the file's unit of length as its header names it; empty: none, mm are assumed
     std::string format;              ///< name of the format as its reader names it, e.g. "NRRD"; empty: none

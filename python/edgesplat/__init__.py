@@ -11,7 +11,7 @@ from ._core import DeviceLost, Error, Interrupted, SceneError, __version__, buil
 from ._renderer import Device, Movie, Picture, Renderer, Statistics, accuracy, list_devices, movie, render
 from ._scene import Camera, Key, Scene, scene_keys
 from ._view import View
-from ._volume import Extents, Quantity, Volume
+from ._volume import Extents, Label, Quantity, Volume
 
 __all__ = [
     "Camera",
@@ -21,6 +21,7 @@ __all__ = [
     "Extents",
     "Interrupted",
     "Key",
+    "Label",
     "Movie",
     "Picture",
     "Quantity",

@@ -25,6 +25,7 @@ class Volume:
         raw: str,
         spacing: _Triple | None,
         no_data: float | None,
+        label_names: str,
         /,
     ) -> Volume: ...
     @staticmethod
@@ -36,6 +37,7 @@ class Volume:
         name: str,
         value_scale: float,
         no_data: float | None,
+        label_names: str,
         /,
     ) -> Volume: ...
     @property
@@ -74,7 +76,9 @@ class Volume:
     def measure(
         self, iso_values: Sequence[float], /
     ) -> tuple[list[tuple[float, float]], list[tuple[float, float]]]: ...
-    def measure_labels(self) -> list[tuple[float, int, tuple[float, float]]]: ...
+    def measure_labels(self) -> list[tuple[Any, str, int, tuple[float, float]]]: ...
+    @property
+    def labels(self) -> list[tuple[int, str, list[float]]]: ...
 
 class Document:
     def __init__(self) -> None: ...

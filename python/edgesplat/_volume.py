@@ -57,6 +57,18 @@ class Quantity:
 
 
 @dataclass(frozen=True)
+class Label:
+    """A label of a segmentation."""
+
+    number: int
+    """The file's own number."""
+    name: str
+    """Empty if it has none."""
+    color: Triple
+    """The colour in which it is drawn, linear light."""
+
+
+@dataclass(frozen=True)
 class Extents:
     """Result of `Volume.measure`."""
 
@@ -82,6 +94,7 @@ class Volume:
         nibabel image.
 
     no_data: value of samples without data.
+    label_names: file with names and colours of labels, as ``--label-names``.
 
     Samples that are NaN, infinite, masked, or `no_data` contain no data: they are transparent and count in no
     statistics (`Volume.no_data`), with a warning.
@@ -103,6 +116,7 @@ class Volume:
         series: str | int = "",
         raw: str = "",
         no_data: float | None = None,
+        label_names: str | os.PathLike = "",
     ) -> None:
         lengths = None if spacing is None else _vector(spacing, "spacing")
         if lengths is not None and not np.all(lengths > 0):
@@ -116,7 +130,15 @@ class Volume:
                     raise Error(f"{key}: only for arrays; a file defines it")
             given = None if lengths is None else _triple(lengths)
             self._core = _core.Volume.load(
-                os.fspath(source), component, frame, level, str(series), raw, given, no_data
+                os.fspath(source),
+                component,
+                frame,
+                level,
+                str(series),
+                raw,
+                given,
+                no_data,
+                os.fspath(label_names),
             )
         else:
             for key, value in of_files.items():
@@ -128,7 +150,9 @@ class Volume:
             in_patient = found.patient if patient is None else bool(patient)
             array, scale = fitted(found.array)
             with np.errstate(over="ignore", invalid="ignore"):  # larger values become infinite; a warning reports them
-                self._core = _core.Volume.from_array(array, axes, at, in_patient, found.name, scale, no_data)
+                self._core = _core.Volume.from_array(
+                    array, axes, at, in_patient, found.name, scale, no_data, os.fspath(label_names)
+                )
         self._warn()
 
     def _warn(self) -> None:
@@ -149,7 +173,8 @@ class Volume:
     @property
     def array(self) -> np.ndarray:
         """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory. A float64 copy if the values are
-        above 1e15 or below 1e-15 in magnitude. Where there are no data: the smallest sample."""
+        above 1e15 or below 1e-15 in magnitude. Where there are no data: the smallest sample. Labels with numbers above
+        2^24 are stored as their places in `labels`, from 0."""
         return self._core.array if self._core.value_scale == 1 else self._core.array * self._core.value_scale
 
     @property
@@ -228,10 +253,16 @@ class Volume:
         volumes, surfaces = self._core.measure([float(value) for value in values])
         return Extents(tuple(Quantity(*v) for v in volumes), tuple(Quantity(*s) for s in surfaces))
 
-    def measure_labels(self) -> dict[float, Quantity]:
-        """For a segmentation: the volume of each label, mm^3. The uncertainty is half the volume of the label's voxels
-        that have another label beside them."""
-        return {label: Quantity(*volume) for label, _, volume in self._core.measure_labels()}
+    @property
+    def labels(self) -> list[Label]:
+        """The labels of a segmentation, by ascending number; empty for measured values."""
+        return [Label(number, name, _triple(color)) for number, name, color in self._core.labels]
+
+    def measure_labels(self) -> dict[int, Quantity]:
+        """For a segmentation: the volume of each label by its number, mm^3; `labels` has the names. The uncertainty is
+        half the volume of the label's voxels that have another label beside them. The values of another volume count
+        as labels, too (then keys are float)."""
+        return {number: Quantity(*volume) for number, _, _, volume in self._core.measure_labels()}
 
     def __repr__(self) -> str:
         z, y, x = self.shape

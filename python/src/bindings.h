@@ -10,6 +10,7 @@
 #include <filesystem>
 #include <glm/glm.hpp>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -22,10 +23,18 @@ namespace edgesplat::python {
 namespace py = pybind11;
 using Triple = std::array<double, 3>;
 
+/// The latest preprocessed version of a volume: pictures of it need no new upload.
+struct LatestVersion {
+    std::mutex mutex;
+    VolumeSource source;
+    std::shared_ptr<const Volume> volume;
+};
+
 /// A volume that pictures, renderers and arrays share.
 struct SharedVolume {
     std::shared_ptr<const Volume> volume;
     VolumeSource source;  ///< how it was read; for an array only its name
+    std::shared_ptr<LatestVersion> latest = std::make_shared<LatestVersion>();
 };
 
 /// The part of `source` that says how the volume is read, without preprocessing.

@@ -25,6 +25,7 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     const VolumeSource asked = scene.volume;
     VolumeSource reading = reading_part(asked), none;
     reading.path = none.path = volume.source.path;
+    reading.label_names = none.label_names = volume.source.label_names;
     if (reading != none && reading != volume.source)
         fail(
             "volume: {} is already read; expected component, frame, level, series, raw, no_data and spacing as "
@@ -33,6 +34,10 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
             volume.source.path);
     scene.volume = volume.source;
     scene.volume.threshold = asked.threshold;
+    scene.volume.labels = volume.volume->shown_labels ? true : asked.labels;
+    scene.volume.only = asked.only;
+    scene.volume.hide = asked.hide;
+    if (!asked.label_names.empty()) scene.volume.label_names = asked.label_names;
     scene.volume.box_filter = asked.box_filter;
     scene.volume.crop_low = asked.crop_low;
     scene.volume.crop_high = asked.crop_high;

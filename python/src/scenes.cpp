@@ -3,6 +3,7 @@
 #include "engine/scene/scene_file.h"
 #include "engine/scene/scene_keys.h"
 #include "engine/scene/scene_presets.h"
+#include "engine/volume/labels.h"
 #include "python/src/bindings.h"
 
 namespace edgesplat::python {
@@ -67,13 +68,32 @@ Document read(const std::string& path) {
     return {read_scene_file(path), volume_folders(std::filesystem::path(path).parent_path())};
 }
 
-/// The volume after the scene's preprocessing: threshold, box filter, crop.
+/// The volume after the scene's preprocessing: threshold or labels, box filter, crop.
 SharedVolume prepared(const Document& self, const SharedVolume& given) {
-    VolumeSource source = self.scene.volume, plain = reading_part(source);
-    plain.checksum = source.checksum;
-    if (source == plain && source.checksum.empty()) return given;
     const py::gil_scoped_release release;
-    return {std::make_shared<const Volume>(preprocessed(*given.volume, source)), given.source};
+    SceneDocument scene = self.scene;
+    VolumeSource& asked = scene.volume;
+    if (asked.label_names.empty()) asked.label_names = given.source.label_names;
+    Volume named;
+    const Volume* volume = given.volume.get();
+    if (asked.label_names != given.source.label_names) {
+        named = *volume;
+        name_labels(named, find_file(asked.label_names, self.folders));
+        volume = &named;
+    }
+    const VolumeSource open = asked;
+    choose_labels(scene, *volume);
+    VolumeSource unchanged = reading_part(asked);
+    unchanged.labels = false;
+    if (!asked.labels) asked.labels = false;
+    if (asked == unchanged && !(volume->labels && has_ranks(*volume->labels))) return given;
+    const std::lock_guard lock(given.latest->mutex);
+    if (!given.latest->volume || given.latest->source != asked) {
+        given.latest->source = asked;
+        asked.labels = open.labels;
+        given.latest->volume = std::make_shared<const Volume>(prepared_volume(scene, *volume));
+    }
+    return {given.latest->volume, given.source, given.latest};
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 // Volumes from files and arrays.
 #include "engine/error.h"
 #include "engine/measure/extents.h"
+#include "engine/scene/default_materials.h"
 #include "engine/scene/scene_document.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/io/samples.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
 #include "engine/volume/no_data.h"
 #include "engine/volume/packed_volume.h"
@@ -14,7 +17,7 @@ namespace {
 
 SharedVolume load(const std::string& path, std::optional<int> component, std::optional<int> frame,
                   std::optional<int> level, const std::string& series, const std::string& raw,
-                  const std::optional<Triple>& spacing, std::optional<double> no_data) {
+                  const std::optional<Triple>& spacing, std::optional<double> no_data, const std::string& label_names) {
     VolumeSource source;
     source.component = component;
     source.frame = frame;
@@ -22,6 +25,7 @@ SharedVolume load(const std::string& path, std::optional<int> component, std::op
     source.series = series;
     source.raw = raw;
     source.no_data = no_data;
+    source.label_names = label_names;
     if (spacing) source.spacing = vector(*spacing);
     source.path = path;
     return read_from(std::move(source), volume_folders({}));
@@ -43,10 +47,22 @@ glm::ivec3 dims_of(const py::array& array, const std::string& name) {
     return {side(2), side(1), side(0)};
 }
 
+/// The type of an array of integers that floats may not represent.
+std::optional<SampleType> wide_integer(const py::array& array) {
+    const char kind = array.dtype().kind();
+    const auto bytes = array.dtype().itemsize();
+    if (bytes != 4 && bytes != 8) return std::nullopt;
+    if (kind == 'i') return bytes == 4 ? SampleType::Int32 : SampleType::Int64;
+    if (kind == 'u') return bytes == 4 ? SampleType::UInt32 : SampleType::UInt64;
+    return std::nullopt;
+}
+
 /// A volume from an array. `array`: numbers with three axes z, y, x, any byte order and strides. `axes`: steps of a
-/// voxel along x, y and z, mm. `value_scale`: as of Volume.
+/// voxel along x, y and z, mm. `value_scale`: as of Volume. Integers that floats cannot represent keep their identity
+/// as in files.
 SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axes, const Triple& origin, bool patient,
-                        const std::string& name, double value_scale, std::optional<double> no_data) {
+                        const std::string& name, double value_scale, std::optional<double> no_data,
+                        const std::string& label_names) {
     Volume volume;
     volume.name = name;
     volume.stored_type = py::str(array.dtype());
@@ -55,10 +71,19 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
     for (int axis = 0; axis < 3; ++axis)
         volume.geometry.index_to_world_axes[axis] = vector(axes[static_cast<std::size_t>(axis)]);
     volume.geometry.origin = vector(origin);
-    volume.values.resize(volume.geometry.voxel_count());
-    // NumPy converts any array in one pass, directly into the volume's memory.
-    const py::array_t<float> target({array.shape(0), array.shape(1), array.shape(2)}, volume.values.data(), py::none());
-    py::module_::import("numpy").attr("copyto")(target, array, py::arg("casting") = "unsafe");
+    const auto type = wide_integer(array);
+    const py::module_ numpy = py::module_::import("numpy");
+    if (type) {
+        const py::array plain = numpy.attr("ascontiguousarray")(
+            array.attr("astype")(array.dtype().attr("newbyteorder")("="), py::arg("copy") = false));
+        detail::take_samples({.type = *type, .data = plain.data()}, volume);
+    } else {
+        volume.values.resize(volume.geometry.voxel_count());
+        // NumPy converts any array in one pass, directly into the volume's memory.
+        const py::array_t<float> target({array.shape(0), array.shape(1), array.shape(2)}, volume.values.data(),
+                                        py::none());
+        numpy.attr("copyto")(target, array, py::arg("casting") = "unsafe");
+    }
     const py::gil_scoped_release release;
     volume.value_scale = value_scale;
     if (no_data && declare_no_data(volume, *no_data) == 0) fail("{}: no_data: no sample is {}", name, *no_data);
@@ -66,6 +91,8 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
     fit_to_floats(volume);
     for (const SuspectedFill& fill : suspected_fill(volume))
         volume.warnings.push_back(text_of(fill, volume));
+    if (!volume.labels) volume.labels = labels_of(volume);
+    if (!label_names.empty()) name_labels(volume, label_names);
     VolumeSource source;
     source.path = name;
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
@@ -119,14 +146,33 @@ std::pair<std::vector<Numbers>, std::vector<Numbers>> measured(const SharedVolum
     });
 }
 
-/// Each label with its number of voxels and its volume, mm^3.
-std::vector<std::tuple<double, std::size_t, Numbers>> measured_labels(const SharedVolume& self) {
-    return without_lock([&] {
-        std::vector<std::tuple<double, std::size_t, Numbers>> all;
-        for (const measure::LabelExtent& extent : measure::measure_labels(*self.volume))
-            all.emplace_back(extent.label, extent.voxels, Numbers(extent.volume.value, extent.volume.uncertainty));
-        return all;
-    });
+/// A label's number: an int in Python.
+py::object number_of(const LabelTable& table, const Label& label) {
+    if (table.is_signed) return py::int_(static_cast<std::int64_t>(label.id));
+    return py::int_(label.id);
+}
+
+/// Number, name and colour (linear light) of each label; empty if the volume is no segmentation.
+std::vector<std::tuple<py::object, std::string, Triple>> labels(const SharedVolume& self) {
+    std::vector<std::tuple<py::object, std::string, Triple>> all;
+    const auto table = labels_of(*self.volume);
+    if (!table) return all;
+    const std::vector<glm::dvec3> colors = label_colors(*table);
+    for (std::size_t place = 0; place < table->labels.size(); ++place)
+        all.emplace_back(number_of(*table, table->labels[place]), table->labels[place].name, triple(colors[place]));
+    return all;
+}
+
+/// Each label's number and name, with its number of voxels and its volume, mm^3. A value of a volume that is no
+/// segmentation is its own number.
+std::vector<std::tuple<py::object, std::string, std::size_t, Numbers>> measured_labels(const SharedVolume& self) {
+    const auto extents = without_lock([&] { return measure::measure_labels(*self.volume); });
+    const auto table = labels_of(*self.volume);
+    std::vector<std::tuple<py::object, std::string, std::size_t, Numbers>> all;
+    for (const measure::LabelExtent& extent : extents)
+        all.emplace_back(table ? number_of(*table, extent.label) : py::float_(static_cast<double>(extent.label.value)),
+                         extent.label.name, extent.voxels, Numbers(extent.volume.value, extent.volume.uncertainty));
+    return all;
 }
 
 }  // namespace
@@ -141,12 +187,15 @@ VolumeSource reading_part(const VolumeSource& source) {
     part.level = source.level;
     part.spacing = source.spacing;
     part.no_data = source.no_data;
+    part.label_names = source.label_names;
     return part;
 }
 
 SharedVolume read_from(VolumeSource source, const std::vector<std::filesystem::path>& folders) {
     source.path = find_volume(source.path, folders);
-    Volume volume = load_source(source, {{}});
+    std::vector<std::filesystem::path> searched{{}};
+    searched.insert(searched.end(), folders.begin(), folders.end());
+    Volume volume = read_source(source, searched);
     // An absolute path stays valid wherever the picture is stored.
     if (!is_builtin(source.path)) source.path = std::filesystem::absolute(source.path).string();
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
@@ -160,6 +209,7 @@ void add_volumes(py::module_& module) {
         .def("suggest_iso_values", suggestions)
         .def("measure", measured)
         .def("measure_labels", measured_labels)
+        .def_property_readonly("labels", labels)
         .def_property_readonly("shape",
                                [](const SharedVolume& self) {
                                    const glm::ivec3& dims = self.volume->geometry.dims;

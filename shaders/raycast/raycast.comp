@@ -57,6 +57,7 @@ void main() {
     float light = 1.0, lit_at = -1e9, stale = 0.0;  // depth of the last lighting, and opacity drawn with it since
     float alpha_step = 0.0;            // opacity of a whole step in the current material
     vec4 color = vec4(0.0);            // lit colour
+    vec3 unlit = vec3(0.0);
     // Each loop does one kind of work: lavapipe runs both sides of an `if`, but skips an empty loop.
     for (int i = 1; i <= count;) {
         // Passes transparent and unchanged parts up to a segment (i - 1, i) that needs crossings or lighting.
@@ -83,7 +84,7 @@ void main() {
                 float weight = (1.0 - sum.a) * alpha_step;
                 // Matter of the smallest value is not there where samples contain no data.
                 if (NO_DATA == 1u) weight = from == lowest && is_missing(at(ray, t - 0.5 * step)) ? 0.0 : weight;
-                bool dark = LIGHT != LIGHT_NONE && stale + weight > STALE_LIGHT && t - 0.5 * step - lit_at >= STALE_WAY;
+                bool dark = LIGHT + LABELS != 0u && stale + weight > STALE_LIGHT && t - 0.5 * step - lit_at >= STALE_WAY;
                 found = changes || (was_visible && (dark || i == count || alpha_step == 0.0));
                 weight = found ? 0.0 : weight;
                 previous = found ? previous : current;
@@ -116,15 +117,16 @@ void main() {
             stale += weight;
             // Surfaces are lit at the crossing, independent of the sample positions.
             float here = entered ? a : 0.5 * (a + c);
-            bool dark = LIGHT != LIGHT_NONE && material.a > 0.0 && (entered || (stale > STALE_LIGHT && here - lit_at >= STALE_WAY));
+            bool dark = LIGHT + LABELS != 0u && material.a > 0.0 && (entered || (stale > STALE_LIGHT && here - lit_at >= STALE_WAY));
             // Matter that the volume's border cuts is lit with the border's normal.
             bool cut = !entered && lit_at < -1e8 && dot(ray.border, ray.border) > 0.0;
             IF_ANY(dark) {
-                light = light_on(cut ? ray.border : gradient(at(ray, here)), ray.u);
+                if (LIGHT != LIGHT_NONE) light = light_on(cut ? ray.border : gradient(at(ray, here)), ray.u);
+                unlit = color_at(from, at(ray, here));
                 lit_at = here;
                 stale = 0.0;
             }
-            color = vec4(light * material.rgb, 1.0);
+            color = vec4(light * (LABELS == 1u ? unlit : material.rgb), 1.0);
             sum += weight * color;
             alpha_step = opacity(material.a * ray.mm * step);
             entered = pieces > 1;

@@ -24,6 +24,7 @@ uint visible_mask;
 
 #include "shaders/common/opacity.glsl"
 #include "shaders/common/volume_sampling.glsl"
+#include "shaders/common/labels.glsl"
 
 // Clamps to the outermost samples.
 vec3 within_samples(vec3 p) { return clamp(p, vec3(0.0), vec3(dims - 1)); }
@@ -140,6 +141,16 @@ void read_scene() {
     dims = params.scene.dims;
     visible_mask = params.scene.visible_mask;
     for (uint j = 0u; j < ISO_COUNT; ++j) iso_values[j] = params.scene.iso[j];
+}
+
+// Unlit colour of a material at p.
+vec3 color_at(uint material, vec3 p) {
+    vec3 color = params.rays.materials[material].rgb;
+    if (LABELS == 1u) {
+        uint label = material == 0u ? 0u : label_near(ivec3(round(within_samples(p))));
+        color = label == 0u ? color : ColorsRef(params.rays.label_colors).at[label - 1u];
+    }
+    return color;
 }
 
 void write_pixel(ivec2 pixel, vec4 sum) {

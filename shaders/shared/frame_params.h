@@ -83,6 +83,8 @@ struct FrameParams {
     vec4 clip_remove[8];
     Address transfer;       // (TRANSFER_ROWS + 1) TransferRow; only with a transfer function
     Address values;         // (splat_count) float: classified value of each splat, scaled; only with a transfer function
+    Address labels;         // (splat_count) uint: label of each splat from 1 on, 0: none; only with labels
+    Address label_colors;   // (labels) vec3, linear light; only with labels
     // Only if sheets are summed tile by tile: tiles of TILE x TILE pixels, row by row, and chunks of sheets that are
     // drawn together.
     Address tile_rects;     // (splat_count) uvec2: tiles that a splat touches: x0 | y0 << 16, x1 | y1 << 16, half open
@@ -124,13 +126,16 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1564);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1580);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];
 };
 layout(buffer_reference, scalar, buffer_reference_align = 4) buffer FloatsRef {
     float at[];
+};
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer ColorsRef {
+    vec3 at[];
 };
 // Coherent: a workgroup reads counters that it has changed.
 layout(buffer_reference, scalar, buffer_reference_align = 4) coherent buffer CountersRef {

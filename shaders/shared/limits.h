@@ -139,7 +139,8 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_LOOPS, 41u)        /* 1: IF_ANY is a loop, 0: an `if` (drivers/if_any.glsl) */ \
     X(SPEC_TRACED, 42u)       /* 1: rays find some splats' faces */ \
     X(SPEC_NARROW, 43u)       /* 1: narrow kernels */ \
-    X(SPEC_NO_DATA, 44u)      /* 1: rays meet samples without data where matter would be drawn */
+    X(SPEC_NO_DATA, 44u)      /* 1: rays meet samples without data where matter would be drawn */ \
+    X(SPEC_LABELS, 45u)       /* 1: every label has its own colour */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

@@ -8,7 +8,7 @@ EDGESPLAT_SHARED_BEGIN
 EDGESPLAT_CONSTANT uint BIND_BRICKS = 3u;         // r8ui (z, y, x): distance in bricks to the nearest one that is not transparent
 EDGESPLAT_CONSTANT uint BIND_BRICK_SCRATCH = 4u;  // r8ui: intermediate distances
 
-EDGESPLAT_CONSTANT uint BIND_RAYS = 9u;          // RaycastBlock
+EDGESPLAT_CONSTANT uint BIND_RAYS = 10u;         // RaycastBlock
 
 EDGESPLAT_CONSTANT uint BRICK_SHIFT = 2u;  // bricks of 4^3 voxels: fastest on lavapipe, 8^3 takes 5-13 % longer
 EDGESPLAT_CONSTANT uint BRICK_FAR = 255u;  // sentinel for larger distances between bricks
@@ -40,6 +40,7 @@ struct RayParams {
     float step;           // voxels
     float pad;
     Address pixels;       // (size.y, size.x) vec4
+    Address label_colors; // (labels) vec3, linear light; only with labels
 };
 
 #ifdef __cplusplus
@@ -55,6 +56,6 @@ EDGESPLAT_SHARED_END
 #ifdef __cplusplus
 static_assert(offsetof(edgesplat::shader::RayParams, index_to_world) == 64);
 static_assert(offsetof(edgesplat::shader::RayParams, materials) == 168);
-static_assert(sizeof(edgesplat::shader::RayParams) == 456);
+static_assert(sizeof(edgesplat::shader::RayParams) == 464);
 #endif
 #endif

@@ -22,6 +22,7 @@ struct SceneParams {
     vec4 clip_remove[8];
     Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; only with a transfer function
     Address values;        // (splat_count) float: classified value of each splat, scaled; only with a transfer function
+    Address labels;        // (splat_count) uint: label of each splat from 1 on, 0: none; only with labels
     ivec3 core_low;          // first voxel that becomes a splat
     ivec3 core_size;         // number of these voxels along each axis
     ivec3 block_origin;      // position of the images' first voxel in the volume
@@ -48,7 +49,7 @@ EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 464);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 472);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

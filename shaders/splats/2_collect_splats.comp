@@ -25,6 +25,7 @@ ivec3 dims;
 #include "shaders/common/clip.glsl"
 #include "shaders/common/trilinear.glsl"
 #include "shaders/common/transfer.glsl"
+#include "shaders/common/labels.glsl"
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/splats/classified_value.glsl"
@@ -66,6 +67,7 @@ void main() {
             if (visible) {
                 if (write == 1u) {
                     if (TRANSFER == 1u) ClassifiedRef(params.scene.values).at[out_at] = value;
+                    if (LABELS == 1u) UintsRef(params.scene.labels).at[out_at] = material == 0u ? 0u : label_near(p);
                     uvec3 at = uvec3(p + params.scene.block_origin), whole = uvec3(params.scene.volume_dims);
                     splats.at[out_at] = Splat(at.x + whole.x * (at.y + whole.y * at.z), 0u, material << 28);
                 }

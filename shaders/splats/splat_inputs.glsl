@@ -6,6 +6,8 @@
 #include "shaders/footprints/selected_footprint.glsl"
 #include "shaders/footprints/kernel.glsl"
 
+layout(constant_id = SPEC_LABELS) const uint LABELS = 0u;
+
 struct SplatInputs {
     vec3 from_eye;         // voxel centre minus eye, index space
     vec4 color_sigma;      // payload, extinction per mm
@@ -34,6 +36,10 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
     else
         material = params.frame.materials[splat.edge >> 28];
+    if (LABELS == 1u) {
+        uint label = UintsRef(params.frame.labels).at[number];
+        material.rgb = label == 0u ? material.rgb : ColorsRef(params.frame.label_colors).at[label - 1u];
+    }
     bool through = (params.frame.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
     if (FACES) material.a *= through ? border_weight(ivec3(round(p.position + params.frame.anchor))) : 1.0;
     // The outward normal points to lower values, on either side of the surface.

@@ -127,6 +127,27 @@ TEST_F(FlyTest, ChoosesLookByName) {
         "builtin:phantom:32");
 }
 
+TEST_F(FlyTest, ShowsAndHidesLabels) {
+    std::ofstream file(folder_ / "labels.nrrd", std::ios::binary);
+    file << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n\n";
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x) {
+                const int in = std::min({x, y, z, 23 - x, 23 - y, 23 - z});
+                file.put(static_cast<char>(in < 3 ? 0 : x < 8 ? 2 : x < 16 ? 5 : 9));
+            }
+    file.close();
+    fly("size 900 1000\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
+        "settle\nexpect error == none\npicture some.png\nsave some.toml\nkey Ctrl+Z\nframes 2\nsettle\n"
+        "picture again.png\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
+        "expect iso > 0\nsave numbers.toml\n",
+        "labels.nrrd");
+    EXPECT_THAT(text_of(folder_ / "some.toml"), HasSubstr("hide = [\"5\"]"));
+    EXPECT_THAT(text_of(folder_ / "numbers.toml"), HasSubstr("labels = false"));
+    EXPECT_LT(compare_images(image("all.png"), image("some.png")).psnr, 40);
+    EXPECT_GT(compare_images(image("all.png"), image("again.png")).psnr, 60);
+}
+
 TEST_F(FlyTest, ResizesAndMinimises) {
     fly("settle\nsize 700 500\nsettle\nexpect finished == yes\nscreenshot large.png\nsize 0 0\nframes 5\nsize 333 241\n"
         "settle\nexpect finished == yes\nscreenshot small.png\nkey Tab\nexpect panels == off\nsettle\nkey F1\n"

@@ -171,11 +171,37 @@ TEST(Measure, CountsLabels) {
     finish_volume(volume);
     const std::vector<LabelExtent> labels = measure_labels(volume);
     ASSERT_EQ(labels.size(), 3);
-    EXPECT_EQ(labels[1].label, 3);
+    EXPECT_EQ(labels[1].number, "3");
     EXPECT_EQ(labels[1].voxels, 1);
-    EXPECT_EQ(labels[2].label, 7);
+    EXPECT_EQ(labels[2].label.value, 7);
     EXPECT_EQ(labels[2].volume.value, 32);
     EXPECT_EQ(labels[2].volume.uncertainty, 16);  // each of the four has another label above it
+}
+
+TEST(Measure, CutsLabelsAtClipPlanes) {
+    Volume volume;
+    volume.geometry.dims = {21, 19, 17};
+    volume.geometry.index_to_world_axes = glm::dmat3(2.0);
+    for (int z = 0; z < 17; ++z)
+        for (int y = 0; y < 19; ++y)
+            for (int x = 0; x < 21; ++x) {
+                const int in = std::min({x, y, z, 20 - x, 18 - y, 16 - z});
+                volume.values.push_back(in < 2 ? 0.0F : in < 5 ? 3.0F : 8.0F);
+            }
+    finish_volume(volume);
+    const std::vector<LabelExtent> whole = measure_labels(volume);
+    const glm::dvec3 middle = volume.geometry.center();
+    for (const glm::dvec3& normal : {glm::dvec3(0, -1, 0), glm::dvec3(1, 0, 0), glm::dvec3(1, 1e-6, 0),
+                                     glm::dvec3(1, 2, -3), glm::dvec3(1, 1, 0)}) {
+        const std::vector<LabelExtent> half = measure_labels(volume, {.keep = {{middle, normal}}, .remove = {}});
+        for (std::size_t i = 0; i < whole.size(); ++i) {
+            EXPECT_NEAR(half[i].volume.value, whole[i].volume.value / 2, 1e-3 * whole[i].volume.value);
+            EXPECT_LT(half[i].volume.uncertainty, whole[i].volume.uncertainty);
+        }
+    }
+    const std::vector<LabelExtent> none =
+        measure_labels(volume, {.keep = {{middle, {0, 0, 1}}, {middle, {0, 0, -1}}}, .remove = {}});
+    EXPECT_TRUE(none.empty() || none[0].volume.value < 1e-6);
 }
 
 TEST(Measure, SnapsPlacesToNearestSurface) {

@@ -1,13 +1,13 @@
 // Looks by name, surfaces by standard deviations, and recognition of segmentations.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <functional>
 
 #include "engine/error.h"
 #include "engine/scene/default_materials.h"
 #include "engine/scene/scene_document.h"
 #include "engine/scene/scene_presets.h"
-#include "engine/scene/transfer_function.h"
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/labels.h"
 
@@ -91,38 +91,113 @@ TEST(SceneLooks, PlaceSurfacesByStandardDeviations) {
 TEST(SceneLooks, RecogniseSegmentations) {
     const Volume raw = segmentation();
     SceneDocument d;
-    Volume volume = raw;
-    recognise_labels(d, volume);
+    const Volume volume = prepared_volume(d, raw);
     EXPECT_EQ(d.volume.labels, true);
     const Scene scene = resolve_scene(d, volume);
     EXPECT_THAT(scene.iso_values, ElementsAre(0.5));
-    for (const int label : {2, 5, 9}) {
-        const TransferPoint drawn = transfer_at(scene.transfer, double{1 + float(label) / 1024});
-        EXPECT_LT(glm::length(drawn.color - default_label_color(static_cast<std::size_t>(label))), 1e-3) << label;
-        EXPECT_GT(drawn.extinction, 1) << label;
-    }
-    EXPECT_EQ(transfer_at(scene.transfer, 0).extinction, 0);
+    ASSERT_EQ(scene.label_colors.size(), 4U);
+    for (const std::size_t place : {1, 2, 3})
+        EXPECT_EQ(scene.label_colors[place],
+                  default_label_color(static_cast<std::size_t>(volume.labels->labels[place].value)));
+    EXPECT_GT(scene.materials.back().extinction, 1);
+    EXPECT_EQ(scene.materials.front().extinction, 0);
     // Loading with the source that the picture records gives the same volume.
     VolumeSource source;
     source.labels = true;
     EXPECT_EQ(preprocessed(raw, source).checksum, volume.checksum);
+    // So does the scene with everything written out.
+    SceneDocument all = resolved(d, volume, scene, {}, {});
+    EXPECT_THAT(all.iso_values, IsEmpty());
+    const Volume again = prepared_volume(all, raw);
+    EXPECT_EQ(again.checksum, volume.checksum);
+    EXPECT_EQ(resolve_scene(all, again).label_colors, scene.label_colors);
+    EXPECT_EQ(resolve_scene(all, again).materials, scene.materials);
 }
 
-TEST(SceneLooks, ExplicitSettingsDisableRecognition) {
-    const auto left = [](const std::function<void(SceneDocument&)>& said) {
-        SceneDocument d;
-        said(d);
-        Volume volume = segmentation();
-        const std::uint64_t before = volume.checksum;
-        recognise_labels(d, volume);
-        return volume.checksum == before;
+TEST(SceneLooks, AcceptChecksumsOfSamplesAndOfLabels) {
+    const Volume raw = segmentation();
+    SceneDocument d;
+    const Volume drawn = prepared_volume(d, raw);
+    for (const std::uint64_t checksum : {raw.checksum, drawn.checksum}) {
+        SceneDocument open;
+        open.volume.checksum = fmt::format("{:016x}", checksum);
+        EXPECT_EQ(prepared_volume(open, raw).checksum, drawn.checksum);
+    }
+    SceneDocument other;
+    other.volume.checksum = "0123456789abcdef";
+    EXPECT_THROW(prepared_volume(other, raw), Error);
+}
+
+/// The samples 0 or 1 of the drawn labels, or the file's numbers.
+Volume prepared(const std::function<void(SceneDocument&)>& said) {
+    SceneDocument d;
+    said(d);
+    return prepared_volume(d, segmentation());
+}
+
+TEST(SceneLooks, NumbersInSceneDisableLabels) {
+    EXPECT_TRUE(prepared([](SceneDocument&) {}).shown_labels);
+    EXPECT_TRUE(prepared([](SceneDocument& d) { d.output.compare_raycast = true; }).shown_labels);
+    EXPECT_TRUE(prepared([](SceneDocument& d) { d.materials = {{.extinction = 3}}; }).shown_labels);
+    EXPECT_FALSE(prepared([](SceneDocument& d) { d.iso_values = {1.5}; }).shown_labels);
+    EXPECT_FALSE(prepared([](SceneDocument& d) { d.volume.labels = false; }).shown_labels);
+    EXPECT_FALSE(prepared([](SceneDocument& d) { d.volume.threshold = 3; }).shown_labels);
+    EXPECT_FALSE(prepared([](SceneDocument& d) { apply_look(d, "ct-bone"); }).shown_labels);
+    // Iso-values of labels are about the file's numbers.
+    const auto iso = [](SceneDocument& d) {
+        d.volume.labels = true;
+        d.iso_values = {7.5};
     };
-    EXPECT_FALSE(left([](SceneDocument&) {}));
-    EXPECT_TRUE(left([](SceneDocument& d) { d.iso_values = {1.5}; }));
-    EXPECT_TRUE(left([](SceneDocument& d) { d.volume.labels = false; }));
-    EXPECT_TRUE(left([](SceneDocument& d) { d.volume.threshold = 3; }));
-    EXPECT_TRUE(left([](SceneDocument& d) { d.output.compare_raycast = true; }));
-    EXPECT_TRUE(left([](SceneDocument& d) { apply_look(d, "ct-bone"); }));
+    EXPECT_EQ(prepared(iso).max_value, 9);
+}
+
+TEST(SceneLooks, ChooseLabelsByNumberAndName) {
+    const Volume raw = [] {
+        Volume volume = segmentation();
+        auto table = *labels_of(volume);
+        table.labels[1].name = "Left Lung";
+        table.labels[2].name = "right lung";
+        table.labels[3].name = "heart, with vessels";
+        volume.labels = std::make_shared<const LabelTable>(table);
+        return volume;
+    }();
+    const auto shown = [&](std::vector<std::string> only, std::vector<std::string> hide) {
+        SceneDocument d;
+        d.volume.only = std::move(only);
+        d.volume.hide = std::move(hide);
+        const Volume volume = prepared_volume(d, raw);
+        std::vector<float> values;
+        for (const std::uint32_t number : volume.shown_labels->largest)
+            values.push_back(volume.labels->labels[number - 1].value);
+        std::ranges::sort(values);
+        return values;
+    };
+    EXPECT_THAT(shown({"5"}, {}), ElementsAre(5));
+    EXPECT_THAT(shown({"left LUNG"}, {}), ElementsAre(2));
+    EXPECT_THAT(shown({"*lung"}, {}), ElementsAre(2, 5));
+    EXPECT_THAT(shown({"heart, with vessels"}, {}), ElementsAre(9));
+    EXPECT_THAT(shown({"2,right lung"}, {}), ElementsAre(2, 5));
+}
+
+TEST(SceneLooks, RefuseUnknownLabels) {
+    const auto refusal = [](const std::function<void(SceneDocument&)>& said) -> std::string {
+        try {
+            prepared(said);
+        } catch (const Error& error) {
+            return error.what();
+        }
+        return "";
+    };
+    EXPECT_THAT(
+        refusal([](SceneDocument& d) { d.volume.only = {"3"}; }),
+        testing::HasSubstr("volume.only (--only): segmentation has no label '3'; its 4 labels have numbers, from "
+                           "0 to 9, and no names"));
+    EXPECT_THAT(refusal([](SceneDocument& d) { d.volume.hide = {"2,5,9"}; }), testing::HasSubstr("is left"));
+    EXPECT_THAT(refusal([](SceneDocument& d) {
+                    d.volume.only = {"2"};
+                    d.iso_values = {3};
+                }),
+                testing::HasSubstr("chooses labels, but iso_values (--iso)"));
 }
 
 TEST(SceneLooks, NeighbouringLabelsHaveDistinctColours) {

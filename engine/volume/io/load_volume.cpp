@@ -416,8 +416,10 @@ void detail::add_value_notes(Volume& volume) {
                         volume.in_file_unit(std::ldexp(1.0, std::ilogb(largest) - 23))));
     for (const SuspectedFill& fill : suspected_fill(volume))
         volume.warnings.push_back(text_of(fill, volume));
-    if (const std::size_t count = labels_of(volume).size(); count > 0)
-        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.", count));
+    if (!volume.labels) volume.labels = labels_of(volume);
+    if (volume.labels)
+        volume.notes.push_back(fmt::format("Labels of a segmentation: {} whole numbers without transitions.",
+                                           volume.labels->labels.size()));
 }
 
 InnerPath split_inner(const std::string& path) {

@@ -179,8 +179,9 @@ std::optional<double> millimetres_in(std::string_view unit) {
         Unit{"km", 1e6},         Unit{"kilometer", 1e6},  Unit{"um", 1e-3},       Unit{"\xc2\xb5m", 1e-3},
         Unit{"\xce\xbcm", 1e-3}, Unit{"\xb5m", 1e-3},     Unit{"micron", 1e-3},   Unit{"micrometer", 1e-3},
         Unit{"nm", 1e-6},        Unit{"nanometer", 1e-6}, Unit{"pm", 1e-9},       Unit{"picometer", 1e-9},
-        Unit{"angstrom", 1e-7},  Unit{"\xc3\xa5", 1e-7},   Unit{"\xc3\x85", 1e-7},  Unit{"in", kInch},      Unit{"inch", kInch},
-        Unit{"inche", kInch},    Unit{"\\u00b5m", 1e-3},  Unit{"ft", 12 * kInch}, Unit{"foot", 12 * kInch}};
+        Unit{"angstrom", 1e-7},  Unit{"\xc3\xa5", 1e-7},  Unit{"\xc3\x85", 1e-7}, Unit{"in", kInch},
+        Unit{"inch", kInch},     Unit{"inche", kInch},    Unit{"\\u00b5m", 1e-3}, Unit{"ft", 12 * kInch},
+        Unit{"foot", 12 * kInch}};
     for (const Unit& known : kUnits)
         if (known.name == name) return known.millimetres;
     return std::nullopt;
