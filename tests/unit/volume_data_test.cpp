@@ -48,9 +48,9 @@ TEST_F(Data, VolumesHaveExpectedDimsSpacingAndRange) {
         {"odd/nifti/anatomical.nii", {33, 41, 25}, {2, 2, 2}, -610, 30393, 8401.07, "int16"},
         {"odd/nifti/with_extension.nii.gz", {161, 191, 151}, {1, 1, 1}, 0, 1, 0.317, "uint8"},
         {"odd/nifti/air.hdr.gz", {79, 67, 64}, {2.389754, 2.366486, 2.385232}, 0, 92.5539, 33.65, "float32"},
-        {"odd/minc/small.mnc", {29, 28, 18}, {7, 8, 9}, 0.1185331, 92.8768997, 31.2128, "float32"},
-        {"odd/minc/tiny.mnc", {20, 20, 10}, {2, 2, 2}, 0.2078431, 0.7490196, 0.6060, "float32"},
-        {"odd/minc/minc1-no-att.mnc", {20, 20, 10}, {1, 1, 1}, 0.2078431, 0.7490196, 0.6060, "float32"},
+        {"odd/minc/small.mnc", {29, 28, 18}, {7, 8, 9}, 0.1185331, 92.8768997, 31.2128, "int16"},
+        {"odd/minc/tiny.mnc", {20, 20, 10}, {2, 2, 2}, 0.2078431, 0.7490196, 0.6060, "uint8"},
+        {"odd/minc/minc1-no-att.mnc", {20, 20, 10}, {1, 1, 1}, 0.2078431, 0.7490196, 0.6060, "uint8"},
         {"odd/dicom/MR_small.dcm", {64, 64, 1}, {0.3125, 0.3125, 0.8}, 127, 2145, 518.9, "int16"},
     };
     for (const auto& c : cases) {
