@@ -195,6 +195,48 @@ TEST_F(Dicom, RefusesHeadersThatContradictThemselves) {
                 HasSubstr("begins with 7, expected 0, or the z of ImagePositionPatient (0020,0032), 5"));
 }
 
+TEST_F(Dicom, ChoosesAmongStacksOfOneFile) {
+    const auto frame = [](double z, const char* stack) {
+        DicomData content, groups = frame_at(z);
+        content.text(0x00209056, "SH", stack);
+        return groups.sequence(0x00209111, {content});
+    };
+    const auto path = write_data("a.dcm", frames_of(5)
+                                              .sequence(0x52009229, {shared()})
+                                              .sequence(0x52009230, {frame(0, "1"), frame(90, "2"), frame(1, "1"),
+                                                                     frame(93, "2"), frame(2, "1")}));
+    EXPECT_THAT(refusal(path), AllOf(HasSubstr("--series"), HasSubstr("stack 2"), HasSubstr("2 frames in 1 file")));
+    EXPECT_EQ(load_volume(path, {.series = "0"}).geometry.dims.z, 3);
+    EXPECT_EQ(load_volume(path, {.series = "1"}).geometry.spacing().z, 3);
+}
+
+TEST_F(Dicom, UltrasoundVolumesHavePlacesOfTheirOwn) {
+    std::vector<DicomData> frames;
+    for (const double z : {2.0, 0.0}) {
+        DicomData position, frame;
+        std::string three;
+        for (const double number : {5.0, 6.0, z}) {
+            DicomData one;
+            three += one.f64(0x00209301, number).bytes().substr(8);
+        }
+        position.raw(0x00209301, "FD", three);
+        frames.push_back(frame.sequence(0x0020930e, {position}));
+    }
+    DicomData groups = shared(), orientation;
+    std::string six;
+    for (const double number : {0.0, 1.0, 0.0, 1.0, 0.0, 0.0}) {
+        DicomData one;
+        six += one.f64(0x00209302, number).bytes().substr(8);
+    }
+    orientation.raw(0x00209302, "FD", six);
+    groups.without(0x00209116).sequence(0x0020930f, {orientation});
+    const auto volume =
+        load_volume(write_data("a.dcm", frames_of(2).sequence(0x52009229, {groups}).sequence(0x52009230, frames)));
+    EXPECT_EQ(volume.geometry.index_to_world_axes[2], glm::dvec3(0, 0, -2));
+    EXPECT_EQ(volume.geometry.origin, glm::dvec3(5, 6, 2));
+    EXPECT_FALSE(volume.in_patient);
+}
+
 TEST_F(Dicom, PaddingIsNoDataAndModalityTablesAreApplied) {
     const auto volume =
         load_volume(write_data("a.dcm", slice(0, -2).raw(0x00280120, "SS", DicomData::integers({-1}, 2))));

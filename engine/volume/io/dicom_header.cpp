@@ -35,11 +35,12 @@ bool is_representation(std::string_view vr) {
 
 /// Sequences that the reader looks into. Without representations, a sequence of known length looks like any value.
 bool is_known_sequence(DicomTag tag) {
-    static constexpr std::array kTags{
-        0x00041220U, 0x00089215U, 0x00180026U, 0x00186011U, 0x00189076U, 0x00189114U, 0x00189117U, 0x00189118U,
-        0x00189226U, 0x00189325U, 0x00189329U, 0x00189751U, 0x00189807U, 0x00209111U, 0x00209113U, 0x00209116U,
-        0x00209221U, 0x00209222U, 0x00209253U, 0x0020930eU, 0x0020930fU, 0x00283000U, 0x00289110U, 0x00289132U,
-        0x00289145U, 0x00409096U, 0x004008eaU, 0x00540022U, 0x00620002U, 0x0062000aU, 0x52009229U, 0x52009230U};
+    static constexpr std::array kTags{0x00041220U, 0x00089215U, 0x00180026U, 0x00186011U, 0x00189076U, 0x00189112U,
+                                      0x00189114U, 0x00189115U, 0x00189117U, 0x00189118U, 0x00189226U, 0x00189325U,
+                                      0x00189329U, 0x00189751U, 0x00189807U, 0x00209111U, 0x00209113U, 0x00209116U,
+                                      0x00209221U, 0x00209222U, 0x00209253U, 0x0020930eU, 0x0020930fU, 0x00283000U,
+                                      0x00289110U, 0x00289132U, 0x00289145U, 0x00409096U, 0x004008eaU, 0x00540022U,
+                                      0x00620002U, 0x0062000aU, 0x52009229U, 0x52009230U};
     return std::ranges::find(kTags, tag) != kTags.end();
 }
 

@@ -360,6 +360,9 @@ std::string DicomPixels::decoded(std::size_t frame, DicomLayout& layout) const {
                  (layout.bits_per_frame() + 7) / 8);
         return whole;
     }
+    // A JFIF file that is called RGB is YBR, as JFIF says.
+    if (coding == DicomCoding::Jpeg && layout.photometric == "RGB" && fragments.front().substr(0, 32).find("JFIF") == 6)
+        layout.photometric = "YBR_FULL";
     return gdcm_decoded(file_.path(), file_.transfer_syntax(), fragments, layout);
 }
 

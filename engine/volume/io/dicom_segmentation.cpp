@@ -139,9 +139,11 @@ DicomSegmentPlanes planes_of(const std::string& name, const DicomImage& image) {
         });
     };
     double spacing = 0;
-    for (const double candidate : {declared, least, first.thickness})
-        if (spacing == 0 && candidate > same && candidate < 1.5 * least && fits(total / std::round(total / candidate)))
-            spacing = total / std::round(total / candidate);
+    for (const double candidate : {declared, least, first.thickness}) {
+        if (spacing != 0 || !(candidate > same) || !(candidate < 1.5 * least)) continue;
+        const double even = total / std::round(total / candidate);
+        if (std::abs(even - candidate) <= 0.02 * candidate && fits(even)) spacing = even;
+    }
     if (spacing == 0)
         fail(
             "{}: the planes of the segmentation are not evenly spaced: the least gap is {:.6g} mm, "
@@ -216,6 +218,7 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
     std::vector<double> samples;
     std::map<std::pair<int, int>, std::size_t> overlaps;
     const bool fractions = fractional && only;
+    std::vector<int> unnamed;
     for (std::size_t i = 0; i < image.frames.size(); ++i) {
         report(options, 0.2 + 0.7 * static_cast<double>(i) / static_cast<double>(image.frames.size()),
                "reading segments");
@@ -234,8 +237,7 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
                     label.id = static_cast<std::uint64_t>(found);
                     label.value = static_cast<float>(found);
                     segments.labels.emplace(found, label);
-                    volume.warnings.push_back(
-                        fmt::format("Label {} occurs, but SegmentSequence (0062,0002) lacks it.", found));
+                    unnamed.push_back(found);
                 }
                 if (!only || found == *only) target[v] = static_cast<float>(found);
             } else if (fractions) {
@@ -247,6 +249,9 @@ Volume load_dicom_segmentation(const std::string& name, const DicomFile& file, c
             }
         }
     }
+    if (!unnamed.empty())
+        volume.warnings.push_back(fmt::format("{} labels occur that SegmentSequence (0062,0002) lacks, such as {}.",
+                                              unnamed.size(), unnamed.front()));
     for (const auto& [pair, count] : overlaps)
         volume.warnings.push_back(fmt::format(
             "Segments {} and {} overlap in {} voxels, which show {}; --component 0..{} reads one segment ({}).",

@@ -75,14 +75,17 @@ std::vector<DicomCandidate> candidates_of(const std::vector<DicomImage>& images,
         const auto is_localizer = [&](std::size_t i) { return images[i].localizer; };
         const bool mixed = std::ranges::any_of(members, is_localizer) && !std::ranges::all_of(members, is_localizer);
         std::vector<std::string> left_out;
-        std::set<std::string> stacks;
+        std::map<std::string, glm::dvec3> stacks;
+        bool spread = false;  // some stack has several positions
         std::size_t count = 0;
         for (const std::size_t i : members)
             for (const DicomFrame& frame : images[i].frames) {
-                stacks.insert(frame.plane.stack);
+                const glm::dvec3 position = frame.position.value_or(glm::dvec3(0));
+                const auto [stack, is_new] = stacks.emplace(frame.plane.stack, position);
+                spread = spread || glm::length(stack->second - position) > 1e-3;
                 ++count;
             }
-        const bool by_stack = stacks.size() < count;  // otherwise every frame is a stack
+        const bool by_stack = spread && stacks.size() < count;  // some files number slices so
         const std::size_t before = all.size();
         for (const std::size_t i : members) {
             if (mixed && images[i].localizer) {
