@@ -1,6 +1,6 @@
 // Zarr hierarchies. The first byte is the kind: '2' and '3', an array by that version; 'o', an OME-Zarr image of one
-// level; 'z', a zip archive. The files follow, separated by empty lines: attributes of the group (only 'o'), metadata of
-// the array, and the chunk, which is found under several names. blosc, zstd and lz4 are not instrumented.
+// level; 'z', a zip archive. The files follow, separated by empty lines: attributes of the group (only 'o'), metadata
+// of the array, and the chunk, which is found under several names. blosc, zstd and lz4 are not instrumented.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

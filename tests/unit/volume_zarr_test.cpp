@@ -49,6 +49,20 @@ TEST_F(Zarr, ReadsPlaceFillValueAndLevels) {
     EXPECT_THAT(refusal(write("a.nrrd", "NRRD0004\n"), {.level = 0}), HasSubstr("only OME-Zarr images have levels"));
 }
 
+TEST_F(Zarr, KeepsNamesAndColoursOfLabels) {
+    write_level("0");
+    write("a.zarr/.zattrs", R"({"multiscales": [{"axes": ["z", "y", "x"], "datasets": [{"path": "0"}]}],
+        "image-label": {"colors": [{"label-value": 11, "rgba": [255, 0, 0, 255]}],
+                        "properties": [{"label-value": 11, "name": "liver"}]}})");
+    const auto volume = load_volume(file("a.zarr"));
+    ASSERT_NE(volume.labels, nullptr);
+    ASSERT_EQ(volume.labels->labels.size(), 9U);
+    const auto& liver = volume.labels->labels[4];  // 0, 1, 7, 10, 11, ...
+    EXPECT_EQ(liver.id, 11U);
+    EXPECT_EQ(liver.name, "liver");
+    EXPECT_EQ(liver.color, glm::dvec3(1, 0, 0));
+}
+
 TEST_F(Zarr, RefusesWhatItCannotRead) {
     write_image(R"({"type": "scale", "scale": [3, 0, 1]})");
     EXPECT_THAT(refusal(file("a.zarr")), HasSubstr("'scale' of axis y is 0: expected a finite number that is not 0"));
