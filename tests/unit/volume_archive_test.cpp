@@ -10,6 +10,7 @@ namespace {
 namespace fs = std::filesystem;
 using edgesplat::load_volume;
 using testing::AllOf;
+using testing::ContainsRegex;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -84,7 +85,8 @@ TEST_F(Archives, SeveralVolumesAreListed) {
     EXPECT_THAT(refusal(file("a.zip")), AllOf(HasSubstr("2 volumes"), HasSubstr(file("a.zip") + ":one/a.nrrd"),
                                               HasSubstr(file("a.zip") + ":two.vtk")));
     EXPECT_THAT(load_volume(file("a.zip") + ":one/a.nrrd").values, ElementsAre(1, 2, 3, 4));
-    EXPECT_THAT(refusal(file("a.zip") + ":two.vtk"), AllOf(HasSubstr("a.zip:two.vtk:NAME"), Not(HasSubstr("/tmp/"))));
+    EXPECT_THAT(refusal(file("a.zip") + ":two.vtk"),
+                AllOf(HasSubstr("a.zip:two.vtk:NAME"), Not(ContainsRegex("edgesplat-[A-Za-z0-9]{6}/"))));
     const auto inside = load_volume(file("a.zip") + ":two.vtk:b");
     EXPECT_THAT(inside.values, ElementsAre(3, 4));
     EXPECT_EQ(inside.name, file("a.zip") + ":two.vtk:b");
@@ -106,16 +108,20 @@ TEST_F(Archives, CompressedFilesOfAnyFormat) {
     EXPECT_EQ(load_volume(file("a.nrrd.gz")).name, file("a.nrrd.gz"));
     EXPECT_THAT(load_volume(gzip("without_ending", kNrrdOfFour)).values, ElementsAre(1, 2, 3, 4));
     EXPECT_THAT(load_volume(gzip("a.vtk.gz", kVtkOfTwo) + ":b").values, ElementsAre(3, 4));
-    EXPECT_THAT(refusal(file("a.vtk.gz")), AllOf(HasSubstr("a.vtk.gz:NAME"), Not(HasSubstr("edgesplat-"))));
+    EXPECT_THAT(refusal(file("a.vtk.gz")),
+                AllOf(HasSubstr("a.vtk.gz:NAME"), Not(ContainsRegex("edgesplat-[A-Za-z0-9]{6}/"))));
     EXPECT_THAT(load_volume(pack("a.zip", {{"a.nrrd.gz", content_of(file("a.nrrd.gz"))}})).values,
                 ElementsAre(1, 2, 3, 4));
     gzip("twice.gz", content_of(file("a.nrrd.gz")));
-    gzip("thrice.gz", content_of(file("twice.gz")));
-    EXPECT_THAT(refusal(file("thrice.gz")), HasSubstr("compressed more than twice"));
+    EXPECT_THAT(load_volume(file("twice.gz")).values, ElementsAre(1, 2, 3, 4));
     pack("b.zip", {{"c.tar.gz", content_of(pack("c.tar.gz", {{"a", kNrrdOfFour}}, ARCHIVE_FILTER_GZIP))}});
     EXPECT_THAT(refusal(file("b.zip")), HasSubstr("an archive in an archive"));
     const auto whole = content_of(file("a.vtk.gz"));
     EXPECT_THAT(refusal(write("b.vtk.gz", whole.substr(0, whole.size() / 2))), HasSubstr("b.vtk.gz"));
+    // Its checksum is compared.
+    auto damaged = whole;
+    damaged[whole.size() - 7] = static_cast<char>(damaged[whole.size() - 7] ^ 1);
+    EXPECT_THAT(refusal(write("c.vtk.gz", damaged)), HasSubstr("truncated or damaged gzip data"));
 }
 
 TEST_F(Archives, NamesInsideFiles) {

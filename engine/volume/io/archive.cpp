@@ -38,6 +38,8 @@ struct ArchiveReader {
     int check(int result) const {
         if (result == ARCHIVE_OK || result == ARCHIVE_WARN || result == ARCHIVE_EOF) return result;
         const char* reason = archive_error_string(in.get());
+        if (reason != nullptr && std::string_view(reason) == "Unrecognized archive format")
+            fail("{}: a compressed file without content", path);
         fail("{}: truncated or damaged archive or compressed file: {}", path,
              tidy(reason == nullptr ? "no reason is known" : reason));
     }
