@@ -6,16 +6,13 @@
 #include <array>
 #include <cmath>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <span>
 
 #include "apps/edgesplat/json_output.h"
 #include "apps/edgesplat/label_table.h"
 #include "apps/edgesplat/volume_options.h"
 #include "engine/volume/filters.h"
-#include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
 #include "engine/volume/value_text.h"
 
@@ -41,31 +38,6 @@ nlohmann::json affine(const edgesplat::VolumeGeometry& geometry) {
         rows.push_back({axes[0][row], axes[1][row], axes[2][row], geometry.origin[row]});
     rows.push_back({0.0, 0.0, 0.0, 1.0});
     return rows;
-}
-
-/// The labels of a segmentation, the largest first; null for other volumes.
-nlohmann::json labels_described(const Volume& volume) {
-    constexpr std::size_t kListed = 10;
-    std::vector<edgesplat::Label> labels;
-    if (volume.labels)
-        labels = volume.labels->labels;
-    else
-        for (const float value : edgesplat::labels_of(volume))
-            labels.push_back({.id = static_cast<std::uint64_t>(static_cast<std::int64_t>(value)), .value = value});
-    if (labels.empty()) return nullptr;
-    std::map<float, std::size_t> voxels;
-    for (std::size_t i = 0; i < volume.values.size(); ++i)
-        if (volume.has_data(i)) ++voxels[volume.values[i]];
-    std::ranges::stable_sort(labels, std::ranges::greater(), [&](const auto& label) { return voxels[label.value]; });
-    edgesplat::LabelTable numbers;
-    numbers.is_signed = !volume.labels || volume.labels->is_signed;
-    nlohmann::json json{{"count", labels.size()}, {"largest", nlohmann::json::array()}};
-    for (const auto& label : std::span(labels).first(std::min(labels.size(), kListed))) {
-        nlohmann::json entry{{"number", numbers.number_of(label)}, {"voxels", voxels[label.value]}};
-        if (!label.name.empty()) entry["name"] = label.name;
-        json["largest"].push_back(entry);
-    }
-    return json;
 }
 
 /// Properties of a packed volume, and the level from which iso-values are suggested.
@@ -104,7 +76,6 @@ nlohmann::json description(const Volume& volume, int bins) {
                      in_file_unit(static_cast<double>(volume.max_value))};
     json["mean"] = in_file_unit(mean_of(volume));
     json["no_data"] = volume.non_finite_count;
-    if (const auto labels = labels_described(volume); !labels.is_null()) json["labels"] = labels;
     json["checksum"] = fmt::format("{:016x}", volume.checksum);
     if (!volume.packed) json["samples_crc32"] = fmt::format("{:08x}", samples_crc32(volume));
     json["notes"] = volume.notes;
@@ -154,13 +125,6 @@ void print_packed(const nlohmann::json& json) {
     }
 }
 
-void print_labels(const nlohmann::json& labels) {
-    std::cout << fmt::format("labels      {}, the largest:\n", labels["count"].get<std::size_t>());
-    for (const auto& label : labels["largest"])
-        std::cout << fmt::format("  {:>12} {:>11} voxels  {}\n", label["number"].get<std::string>(),
-                                 label["voxels"].get<std::size_t>(), label.value("name", ""));
-}
-
 /// "sform (code 2), in mm": where the geometry comes from.
 std::string place_text(const nlohmann::json& json) {
     const auto unit = json["length_unit"].get<std::string>();
@@ -192,7 +156,6 @@ void print(const nlohmann::json& json, const std::array<std::string, 2>& range_e
                              json.contains("samples_crc32")
                                  ? ", CRC-32 of the samples " + json["samples_crc32"].get<std::string>()
                                  : "");
-    if (json.contains("labels")) print_labels(json["labels"]);
     for (const auto& note : json["notes"])
         std::cout << "note        " << note.get<std::string>() << '\n';
     for (const auto& warning : json["warnings"])

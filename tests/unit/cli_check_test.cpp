@@ -94,17 +94,6 @@ TEST_F(CliCheck, InfoSaysWhereThePlaceComesFrom) {
         EXPECT_THAT(text.out, HasSubstr(line));
 }
 
-TEST_F(CliCheck, InfoListsTheLargestLabels) {
-    std::vector<std::uint8_t> values(8 * 8 * 8, 0);
-    for (std::size_t i = 0; i < values.size(); ++i)
-        values[i] = i < 100 ? 7 : i < 140 ? 200 : 0;
-    write("labels.raw", bytes_of(values));
-    const auto json = parsed(run("info labels.raw --raw 8x8x8:uint8:little --json -").out);
-    EXPECT_EQ(json["labels"]["count"], 3);
-    EXPECT_EQ(json["labels"]["largest"][1]["number"], "7");
-    EXPECT_EQ(json["labels"]["largest"][1]["voxels"], 100);
-}
-
 TEST_F(CliCheck, ValuesUpTo1e60AreWrittenInTheFilesUnit) {
     std::vector<double> values(16 * 16 * 16);
     for (int i = 0; i < 4096; ++i)

@@ -15,7 +15,7 @@ namespace {
 using edgesplat::Volume;
 
 /// The values of the recognised labels; empty if the volume is no segmentation.
-std::vector<float> labels_of(const Volume& volume) {
+std::vector<float> label_values(const Volume& volume) {
     std::vector<float> values;
     if (const auto table = edgesplat::labels_of(volume))
         for (const edgesplat::Label& label : table->labels)
@@ -42,8 +42,8 @@ double organ(const glm::dvec3& p) {
 }
 
 TEST(Labels, AreFewWholeNumbersWithoutPartialVolume) {
-    EXPECT_EQ(labels_of(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
-    EXPECT_EQ(labels_of(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })), (std::vector<float>{0, 1}))
+    EXPECT_EQ(label_values(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
+    EXPECT_EQ(label_values(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })), (std::vector<float>{0, 1}))
         << "a mask";
 }
 
@@ -54,11 +54,11 @@ TEST(Labels, RejectsMeasuredValues) {
             sum += organ(p + glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
         return sum / 27;
     };
-    EXPECT_TRUE(labels_of(sampled(blurred)).empty()) << "fractions";
-    EXPECT_TRUE(labels_of(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
+    EXPECT_TRUE(label_values(sampled(blurred)).empty()) << "fractions";
+    EXPECT_TRUE(label_values(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
         << "partial volume, in whole numbers";
-    EXPECT_TRUE(labels_of(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
-    EXPECT_TRUE(labels_of(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
+    EXPECT_TRUE(label_values(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
+    EXPECT_TRUE(label_values(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
 }
 
 /// Cells of 4^3 voxels with a number each, in no order, and a background around them.
@@ -70,7 +70,7 @@ double cell(const glm::dvec3& p) {
 }
 
 TEST(Labels, MayBeMany) {
-    const std::vector<float> cells = labels_of(sampled(cell));
+    const std::vector<float> cells = label_values(sampled(cell));
     EXPECT_GT(cells.size(), 190U);
     EXPECT_EQ(cells.front(), 0);
     // A measurement that was enlarged without interpolation has no transitions either.
@@ -78,7 +78,7 @@ TEST(Labels, MayBeMany) {
         const glm::dvec3 q = glm::floor(p / 2.0);
         return std::round(500 + 400 * std::sin(q.x / 7) + 90 * q.y + 17 * q.z);
     };
-    EXPECT_TRUE(labels_of(sampled(enlarged)).empty());
+    EXPECT_TRUE(label_values(sampled(enlarged)).empty());
 }
 
 TEST(Labels, AreDrawnAsMask) {

@@ -122,15 +122,16 @@ std::size_t chosen_vtk_array(const std::string& path, const LoadOptions& options
     if (shown.empty() && arrays.empty()) fail("{}: a grid without samples at its points or in its cells", path);
     if (shown.empty())
         fail("{}: array {} of type {} cannot be read; expected numbers", path, arrays[0].name, arrays[0].type_name);
-    // Scalars of points go before those of cells, as in VTK.
-    const std::size_t chosen = shown.size() == 1 ? shown[0] : scalars.empty() ? arrays.size() : scalars[0];
-    if (chosen == arrays.size())
-        fail("{}: {} arrays, and none is marked as the scalars; choose one with {}:NAME: {}", path, shown.size(), path,
-             vtk_list(arrays, shown));
+    // Scalars of points go before those of cells, as in VTK. ParaView marks none in the fields that it writes and shows
+    // the first.
+    const std::size_t chosen = scalars.empty() ? shown[0] : scalars[0];
+    const bool marked = shown.size() == 1 || !scalars.empty();
     std::erase(shown, chosen);
     if (!shown.empty())
-        volume.notes.push_back(fmt::format("The array '{}' is shown. PATH:NAME chooses another: {}.",
-                                           arrays[chosen].name, vtk_list(arrays, shown)));
+        (marked ? volume.notes : volume.warnings)
+            .push_back(fmt::format("{}The array '{}' is shown. PATH:NAME chooses another: {}.",
+                                   marked ? "" : "No array is marked as the scalars. ", arrays[chosen].name,
+                                   vtk_list(arrays, shown)));
     return chosen;
 }
 
