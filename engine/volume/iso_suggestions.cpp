@@ -39,6 +39,7 @@ class Walker {
         : volume_(volume),
           strides_{1, volume.geometry.dims.x,
                    static_cast<std::ptrdiff_t>(volume.geometry.dims.x) * volume.geometry.dims.y},
+          per_range_(1 / (static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value))),
           spacing_(volume.geometry.spacing()) {}
 
     const float* at(const glm::ivec3& voxel) const {
@@ -50,18 +51,19 @@ class Walker {
         return volume_.has_data(static_cast<std::size_t>(sample - volume_.values.data()));
     }
 
-    /// Gradient by central differences, one-sided at the border and beside missing samples; per mm along the volume's
-    /// axes.
-    glm::vec3 gradient(const glm::ivec3& voxel) const {
+    /// Gradient by central differences, one-sided at the border and beside missing samples; shares of the range per
+    /// mm along the volume's axes.
+    glm::dvec3 gradient(const glm::ivec3& voxel) const {
         const float* here = at(voxel);
-        glm::vec3 g(0);
+        glm::dvec3 g(0);
         for (int axis = 0; axis < 3; ++axis) {
             std::ptrdiff_t up = voxel[axis] + 1 < volume_.geometry.dims[axis] ? stride(axis) : 0;
             std::ptrdiff_t down = voxel[axis] > 0 ? stride(axis) : 0;
             if (!has_data(here + up)) up = 0;
             if (!has_data(here - down)) down = 0;
-            const auto steps = static_cast<float>((up > 0) + (down > 0));
-            if (steps > 0) g[axis] = (here[up] - here[-down]) / (steps * static_cast<float>(spacing_[axis]));
+            const double steps = (up > 0) + (down > 0);
+            const double rise = static_cast<double>(here[up]) - static_cast<double>(here[-down]);
+            if (steps > 0) g[axis] = rise * per_range_ / (steps * spacing_[axis]);
         }
         return g;
     }
@@ -69,6 +71,7 @@ class Walker {
   private:
     const Volume& volume_;
     std::array<std::ptrdiff_t, 3> strides_;
+    double per_range_;
     glm::dvec3 spacing_;
 };
 
@@ -120,7 +123,11 @@ struct FirstSurfaces {
 void follow(const Volume& volume, const Walker& walker, glm::ivec3 voxel, int axis, int direction,
             std::optional<float> padding, FirstSurfaces& out) {
     const float low = volume.min_value;
-    const float per_bin = static_cast<float>(kBins) / (volume.max_value - low);
+    const double per_bin =
+        static_cast<double>(kBins) / (static_cast<double>(volume.max_value) - static_cast<double>(low));
+    const auto bin = [&](float value) {
+        return static_cast<std::size_t>((static_cast<double>(value) - static_cast<double>(low)) * per_bin + 0.5);
+    };
     const int length = volume.geometry.dims[axis];
     const std::ptrdiff_t stride = walker.stride(axis) * direction;
     const float* sample = walker.at(voxel);
@@ -139,15 +146,14 @@ void follow(const Volume& volume, const Walker& walker, glm::ivec3 voxel, int ax
         if (first_data || !walker.has_data(sample - stride)) continue;
         if (padding && from == *padding) continue;
         // Value i is the centre of bin i.
-        const auto first = static_cast<std::size_t>((from - low) * per_bin + 0.5F);
-        const auto last = static_cast<std::size_t>((before - low) * per_bin + 0.5F);
+        const std::size_t first = bin(from), last = bin(before);
         if (first == last) continue;
         glm::ivec3 behind = voxel;
         behind[axis] -= direction;
-        const glm::vec3 a = walker.gradient(behind), b = walker.gradient(voxel);
-        const double length_a = static_cast<double>(glm::length(a)), length_b = static_cast<double>(glm::length(b));
+        const glm::dvec3 a = walker.gradient(behind), b = walker.gradient(voxel);
+        const double length_a = glm::length(a), length_b = glm::length(b);
         const double both = length_a * length_b;
-        const double smooth = both > 0 ? std::max(0.0, static_cast<double>(glm::dot(a, b)) / both) : 0;
+        const double smooth = both > 0 ? std::max(0.0, glm::dot(a, b) / both) : 0;
         for (const auto& [sums, value] :
              {std::pair{&out.count, 1.0}, {&out.strength, (length_a + length_b) / 2}, {&out.smoothness, smooth}}) {
             (*sums)[first] += value;

@@ -123,15 +123,4 @@ std::string text_of(const SuspectedFill& fill, const Volume& volume) {
                        fill.count, value, value_text(volume, fill.low), value_text(volume, fill.high), value);
 }
 
-void fit_to_floats(Volume& volume) {
-    constexpr float kLargest = 1e15F, kSmallest = 1e-15F;
-    const float largest = std::max(std::abs(volume.min_value), std::abs(volume.max_value));
-    if (largest == 0 || (largest >= kSmallest && largest <= kLargest) || !suspected_fill(volume).empty()) return;
-    const int power = std::ilogb(largest);
-    for (float& value : volume.values)
-        value = std::ldexp(value, -power);
-    volume.value_scale = std::ldexp(volume.value_scale, power);
-    finish_volume(volume);
-}
-
 }  // namespace edgesplat

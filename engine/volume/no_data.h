@@ -1,4 +1,4 @@
-// Samples that are no measurements although no header says so: named by the user, or noticed; and values of any size.
+// Samples without data that no header declares: named by the user, or noticed.
 #pragma once
 
 #include <cstddef>
@@ -28,9 +28,5 @@ std::vector<SuspectedFill> suspected_fill(const Volume& volume);
 
 /// One sentence that says what was noticed and which option declares it.
 std::string text_of(const SuspectedFill& fill, const Volume& volume);
-
-/// Divides the samples of a finished volume by a power of two if products of them might leave the range of floats
-/// (`value_scale`); not if only a suspected fill value is that large.
-void fit_to_floats(Volume& volume);
 
 }  // namespace edgesplat

@@ -53,17 +53,16 @@ std::string value_format(const Volume& volume) {
 }
 
 std::vector<std::string> value_texts(std::span<const double> values, double range) {
+    // Within a twentieth of the smallest difference.
+    constexpr double kApart = 0.05;
+    for (std::size_t i = 0; i < values.size(); ++i)
+        for (std::size_t j = 0; j < i; ++j)
+            if (const double gap = std::abs(values[i] - values[j]); gap > 0)
+                range = std::min(range, kApart * gap / kResolution);
     std::vector<std::string> texts;
-    for (;; range /= 10) {
-        texts.clear();
-        for (const double value : values)
-            texts.push_back(value_text(value, range));
-        bool apart = true;
-        for (std::size_t i = 0; i < values.size(); ++i)
-            for (std::size_t j = 0; j < i; ++j)
-                apart = apart && (values[i] == values[j] || texts[i] != texts[j]);
-        if (apart || !(range > 0)) return texts;
-    }
+    for (const double value : values)
+        texts.push_back(value_text(value, range));
+    return texts;
 }
 
 }  // namespace edgesplat

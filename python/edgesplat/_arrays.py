@@ -52,7 +52,7 @@ def fitted(array: np.ndarray) -> tuple[np.ndarray, float]:
     size = np.abs(array)
     size = size[size <= 1e100]
     largest = float(size.max()) if size.size else 0.0
-    if largest == 0 or 1e-30 <= largest <= float(np.finfo(np.float32).max):
+    if largest == 0 or 1e-30 <= largest <= 1e37:
         return array, 1.0
     scale = 2.0 ** int(np.floor(np.log2(largest)))
     return array / scale, scale

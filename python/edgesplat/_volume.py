@@ -173,8 +173,8 @@ class Volume:
     @property
     def array(self) -> np.ndarray:
         """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory. A float64 copy if the values are
-        above 1e15 or below 1e-15 in magnitude. Where there are no data: the smallest sample. Labels with numbers above
-        2^24 are stored as their places in `labels`, from 0."""
+        too large or too small for float32. Where there are no data: the smallest sample. Labels with numbers above 2^24
+        are stored as their places in `labels`, from 0."""
         return self._core.array if self._core.value_scale == 1 else self._core.array * self._core.value_scale
 
     @property

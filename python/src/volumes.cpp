@@ -88,7 +88,6 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
     volume.value_scale = value_scale;
     if (no_data && declare_no_data(volume, *no_data) == 0) fail("{}: no_data: no sample is {}", name, *no_data);
     finish_volume(volume);
-    fit_to_floats(volume);
     for (const SuspectedFill& fill : suspected_fill(volume))
         volume.warnings.push_back(text_of(fill, volume));
     if (!volume.labels) volume.labels = labels_of(volume);
@@ -112,7 +111,7 @@ py::object no_data(const SharedVolume& self) {
     const glm::ivec3& dims = volume.geometry.dims;
     py::array_t<bool> marks({dims.z, dims.y, dims.x});
     std::copy(volume.no_data->begin(), volume.no_data->end(), marks.mutable_data());
-    return std::move(marks);
+    return marks;
 }
 
 std::vector<std::pair<double, double>> suggestions(const SharedVolume& self, int count) {

@@ -40,9 +40,6 @@ TEST_F(VolumeRanges, OfAnySizeGiveTheSameFieldAndSuggestions) {
         const Volume volume = ball_of(scale);
         EXPECT_EQ(volume.non_finite_count, 0U);
         EXPECT_NEAR(volume.in_file_unit(static_cast<double>(volume.max_value)) / scale, 1, 2e-3) << scale;
-        // Products of samples stay far inside the range of floats.
-        EXPECT_LT(std::abs(volume.max_value), 1e16F);
-        EXPECT_GT(std::abs(volume.max_value), 1e-16F);
         const std::vector<float> scaled = scaled_field(volume);
         for (std::size_t i = 0; i < field.size(); ++i)
             ASSERT_NEAR(scaled[i], field[i], 3e-7) << scale;

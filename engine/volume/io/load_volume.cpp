@@ -462,7 +462,6 @@ Volume load_volume(const std::string& full_path, const LoadOptions& given) {
     if (options.no_data && declare_no_data(volume, *options.no_data) == 0)
         volume.warnings.push_back(fmt::format("--no-data {}: no sample has this value.", *options.no_data));
     finish_volume(volume);
-    fit_to_floats(volume);
     add_value_notes(volume);
     report(options, 1.0, "done");
     return volume;

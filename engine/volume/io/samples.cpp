@@ -95,7 +95,7 @@ bool take_ranks(const StoredSamples& stored, Volume& volume) {
 /// The power of two by which samples are divided because floats cannot hold them; 1: they can. Larger samples than
 /// kLargest are no measurements: they become infinite, and so contain no data.
 double scale_for(const StoredSamples& stored, std::size_t count) {
-    constexpr double kLargest = 1e100, kSmallest = 1e-30;
+    constexpr double kLargest = 1e100, kHeld = 1e37, kSmallest = 1e-30;
     if (size_of(stored.type) < 8 && stored.slope == 1 && stored.intercept == 0) return 1;
     double largest = 0;
     for_type(stored.type, [&](auto example) {
@@ -106,7 +106,7 @@ double scale_for(const StoredSamples& stored, std::size_t count) {
             if (size > largest && size <= kLargest && !(stored.fill && value == *stored.fill)) largest = size;
         }
     });
-    const bool fits = largest <= static_cast<double>(std::numeric_limits<float>::max()) && largest >= kSmallest;
+    const bool fits = largest <= kHeld && largest >= kSmallest;
     return fits || largest == 0 ? 1 : std::ldexp(1.0, std::ilogb(largest));
 }
 
