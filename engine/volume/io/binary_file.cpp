@@ -54,9 +54,14 @@ bool PlainOrGzip::is_gzip() const {
 }
 
 std::string first_unpacked_bytes(const std::string& path, std::size_t count) {
-    std::string bytes(count, '\0');
+    std::string bytes;
     try {
-        bytes.resize(PlainOrGzip(path, path).read(bytes.data(), count));
+        PlainOrGzip stream(path, path);
+        constexpr std::size_t kPart = std::size_t{1} << 16;
+        for (std::size_t done = 0; done < count && done == bytes.size(); done += kPart) {
+            bytes.resize(std::min(count, done + kPart));
+            bytes.resize(done + stream.read(bytes.data() + done, bytes.size() - done));
+        }
     } catch (const Error&) {
         bytes.clear();
     }
