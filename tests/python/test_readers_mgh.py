@@ -19,7 +19,7 @@ LPS = np.diag([-1.0, -1.0, 1.0, 1.0])
 
 
 def mgh(dims, kind, values, good=1, spacing=(1, 1, 1), axes=np.eye(3), center=(0, 0, 0), version=1):
-    """The file's bytes, written from FreeSurfer's description. axes: columns are directions, right-anterior-superior."""
+    """The file's bytes, written from FreeSurfer's description. axes: columns are directions (RAS)."""
     head = struct.pack(">7ih", version, *dims, kind, 0, good)
     head += struct.pack(">15f", *spacing, *np.asarray(axes, float).T.ravel(), *center)
     return head.ljust(284, b"\0") + values.tobytes()
@@ -48,7 +48,7 @@ def test_as_nibabel(seed, tmp_path):
     good = int(seed % 8 != 7)
     content = mgh(dims, kind, values, good, rng.uniform(0.3, 4, 3), axes, rng.uniform(-90, 90, 3))
     if seed % 5 == 0:
-        content += struct.pack(">4f", 2000, 0.1, 3, 4)  # TR, flip angle, TE, TI
+        content += struct.pack(">4f", 2000, 0.1, 3, 4)  # times and angle of the scan
     name = ["a.mgh", "a.mgz"][seed % 2]
     path = tmp_path / name
     path.write_bytes(gzip.compress(content) if name == "a.mgz" else content)

@@ -120,7 +120,8 @@ def test_as_nibabel(seed, tmp_path):
     minc.high = np.array(minc.low + rng.uniform(1, 500, count))
     path = minc.write(tmp_path / "a.mnc")
     shutil.copy(path, tmp_path / "named_otherwise")
-    volume = Volume(tmp_path / "named_otherwise")  # found by its content; before nibabel, which leaves the file open: then HDF5 refuses to open it again
+    # Found by its content. Before nibabel, which leaves the file open: then HDF5 refuses to open it again.
+    volume = Volume(tmp_path / "named_otherwise")
     assert Volume(path, spacing=(1, 2, 3)).spacing == pytest.approx((1, 2, 3))
 
     image = (nibabel.Minc1Image if version == 1 else nibabel.Minc2Image).from_filename(str(path))

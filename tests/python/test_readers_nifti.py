@@ -72,7 +72,8 @@ class Header:
         place = [*self.quatern, *self.qoffset, *np.asarray(self.srow, float).ravel()]
         if self.version == 1:
             magic = b"n+1\0" if self.single else b"ni1\0"
-            head = struct.pack(o + "i35xB8h3f4h", 348, 0, *self.dim, 0, 0, 0, self.intent, self.datatype, self.bitpix, 0)
+            head = struct.pack(o + "i35xB8h3f", 348, 0, *self.dim, 0, 0, 0)
+            head += struct.pack(o + "4h", self.intent, self.datatype, self.bitpix, 0)
             head += struct.pack(o + "8f3fh2B4f2i", *self.pixdim, self.vox_offset, self.slope, self.inter, 0, 0,
                                 self.units, 0, 0, 0, 0, 0, 0)
             head += bytes(104) + struct.pack(o + "2h18f", self.qform_code, self.sform_code, *place) + bytes(16) + magic

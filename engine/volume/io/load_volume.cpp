@@ -132,7 +132,8 @@ constexpr std::array kFormats{
     Format{"HDF5", [](const Start& f) { return f.begins(kHdf5); }, load_hdf5, true},
     Format{"NIfTI and Analyze",
            [](const Start& f) {
-               return f.is_named({".nii", ".nii.gz", ".hdr", ".hdr.gz", ".img", ".img.gz"}) || is_nifti(f.path);
+               return f.is_named({".nii", ".nii.gz"}) || is_nifti(f.path) ||
+                      (f.is_named({".hdr", ".hdr.gz", ".img", ".img.gz"}) && !is_dicom(f.path));
            },
            load_nifti},
     Format{"MGH and MGZ",
