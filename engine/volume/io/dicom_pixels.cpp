@@ -54,12 +54,21 @@ std::size_t big_at(std::string_view bytes, std::size_t at, std::size_t count) {
     return value;
 }
 
-/// Size and components that compressed pixels say themselves; {} if they are of another kind.
-std::optional<std::array<std::size_t, 3>> coded_size(std::string_view bytes) {
+/// What compressed pixels say themselves.
+struct CodedSize {
+    std::size_t columns = 0, rows = 0, samples = 0, bits = 0;
+    unsigned process = 0;  ///< marker of a JPEG frame; 0: JPEG 2000
+};
+
+std::optional<CodedSize> coded_size(std::string_view bytes) {
     if (big_at(bytes, 0, 4) == 0xff4fff51)
-        return {{big_at(bytes, 8, 4) - big_at(bytes, 16, 4), big_at(bytes, 12, 4) - big_at(bytes, 20, 4),
-                 big_at(bytes, 40, 2)}};
+        return CodedSize{.columns = big_at(bytes, 8, 4) - big_at(bytes, 16, 4),
+                         .rows = big_at(bytes, 12, 4) - big_at(bytes, 20, 4),
+                         .samples = big_at(bytes, 40, 2),
+                         .bits = (byte_at(bytes, 42) & 0x7fU) + 1};
     if (big_at(bytes, 0, 2) != 0xffd8) return std::nullopt;
+    std::optional<CodedSize> found;
+    bool tables = false;
     for (std::size_t at = 2; at + 4 <= bytes.size();) {
         if (byte_at(bytes, at) != 0xff) return std::nullopt;
         const unsigned marker = byte_at(bytes, at + 1);
@@ -69,11 +78,38 @@ std::optional<std::array<std::size_t, 3>> coded_size(std::string_view bytes) {
         }
         const bool frame =
             (marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc) || marker == 0xf7;
-        if (frame) return {{big_at(bytes, at + 7, 2), big_at(bytes, at + 5, 2), byte_at(bytes, at + 9)}};
-        if (marker == 0xda || marker == 0xd9) return std::nullopt;
+        if (frame) {
+            const std::size_t samples = byte_at(bytes, at + 9);
+            if (big_at(bytes, at + 2, 2) != 8 + 3 * samples) return std::nullopt;
+            found = CodedSize{.columns = big_at(bytes, at + 7, 2),
+                              .rows = big_at(bytes, at + 5, 2),
+                              .samples = samples,
+                              .bits = byte_at(bytes, at + 4),
+                              .process = marker};
+        }
+        tables = tables || marker == 0xc4;
+        // Scans of JPEG-LS need no tables.
+        if (marker == 0xda) return found && (tables || found->process == 0xf7) ? found : std::nullopt;
+        if (marker == 0xd9) return std::nullopt;
         at += 2 + std::max<std::size_t>(big_at(bytes, at + 2, 2), 2);
     }
     return std::nullopt;
+}
+
+/// Whether a JPEG frame is of the kind that the transfer syntax says. GDCM ends the program on others.
+bool fits_syntax(const CodedSize& size, const std::string& syntax) {
+    switch (coding_of(syntax)) {
+        case DicomCoding::Jpeg2000:
+            return size.process == 0;
+        case DicomCoding::JpegLs:
+            return size.process == 0xf7;
+        case DicomCoding::Jpeg:
+            if (syntax.ends_with(".57") || syntax.ends_with(".70")) return size.process == 0xc3;
+            if (syntax.ends_with(".53") || syntax.ends_with(".55")) return size.process == 0xc2;
+            return size.process == 0xc0 || size.process == 0xc1;
+        default:
+            return false;
+    }
 }
 
 /// Whether the code's end is there; filled up with zeros.
@@ -124,14 +160,21 @@ std::string run_length_decoded(const std::string& path, std::string_view bytes, 
 }
 
 /// Decodes one frame with GDCM and updates `layout` to what it delivers. Little-endian.
-std::string gdcm_decoded(const std::string& path, const std::string& syntax,
-                         const std::vector<std::string_view>& fragments, DicomLayout& layout) {
-    std::string start(fragments.front());
-    if (const auto size = coded_size(start)) {
-        if ((*size)[0] != layout.columns || (*size)[1] != layout.rows || (*size)[2] != layout.samples)
+std::string gdcm_decoded(const std::string& path, const std::string& syntax, std::string_view coded,
+                         DicomLayout& layout) {
+    // GDCM reads pixels that are damaged in these ways without a check.
+    const bool boxed = big_at(coded, 0, 8) == 0x0000000c6a502020;  // JPEG 2000 in a file of its own
+    const auto size = coded_size(coded);
+    if (!boxed) {
+        if (!size || !fits_syntax(*size, syntax))
+            fail("{}: damaged: its compressed pixels do not begin as {} does", path, syntax);
+        if (size->columns != layout.columns || size->rows != layout.rows || size->samples != layout.samples)
             fail("{}: its compressed pixels are {} x {} with {} components, its header says {} x {} with {}", path,
-                 (*size)[0], (*size)[1], (*size)[2], layout.columns, layout.rows, layout.samples);
-        if (!has_end(fragments.back())) fail("{}: truncated: its compressed pixels have no end", path);
+                 size->columns, size->rows, size->samples, layout.columns, layout.rows, layout.samples);
+        if (size->bits > static_cast<std::size_t>(layout.bits_allocated))
+            fail("{}: its compressed pixels have {} bits, but BitsAllocated (0028,0100) is {}", path, size->bits,
+                 layout.bits_allocated);
+        if (!has_end(coded)) fail("{}: truncated: its compressed pixels have no end", path);
     }
     std::string out, reason;
     {
@@ -149,11 +192,9 @@ std::string gdcm_decoded(const std::string& path, const std::string& syntax,
             image.SetPhotometricInterpretation(gdcm::PhotometricInterpretation::GetPIType(layout.photometric.c_str()));
             image.SetPlanarConfiguration(layout.planar ? 1 : 0);
             auto sequence = gdcm::SequenceOfFragments::New();
-            for (const std::string_view bytes : fragments) {
-                gdcm::Fragment fragment;
-                fragment.SetByteValue(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-                sequence->AddFragment(fragment);
-            }
+            gdcm::Fragment fragment;
+            fragment.SetByteValue(coded.data(), static_cast<std::uint32_t>(coded.size()));
+            sequence->AddFragment(fragment);
             gdcm::DataElement pixels(gdcm::Tag(0x7fe0, 0x0010));
             pixels.SetVR(gdcm::VR::OB);
             pixels.SetValue(*sequence);
@@ -346,10 +387,10 @@ std::string DicomPixels::frame_bytes(std::size_t frame) const {
 std::string DicomPixels::decoded(std::size_t frame, DicomLayout& layout) const {
     const auto& fragments = fragments_.at(frame);
     const DicomCoding coding = coding_of(file_.transfer_syntax());
+    std::string whole;
+    for (const std::string_view fragment : fragments)
+        whole += fragment;
     if (coding == DicomCoding::RunLength || coding == DicomCoding::Native) {
-        std::string whole;
-        for (const std::string_view fragment : fragments)
-            whole += fragment;
         layout.planar = layout.planar && coding == DicomCoding::Native;
         if (coding == DicomCoding::RunLength) {
             if (layout.bits_allocated % 8 != 0) fail("{}: run-length coded pixels of 1 bit", file_.path());
@@ -361,9 +402,9 @@ std::string DicomPixels::decoded(std::size_t frame, DicomLayout& layout) const {
         return whole;
     }
     // A JFIF file that is called RGB is YBR, as JFIF says.
-    if (coding == DicomCoding::Jpeg && layout.photometric == "RGB" && fragments.front().substr(0, 32).find("JFIF") == 6)
+    if (coding == DicomCoding::Jpeg && layout.photometric == "RGB" && whole.find("JFIF") == 6)
         layout.photometric = "YBR_FULL";
-    return gdcm_decoded(file_.path(), file_.transfer_syntax(), fragments, layout);
+    return gdcm_decoded(file_.path(), file_.transfer_syntax(), whole, layout);
 }
 
 void DicomPixels::read(std::size_t frame, std::size_t component, std::vector<double>& samples) const {
