@@ -5,6 +5,7 @@
 #include "engine/passes/clip_count.h"
 #include "engine/scene/scene.h"
 #include "engine/scene/settings.h"
+#include "footprints/face.h"
 
 namespace edgesplat::passes {
 
@@ -12,18 +13,18 @@ namespace edgesplat::passes {
 struct DrawVariant {
     FootprintMode footprints;
     WarpFamily warp;
-    bool narrow = false;        ///< narrow kernels
-    std::uint32_t lights = 0;   ///< number of lights
-    std::uint32_t payload = 0;  ///< shader::PAYLOAD_*
-    bool sliced = false;        ///< kernels are cut at the sheets' planes
-    bool occlusion = false;     ///< ambient light is reduced by 2b_occlude_ambient
-    std::uint32_t shadows = 0;  ///< number of lights with shadows
-    std::uint32_t nodes = 5;    ///< quadrature nodes per piece of a footprint: 4, 5 or 10
-    bool transfer = false;      ///< colour and extinction are from a transfer function
-    bool labels = false;        ///< every label has its own colour
-    bool response = false;      ///< materials have their own light responses
-    bool gloss = false;         ///< some materials have highlights
-    bool lit_edges = false;     ///< splats without an edge are shaded as if without a normal
+    bool narrow = false;              ///< narrow kernels
+    std::uint32_t lights = 0;         ///< number of lights
+    std::uint32_t payload = 0;        ///< shader::PAYLOAD_*
+    bool sliced = false;              ///< kernels are cut at the sheets' planes
+    bool occlusion = false;           ///< ambient light is reduced by 2b_occlude_ambient
+    std::uint32_t shadows = 0;        ///< number of lights with shadows
+    std::uint32_t nodes = kFewNodes;  ///< quadrature nodes per piece of a footprint: 4, 6 or 10
+    bool transfer = false;            ///< colour and extinction are from a transfer function
+    bool labels = false;              ///< every label has its own colour
+    bool response = false;            ///< materials have their own light responses
+    bool gloss = false;               ///< some materials have highlights
+    bool lit_edges = false;           ///< splats without an edge are shaded as if without a normal
     bool silhouette = false;
     bool fog = false;
     ClipCount clip{};        ///< kernels are cut at clip planes

@@ -18,7 +18,7 @@ namespace edgesplat {
 namespace {
 
 // Extinction per voxel from which an interval counts as opaque: it occludes everything a few voxels behind its surface.
-constexpr double kOpaquePerVoxel = 0.75;
+constexpr double kBuriesPerVoxel = 0.75;
 // Memory of the sheet group, bytes. More layers mean fewer passes, but saturation is tested only between groups: 4 to
 // 8 layers measured fastest.
 constexpr std::uint64_t kSheetBudget = std::uint64_t{192} << 20U;
@@ -37,7 +37,7 @@ double shortest_step(const VolumeGeometry& geometry) {
 }
 
 bool is_opaque(double extinction, const VolumeGeometry& geometry) {
-    return extinction * shortest_step(geometry) >= kOpaquePerVoxel;
+    return extinction * shortest_step(geometry) >= kBuriesPerVoxel;
 }
 
 /// The extinction for the device, limited to 1e20 per voxel: opaque within a voxel, but sums and means over a
@@ -190,17 +190,61 @@ bool needs_normals(const Scene& scene) {
     return !scene.lights.empty() || scene.effects.silhouette;
 }
 
+namespace {
+
+/// Where a transfer function is above 0: its points, without those whose neighbours are like them.
+std::vector<std::pair<float, bool>> support_of(const std::vector<shader::TransferRow>& rows) {
+    const auto seen = [&](std::size_t i) { return rows[i].matter.a > 0; };
+    std::vector<std::pair<float, bool>> points;
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const bool like_before = i == 0 || seen(i - 1) == seen(i);
+        const bool like_after = i + 1 == rows.size() || seen(i + 1) == seen(i);
+        if (!like_before || !like_after) points.emplace_back(rows[i].value, seen(i));
+    }
+    if (points.empty() && !rows.empty()) points.emplace_back(0.0F, seen(0));
+    return points;
+}
+
+bool same_intervals(const CollectionPlan& a, const CollectionPlan& b) {
+    return a.dims == b.dims && a.blocks == b.blocks && a.params.iso_count == b.params.iso_count &&
+           std::ranges::equal(a.params.iso, b.params.iso);
+}
+
+/// Inputs of pass 1a.
+bool same_mask(const CollectionPlan& a, const CollectionPlan& b) {
+    return same_intervals(a, b) && a.buried == b.buried && a.params.opaque_mask == b.params.opaque_mask &&
+           a.params.bury_distance == b.params.bury_distance && a.clip == b.clip &&
+           std::ranges::equal(a.params.clip_keep, b.params.clip_keep) &&
+           std::ranges::equal(a.params.clip_remove, b.params.clip_remove);
+}
+
+/// Inputs of pass 1b, apart from the mask.
+bool same_edges(const CollectionPlan& a, const CollectionPlan& b) {
+    // Beside which materials a voxel lies is stored with a surfel, else only if there is translucent matter.
+    const bool surfels = b.estimator == EdgeEstimator::March || b.estimator == EdgeEstimator::Cubic;
+    return same_intervals(a, b) && a.estimator == b.estimator && a.edge_field == b.edge_field &&
+           a.skip_buried == b.skip_buried && a.params.estimate_mask == b.params.estimate_mask &&
+           a.params.band == b.params.band && a.params.reach == b.params.reach &&
+           (surfels || (a.params.translucent_mask != 0) == (b.params.translucent_mask != 0));
+}
+
+}  // namespace
+
+StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wanted) {
+    StaleResults stale;
+    stale.mask = !same_mask(held, wanted);
+    stale.edges = !same_edges(held, wanted) || (wanted.skip_buried && stale.mask);
+    stale.lists = stale.mask || stale.edges || held.faces != wanted.faces || held.labels != wanted.labels ||
+                  held.params.visible_mask != wanted.params.visible_mask ||
+                  held.params.translucent_mask != wanted.params.translucent_mask ||
+                  support_of(held.transfer) != support_of(wanted.transfer);
+    stale.transfer = !std::ranges::equal(held.transfer, wanted.transfer);
+    return stale;
+}
+
 bool CollectionPlan::operator==(const CollectionPlan& other) const {
-    const auto& a = params;
-    const auto& b = other.params;
-    return dims == other.dims && blocks == other.blocks && estimator == other.estimator &&
-           edge_field == other.edge_field && buried == other.buried && skip_buried == other.skip_buried &&
-           faces == other.faces && labels == other.labels && std::ranges::equal(transfer, other.transfer) &&
-           a.estimate_mask == b.estimate_mask && a.iso_count == b.iso_count && std::ranges::equal(a.iso, b.iso) &&
-           a.visible_mask == b.visible_mask && a.translucent_mask == b.translucent_mask &&
-           a.opaque_mask == b.opaque_mask && a.bury_distance == b.bury_distance && a.band == b.band &&
-           a.reach == b.reach && clip == other.clip && std::ranges::equal(a.clip_keep, b.clip_keep) &&
-           std::ranges::equal(a.clip_remove, b.clip_remove);
+    const StaleResults stale = stale_results(*this, other);
+    return !stale.lists && !stale.transfer;
 }
 
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {

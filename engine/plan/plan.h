@@ -44,9 +44,21 @@ struct CollectionPlan {
     std::vector<shader::TransferRow> transfer;  ///< TRANSFER_ROWS + 1; empty without a transfer function
     shader::SceneParams params{};               ///< addresses unset
 
-    /// Whether both plans produce the same splats.
+    /// Whether both plans are equal: they produce the same splats, classified alike.
     bool operator==(const CollectionPlan& other) const;
 };
+
+/// What a plan must compute again, given the results of another one.
+struct StaleResults {
+    bool mask = true;   ///< the mask of buried voxels
+    bool edges = true;  ///< the edge field
+    bool lists = true;  ///< the splat lists; they depend on mask and edges
+    /// The transfer function on the device. Passes that draw read it; the lists depend only on where it is above 0.
+    bool transfer = true;
+};
+
+/// What `wanted` must compute again if the results of `held` exist.
+StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wanted);
 
 /// `keep_buried`: buried voxels stay (the output is optical depth, or the eye is inside opaque matter).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);

@@ -63,8 +63,8 @@ double border_weight(const Field& field, const ScaledScene& scene, const Setting
     double weight = 1;
     if (!draws_faces(settings) || !scene.is_translucent[static_cast<std::size_t>(m)]) return weight;
     for (int axis = 0; axis < 3; ++axis)
-        if (field.dims[axis] > 1 && (i[axis] == 0 || i[axis] == field.dims[axis] - 1))
-            weight *= static_cast<double>(shader::BORDER_WEIGHT);
+        for (const int outermost : {0, field.dims[axis] - 1})
+            if (i[axis] == outermost) weight *= static_cast<double>(shader::BORDER_WEIGHT);
     return weight;
 }
 

@@ -98,13 +98,19 @@ void PreparedVolume::replace_edge(std::size_t voxel, int material, const VoxelEd
 Image PreparedVolume::render(const Camera& camera, int width, int height, Output output) const {
     check_picture_size(width, height);
     View view(camera, volume_->geometry, width, height);
+    std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
+                                                      camera.eye, output == Output::Tau, classified_, carried_);
+    if (output == Output::Color) find_light(records);
+    // Optical depth includes everything on a ray, so no face is traced.
+    for (SplatRecord& record : records)
+        if (output == Output::Tau) record.edge.traced.reset();
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
-    if (samples == 1) return draw(camera, view, output);
+    if (samples == 1) return draw(records, view, output);
     SampleMean mean({width, height});
     for (const glm::dvec2& offset : sample_offsets(samples)) {
         view.offset = offset;
-        mean.add(draw(camera, view, output).pixels);
+        mean.add(draw(records, view, output).pixels);
     }
     return mean.image();
 }
@@ -143,16 +149,10 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
     });
 }
 
-Image PreparedVolume::draw(const Camera& camera, const View& view, Output output) const {
+Image PreparedVolume::draw(std::span<const SplatRecord> records, const View& view, Output output) const {
     const Field f = field();
     const VolumeGeometry& geometry = volume_->geometry;
     const int width = view.width, height = view.height;
-    std::vector<SplatRecord> records = collect_splats(f, scaled_, edges_, scene_, geometry, settings_, camera.eye,
-                                                      output == Output::Tau, classified_, carried_);
-    if (output == Output::Color) find_light(records);
-    // Optical depth includes everything on a ray, so no face is traced.
-    for (SplatRecord& record : records)
-        if (output == Output::Tau) record.edge.traced.reset();
     const std::vector<Selected> selected =
         select_footprints(records, f, view, settings_, footprints_, index_clip(scene_.effects.clip, geometry));
     const SortedSheets sorted = sort_sheets(selected);

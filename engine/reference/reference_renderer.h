@@ -42,8 +42,8 @@ class PreparedVolume {
   private:
     /// Finds the light that reaches each splat: ambient occlusion and shadows.
     void find_light(std::span<SplatRecord> records) const;
-    /// One picture with one ray per pixel.
-    Image draw(const Camera& camera, const View& view, Output output) const;
+    /// One picture with one ray per pixel, of the scene's splats.
+    Image draw(std::span<const SplatRecord> records, const View& view, Output output) const;
 
     const Volume* volume_;
     Scene scene_;

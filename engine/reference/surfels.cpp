@@ -53,15 +53,17 @@ VoxelEdge surfel_in_field(const Field& field, const ScaledScene& scene, const gl
 }
 
 /// Outward normal of the volume's border beside voxel i, half a voxel beyond the outermost samples; 0 if there is none.
+/// An axis of one voxel, which has a border on either side of each voxel, comes last.
 dvec3 border_beside(const Field& field, const glm::ivec3& i) {
+    dvec3 thin(0);
     for (int axis = 0; axis < 3; ++axis) {
-        const bool outermost = i[axis] == 0 || i[axis] == field.dims[axis] - 1;
-        if (!outermost || field.dims[axis] == 1) continue;  // an axis of one voxel has no border
+        if (i[axis] != 0 && i[axis] != field.dims[axis] - 1) continue;
         dvec3 n(0);
         n[axis] = i[axis] == field.dims[axis] - 1 ? 1 : -1;
-        return n;
+        if (field.dims[axis] > 1) return n;
+        thin = n;
     }
-    return dvec3(0);
+    return thin;
 }
 
 /// Calls look with the samples around a voxel, its own included.

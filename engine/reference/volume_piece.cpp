@@ -9,7 +9,6 @@ namespace edgesplat::reference {
 VolumePiece piece_in_volume(const glm::ivec3& dims, const glm::dvec3& from, const glm::dvec3& u) {
     VolumePiece piece{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
     for (int axis = 0; axis < 3; ++axis) {
-        if (dims[axis] == 1) continue;  // no border along this axis
         const double way = std::abs(u[axis]) < 1e-8 ? 1e-8 : u[axis];
         const double a = (-0.5 - from[axis]) / way;
         const double b = (dims[axis] - 0.5 - from[axis]) / way;

@@ -63,7 +63,10 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
 SplatProvider::Gathered SplatProvider::collect_blocks(const FrameRequest& request, const CollectionPlan& wanted,
                                                       std::uint64_t most_splats, double patience) {
     SplatStore& splats = shown_.splats;
-    if (splats.collected() != wanted || !splats.has_blocks()) {
+    const auto& held = splats.collected();
+    const bool keeps = held && splats.has_blocks() && !stale_results(*held, wanted).lists;
+    if (keeps && *held != wanted) splats.classify(wanted);
+    if (!keeps) {
         const auto& level = shown_.volume.volume();
         drawer_->targets().drop();
         splats.begin_blocks(shown_.volume,

@@ -64,7 +64,8 @@ bool SplatProvider::provide_volume(bool coefficients) {
 }
 
 std::optional<SplatCount> SplatProvider::collected_splats(const CollectionPlan& wanted) const {
-    if (shown_.volume.changed() || shown_.splats.collected() != wanted) return std::nullopt;
+    const auto& held = shown_.splats.collected();
+    if (shown_.volume.changed() || !held || stale_results(*held, wanted).lists) return std::nullopt;
     return SplatCount{SplatCount::From::Frame, shown_.splats.lists().extent()};
 }
 

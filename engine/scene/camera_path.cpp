@@ -11,7 +11,7 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kSteps = 16;            ///< steps of the transport of the up direction between two keys
+constexpr int kUpSteps = 16;            ///< steps of the transport of the up direction between two keys
 constexpr double kRunsThrough = 0.1;  ///< share of the keys' distances to their targets: below it, the view is rotated
 constexpr double kAlongUp = 0.985;    ///< cosine (10 degrees) above which a view counts as parallel to `up`
 
@@ -80,8 +80,8 @@ class Curves {
             if (key.up != path.keys.front().up) return;
         for (std::size_t i = 0; i + 1 < path.keys.size(); ++i) {
             const Span span = span_at(i);
-            for (int k = 0; k <= kSteps; ++k)
-                if (!(std::abs(glm::dot(glm::normalize(look(span, double(k) / kSteps)), up)) < kAlongUp)) return;
+            for (int k = 0; k <= kUpSteps; ++k)
+                if (!(std::abs(glm::dot(glm::normalize(look(span, double(k) / kUpSteps)), up)) < kAlongUp)) return;
         }
         upright_ = up;
     }
@@ -105,8 +105,8 @@ class Curves {
         const double least = kRunsThrough * std::min(glm::length(from), glm::length(to));
         Span span;
         span.first = i;
-        for (int k = 1; k < 2 * kSteps; ++k)
-            span.turns_round |= !(glm::length(direct_look(i, k / (2.0 * kSteps))) > least);
+        for (int k = 1; k < 2 * kUpSteps; ++k)
+            span.turns_round |= !(glm::length(direct_look(i, k / (2.0 * kUpSteps))) > least);
         if (!span.turns_round) return span;
         const auto rate = [&](std::size_t key, const glm::dvec3& view) {
             const glm::dvec3 change = hermite::rate(target_, key) - hermite::rate(eye_, key);
@@ -132,7 +132,7 @@ class Curves {
 
     /// The first key's up, transported along the view to u without roll.
     glm::dvec3 carried_up(const Span& span, double u) const {
-        const int steps = std::min(static_cast<int>(u * kSteps), kSteps - 1);
+        const int steps = std::min(static_cast<int>(u * kUpSteps), kUpSteps - 1);
         glm::dvec3 view = glm::normalize(look(span, 0)), up = up_[span.first];
         const auto carry = [&](double to) {
             const glm::dvec3 next = glm::normalize(look(span, to));
@@ -140,11 +140,11 @@ class Curves {
             view = next;
         };
         for (int k = 1; k <= steps; ++k)
-            carry(double(k) / kSteps);
+            carry(double(k) / kUpSteps);
         // Blends the rotations from both ends of a step, so that the rate is continuous.
         const glm::dvec3 view0 = view, up0 = up, here = glm::normalize(look(span, u));
-        carry((steps + 1.0) / kSteps);
-        const double weight = hermite::Weights(u * kSteps - steps).second;
+        carry((steps + 1.0) / kUpSteps);
+        const double weight = hermite::Weights(u * kUpSteps - steps).second;
         return glm::normalize(glm::mix(turned(up0, view0, here), turned(up, view, here), weight));
     }
 

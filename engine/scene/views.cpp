@@ -48,33 +48,43 @@ bool shows(const Scene& scene, double value) {
     return scene.materials[static_cast<std::size_t>(above - scene.iso_values.begin())].extinction > 0;
 }
 
-/// Points (index space of `volume`) with the same convex hull as the visible matter: the first and last visible cube of
-/// eight voxels in each row, so that single noisy voxels do not count. Empty if there is none.
-std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
-    const glm::ivec3 dims = volume.geometry.dims;
+/// Points with the same convex hull as the visible boxes of `side` voxels: the first and last box of each row.
+std::vector<glm::dvec3> points_of_boxes(const Volume& volume, const Scene& scene, const glm::ivec3& side) {
+    const glm::ivec3 ends = volume.geometry.dims - side;
     const IndexClip clip = index_clip(scene.effects.clip, volume.geometry);
+    const glm::dvec3 middle = 0.5 * glm::dvec3(side - 1);
     const auto seen = [&](int x, int y, int z) {
-        for (int corner = 0; corner < 8; ++corner) {
-            const glm::ivec3 i(x + (corner & 1), y + ((corner >> 1) & 1), z + (corner >> 2));
-            if (!volume.has_data(i) || !shows(scene, static_cast<double>(volume.at(i.x, i.y, i.z)))) return false;
-        }
-        return clip.empty() || !clip.cuts_away(glm::dvec3(x, y, z) + 0.5);
+        for (int k = z; k < z + side.z; ++k)
+            for (int j = y; j < y + side.y; ++j)
+                for (int i = x; i < x + side.x; ++i)
+                    if (!volume.has_data({i, j, k}) || !shows(scene, static_cast<double>(volume.at(i, j, k))))
+                        return false;
+        return clip.empty() || !clip.cuts_away(glm::dvec3(x, y, z) + middle);
     };
     std::vector<glm::dvec3> points;
-    for (int z = 0; z + 1 < dims.z; ++z)
-        for (int y = 0; y + 1 < dims.y; ++y) {
-            int first = 0, last = dims.x - 2;
+    for (int z = 0; z <= ends.z; ++z)
+        for (int y = 0; y <= ends.y; ++y) {
+            int first = 0, last = ends.x;
             while (first <= last && !seen(first, y, z))
                 ++first;
             while (last > first && !seen(last, y, z))
                 --last;
             if (first > last) continue;
-            for (int corner = 0; corner < 4; ++corner) {
-                const double up = (corner & 1) == 0 ? -0.5 : 1.5, far = (corner & 2) == 0 ? -0.5 : 1.5;
-                points.emplace_back(first - 0.5, y + up, z + far);
-                points.emplace_back(last + 1.5, y + up, z + far);
-            }
+            for (const int far : {0, side.z})
+                for (const int up : {0, side.y}) {
+                    points.emplace_back(first - 0.5, y + up - 0.5, z + far - 0.5);
+                    points.emplace_back(last + side.x - 0.5, y + up - 0.5, z + far - 0.5);
+                }
         }
+    return points;
+}
+
+/// Points (index space of `volume`) with the same convex hull as the visible matter. Only cubes of eight voxels count,
+/// as far as the volume is that thick: single voxels may be noise. If there is no cube, all matter is thin, and single
+/// voxels count. Empty if nothing is visible.
+std::vector<glm::dvec3> seen_points(const Volume& volume, const Scene& scene) {
+    std::vector<glm::dvec3> points = points_of_boxes(volume, scene, glm::min(volume.geometry.dims, glm::ivec3(2)));
+    if (points.empty()) points = points_of_boxes(volume, scene, glm::ivec3(1));
     return points;
 }
 

@@ -14,7 +14,7 @@ constexpr double kWidestSlope = 1.2;
 // Optical depth at which a light's pixel saturates: 6e-6 of the light remain, less than a unorm16 step.
 constexpr float kDark = 12.0F;
 // Quadrature nodes per piece of a footprint. Error for slices of a voxel, relative to the peak: 1e-3 (10 nodes: 1e-5).
-constexpr std::uint32_t kNodes = 4;
+constexpr std::uint32_t kLightNodes = 4;
 // Thinnest layer, voxels. Thinner layers resolve nothing more, since kernels have a radius of 1.6 voxels.
 constexpr double kThinnestLayer = 1.0;
 
@@ -154,7 +154,7 @@ FramePlan plan_light_frame(const Volume& volume, const Scene& scene, const Shado
     FramePlan plan = plan_frame(volume, only_matter(scene), view, settings, glm::ivec2(shadows.quality.resolution),
                                 shader::PAYLOAD_COLOR, splats, reach);
     plan.variant.payload = shader::PAYLOAD_TAU;
-    plan.variant.nodes = kNodes;
+    plan.variant.nodes = kLightNodes;
     plan.params.saturation = kDark;
     return plan;
 }

@@ -62,17 +62,25 @@ void SplatStore::forget_light() {
 }
 
 bool SplatStore::collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
-    if (!volume.changed() && collected_ == wanted) return false;
+    const StaleResults stale = collected_ ? stale_results(*collected_, wanted) : StaleResults{};
+    if (!stale.lists && stale.transfer) classify(wanted);
+    if (!volume.changed() && !stale.lists) return false;
     // The spline's coefficients depend on all samples.
-    if (volume.changed() && collected_ == wanted && !wanted.takes_coefficients())
+    if (volume.changed() && !stale.lists && !wanted.takes_coefficients())
         collect_changes(volume, cost);
     else
-        recollect(volume, wanted, cost);
+        recollect(volume, wanted, volume.changed() ? StaleResults{} : stale, cost);
     volume.forget_changes();
     return true;
 }
 
-void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost) {
+void SplatStore::classify(const CollectionPlan& wanted) {
+    std::ranges::copy(wanted.transfer, lists_.transfer.mapped<shader::TransferRow>(wanted.transfer.size()).begin());
+    collected_->transfer = wanted.transfer;
+}
+
+void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale,
+                           SetupCost& cost) {
     collected_.reset();
     forget_light();
     lists_.occlusion = {};
@@ -81,8 +89,8 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, Se
     if (wanted.labels) volume.provide_labels();
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
-    prepare(wanted, whole);
-    auto list = collect_block(wanted, whole, true, kMostSplats, cost);
+    prepare(wanted, whole, stale);
+    auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
     collected_ = wanted;
 }
@@ -128,18 +136,22 @@ void SplatStore::clear_counts() {
     lists_.bricks.clear();
 }
 
-void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& largest) {
+void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& largest, const StaleResults& stale) {
     // Free old resources before allocating new ones, so that both never exist at once.
     for (const SplatListRow& row : splat_list_rows())
         lists_.*row.list = {};
     for (const CollectionBufferRow& row : collection_buffer_rows())
         lists_.*row.buffer = {};
-    for (const auto& row : field_image_rows())
-        lists_.*row.image = {};
+    if (stale.edges) lists_.edges = {};
+    if (stale.mask) lists_.buried = {};
     clear_counts();
-    for (const auto& row : field_image_rows())
-        if (row.held(plan))
-            lists_.*row.image = gpu::GpuImage(session_->device(), row.shape(largest.size), row.text.name);
+    std::vector<const gpu::GpuImage*> made;
+    for (const auto& row : field_image_rows()) {
+        gpu::GpuImage& image = lists_.*row.image;
+        if (image || !row.held(plan)) continue;
+        image = gpu::GpuImage(session_->device(), row.shape(largest.size), row.text.name);
+        made.push_back(&image);
+    }
     for (const CollectionBufferRow& row : collection_buffer_rows())
         if (const std::uint64_t bytes = row.bytes(plan, largest.core_size); bytes > 0)
             lists_.*row.buffer = gpu::Buffer(session_->device(), bytes, Place::Host, row.text.name);
@@ -148,8 +160,8 @@ void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& larg
         std::ranges::copy(plan.transfer, lists_.transfer.mapped<shader::TransferRow>(plan.transfer.size()).begin());
     session_->bindings().write_splats(lists_);
     session_->commands().run([&] {
-        for (const auto& row : field_image_rows())
-            if (lists_.*row.image) session_->commands().prepare({&(lists_.*row.image)});
+        for (const gpu::GpuImage* image : made)
+            session_->commands().prepare({image});
     });
 }
 
@@ -266,14 +278,16 @@ void SplatStore::hold_list(CollectedBlock& collected) {
 }
 
 std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& plan, const CollectionBlock& block,
-                                                        bool exact, std::uint64_t most_splats, SetupCost& cost) {
+                                                        bool exact, std::uint64_t most_splats, SetupCost& cost,
+                                                        const StaleResults& stale) {
     passes::CollectSplats collect = collect_inputs(plan);
     collect.core_size = block.core_size;
     place_block(plan, block);
     gpu::Commands& commands = session_->commands();
+    const bool estimates = plan.edge_field && stale.edges;
     commands.run([&] {
-        mark_block(plan, block);
-        if (plan.edge_field) {
+        if (stale.mask) mark_block(plan, block);
+        if (estimates) {
             const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
             commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
         }
@@ -281,7 +295,7 @@ std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& pl
     });
     add_times(cost.times, commands.span_times());
     auto out = list_block(plan, block, exact, most_splats, cost);
-    if (out && plan.edge_field) cost.voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
+    if (out && estimates) cost.voxels_estimated += VoxelBox{glm::ivec3(0), block.size - 1}.count();
     return out;
 }
 

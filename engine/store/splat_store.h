@@ -52,8 +52,10 @@ class SplatStore {
     /// Binds these lists and the volume's images for the next runs.
     void bind(const VolumeStore& volume) const;
 
-    /// Runs passes 1 and 2 if the plan or samples changed since the list was made. Returns whether they ran.
+    /// Runs those of passes 1 and 2 whose inputs changed since they last ran. Returns whether any ran.
     bool collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
+    /// Replaces the transfer function by that of a plan for the same lists.
+    void classify(const CollectionPlan& wanted);
     /// Runs pass 2b if the scene needs it and its plan changed. Returns whether it ran.
     bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     void drop_shadows();
@@ -87,10 +89,11 @@ class SplatStore {
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 
   private:
-    void recollect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
+    void recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale, SetupCost& cost);
     void collect_changes(VolumeStore& volume, SetupCost& cost);
-    /// Drops all splats and allocates the resources of the plan's passes for blocks as large as `largest`.
-    void prepare(const CollectionPlan& plan, const CollectionBlock& largest);
+    /// Drops all splats and everything stale; allocates the resources of the plan's passes for blocks as large as
+    /// `largest`.
+    void prepare(const CollectionPlan& plan, const CollectionBlock& largest, const StaleResults& stale = {});
     void clear_counts();
     /// Reallocates the lists for `count` splats in total.
     void reserve(const CollectionPlan& plan, std::uint64_t count);
@@ -105,10 +108,11 @@ class SplatStore {
     /// exceed `most_splats`.
     std::optional<CollectedBlock> list_block(const CollectionPlan& plan, const CollectionBlock& block, bool exact,
                                              std::uint64_t most_splats, SetupCost& cost);
-    /// Runs passes 1 and 2 for a block and appends its splats. The images must have the block's samples (and
-    /// coefficients).
+    /// Runs passes 1, as far as they are stale, and 2 for a block and appends its splats. The images must have the
+    /// block's samples (and coefficients).
     std::optional<CollectedBlock> collect_block(const CollectionPlan& plan, const CollectionBlock& block, bool exact,
-                                                std::uint64_t most_splats, SetupCost& cost);
+                                                std::uint64_t most_splats, SetupCost& cost,
+                                                const StaleResults& stale = {});
     /// Sets the list's bounding box and bricks to those of its only block.
     void hold_list(CollectedBlock& collected);
     std::vector<float> read_block(const VolumeStore& volume, std::size_t block, std::optional<std::size_t> after);

@@ -7,11 +7,10 @@ struct VolumeEnds {
     vec3 far;
 };
 
-// For the ray from `from` along `way`; no component of `way` is 0. An axis of one voxel has no ends.
+// For the ray from `from` along `way`; no component of `way` is 0.
 VolumeEnds volume_ends(vec3 from, vec3 way, ivec3 size) {
     vec3 a = (vec3(-0.5) - from) / way, b = (vec3(size) - 0.5 - from) / way;
-    bvec3 endless = equal(size, ivec3(1));
-    return VolumeEnds(mix(min(a, b), vec3(-1e9), endless), mix(max(a, b), vec3(1e9), endless));
+    return VolumeEnds(min(a, b), max(a, b));
 }
 
 // Unit vector along one axis that points out of the volume where the ray enters it (z = `low` along `way`).

@@ -36,15 +36,18 @@ Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
 }
 
 // The outward normal of the volume's border next to voxel p; 0 if p is not an outermost voxel. The border lies half a
-// voxel beyond the outermost samples. An axis of one voxel has no border.
+// voxel beyond the outermost samples. On an axis of one voxel all voxels lie between two borders; it comes last, since
+// the sum of the kernels fades out only towards the other borders.
 vec3 border_beside(ivec3 p) {
     ivec3 at = p + params.scene.block_origin;
     bvec3 low = equal(at, ivec3(0)), high = equal(at, params.scene.volume_dims - 1);
+    vec3 thin = vec3(0.0);
     for (int i = 0; i < 3; ++i)
-        if ((low[i] || high[i]) && params.scene.volume_dims[i] > 1) {
+        if (low[i] || high[i]) {
             vec3 n = vec3(0.0);
             n[i] = high[i] ? 1.0 : -1.0;
-            return n;
+            if (!low[i] || !high[i]) return n;
+            thin = n;
         }
-    return vec3(0.0);
+    return thin;
 }

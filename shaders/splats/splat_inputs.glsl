@@ -24,7 +24,7 @@ struct SplatInputs {
 // amount of matter.
 float border_weight(ivec3 voxel) {
     ivec3 dims = params.frame.dims;
-    ivec3 outermost = (ivec3(equal(voxel, ivec3(0))) | ivec3(equal(voxel, dims - 1))) * ivec3(greaterThan(dims, ivec3(1)));
+    ivec3 outermost = ivec3(equal(voxel, ivec3(0))) + ivec3(equal(voxel, dims - 1));
     return pow(BORDER_WEIGHT, float(outermost.x + outermost.y + outermost.z));
 }
 

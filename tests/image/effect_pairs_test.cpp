@@ -1,5 +1,5 @@
-// Combines the effects of the table (engine/forecast/effect_table.h) and compares the pictures with the double-precision
-// reference: every pair by itself, and mixtures of many effects that together contain every pair.
+// Combines the effects of the table (engine/forecast/effect_table.h) and compares the pictures with the
+// double-precision reference: every pair by itself, and mixtures of many effects that together contain every pair.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,15 +22,15 @@ using EffectSet = std::set<std::size_t>;  // indices into effect_table()
 
 /// A translucent skin around an opaque torus on a slanted grid, with nothing switched on.
 FrameRequest plain_torus() {
-    static const auto volume = placed(
-        std::make_shared<const Volume>(sample(torus_scene({19, 18, 13}, {9.2, 8.7, 6.1}, 5.2, 2.7))),
-        glm::dmat3(glm::dvec3(0.9, 0.1, 0.05), glm::dvec3(-0.1, 1.1, 0), glm::dvec3(0, 0.1, 1.2)), {-4, 3, 1});
+    static const auto volume =
+        placed(std::make_shared<const Volume>(sample(torus_scene({19, 18, 13}, {9.2, 8.7, 6.1}, 5.2, 2.7))),
+               glm::dmat3(glm::dvec3(0.9, 0.1, 0.05), glm::dvec3(-0.1, 1.1, 0), glm::dvec3(0, 0.1, 1.2)), {-4, 3, 1});
     FrameRequest request;
     request.volume = volume;
     request.scene.iso_values = {0.2, 0.5};
     request.scene.materials = {{}, {{0.2, 0.5, 1}, 0.15}, {{1, 0.85, 0.7}, 2}};
     request.camera = look(*volume, {10, -15, 18}, {9, 8.6, 6}, 40);
-    request.size = {37, 30};
+    request.size = {21, 18};
     request = plain_request(request);
     // The device tests saturation after its own groups of sheets, which costs up to 1 - saturation.
     request.settings.saturation = 1;
@@ -44,14 +44,16 @@ FrameRequest with_effects(const EffectSet& effects) {
         if (table[i].base != nullptr) table[i].base(request);
     for (const std::size_t i : effects)
         table[i].turn_on(request);
-    request.size = glm::min(request.size, glm::ivec2(74, 60));
+    request.size = glm::min(request.size, glm::ivec2(40, 36));
     return request;
 }
 
 /// Effects that another one switches off, and why.
 bool excludes(std::string_view off, std::string_view by) {
     // Optical depth sums all matter on a ray, buried or not.
-    return off == "buried voxels" && by == "output tau";
+    if (off == "buried voxels") return by == "output tau";
+    // Slices are integrated, and they have no outlines.
+    return (off == "footprint table" || off == "smooth outlines") && by == "sliced sheets";
 }
 
 std::string joined(const EffectSet& effects) {
@@ -61,14 +63,24 @@ std::string joined(const EffectSet& effects) {
     return text;
 }
 
-/// The smallest agreement of a picture with these effects, dB.
-double smallest_psnr(const FrameRequest& request, Output output) {
-    if (output == Output::Normal) return 50;  // if a ray only touches a face, rounding decides
+/// The largest difference of nearly all pixels; full scale is 1.
+double largest_difference(const FrameRequest& request, Output output) {
+    if (output != Output::Color) return 0.002;
     // Shadows are swept in layers of whole pixels, the reference sums kernels: docs/method/light.md gives the errors.
-    if (output == Output::Color && !shadow_lights(request.scene).empty()) return 27;
+    if (!shadow_lights(request.scene).empty()) return 0.06;
     // Between drawn pixels a refined picture differs by at most a step of eight bits.
-    if (output == Output::Color && drawn_settings(request).pixels == PixelChoice::Refined) return 50;
-    return 60;
+    return drawn_settings(request).pixels == PixelChoice::Refined ? 0.01 : 0.002;
+}
+
+/// The largest difference without the worst pixels, one in fifty: where a ray only touches a face, rounding decides.
+double difference_of_most(const Image& a, const Image& b) {
+    const auto channels = static_cast<std::size_t>(a.channels);
+    std::vector<double> worst(a.pixels.size() / channels);
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        worst[i / channels] = std::max(worst[i / channels], std::abs(static_cast<double>(a.pixels[i] - b.pixels[i])));
+    const auto place = worst.begin() + static_cast<std::ptrdiff_t>(worst.size() - 1 - worst.size() / 50);
+    std::ranges::nth_element(worst, place);
+    return *place;
 }
 
 Image output_of(const RenderResult& result, Output output) {
@@ -112,9 +124,11 @@ void expect_agreement(const EffectSet& effects) {
     Image color = prepared.render(camera, size.x, size.y);
     const Image unlabelled = color;
     if (scene.effects.overlays.orientation) draw_overlays(color, *volume, scene, camera);
-    for (const auto& [output, wanted] :
-         {std::pair{Output::Color, true}, {Output::Tau, outputs.tau}, {Output::Depth, outputs.depth},
-          {Output::Normal, outputs.normal}, {Output::Distance, outputs.distance}}) {
+    for (const auto& [output, wanted] : {std::pair{Output::Color, true},
+                                         {Output::Tau, outputs.tau},
+                                         {Output::Depth, outputs.depth},
+                                         {Output::Normal, outputs.normal},
+                                         {Output::Distance, outputs.distance}}) {
         if (!wanted) continue;
         Image actual = output_of(result, output);
         Image expected = output == Output::Color ? color : prepared.render(camera, size.x, size.y, output);
@@ -127,11 +141,12 @@ void expect_agreement(const EffectSet& effects) {
             for (float& v : image->pixels)
                 v /= peak;
         const ImageDifference difference = compare_images(actual, expected);
-        EXPECT_GE(difference.psnr, smallest_psnr(request, output))
-            << "output " << static_cast<int>(output) << ", largest " << difference.max << " at " << difference.x
-            << ", " << difference.y;
+        const double most = difference_of_most(actual, expected);
+        EXPECT_LE(most, largest_difference(request, output))
+            << "output " << static_cast<int>(output) << ", largest " << difference.max << " at " << difference.x << ", "
+            << difference.y;
         EXPECT_GT(evenness(expected).mean * evenness(expected).variation, 0.01) << "the picture is empty";
-        std::printf("%6.1f dB, largest %.4f, output %d: %s\n", difference.psnr, difference.max,
+        std::printf("%6.1f dB, largest %.4f, of most %.5f, output %d: %s\n", difference.psnr, difference.max, most,
                     static_cast<int>(output), joined(effects).c_str());
     }
 }
@@ -170,11 +185,14 @@ std::vector<EffectSet> mixtures() {
     std::mt19937 random(1);
     while (!missing.empty()) {
         EffectSet best;
-        for (int i = 0; i < 400; ++i) {
+        std::ptrdiff_t most = 0;
+        for (int i = 0; i < 20; ++i) {
             EffectSet mixture;
             for (std::size_t e = 0; e < effect_table().size(); ++e)
                 if (random() % 2 == 0) mixture.insert(e);
-            if (best.empty() || added(mixture) > added(best)) best = mixture;
+            const std::ptrdiff_t more = added(mixture);
+            if (more > most) best = mixture;
+            most = std::max(most, more);
         }
         std::erase_if(missing, [&](const EffectSet& pair) { return std::ranges::includes(best, pair); });
         chosen.push_back(best);
@@ -182,10 +200,13 @@ std::vector<EffectSet> mixtures() {
     return chosen;
 }
 
-TEST(EffectMixtures, MatchTheReferenceWithEveryPair) {
-    for (const EffectSet& mixture : mixtures())
-        expect_agreement(mixture);
+class EffectMixtures : public testing::TestWithParam<EffectSet> {};
+
+TEST_P(EffectMixtures, MatchTheReference) {
+    expect_agreement(GetParam());
 }
+
+INSTANTIATE_TEST_SUITE_P(All, EffectMixtures, testing::ValuesIn(mixtures()));
 
 }  // namespace
 }  // namespace edgesplat::test

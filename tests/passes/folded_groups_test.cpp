@@ -37,9 +37,11 @@ std::map<std::string, Words> left_by(const PassScene& s, const glm::ivec2& size,
             left["buried mask"].push_back(mark);
     for (const glm::uvec2& words : download<glm::uvec2>(state, lists.edges))
         left["edge field"].insert(left["edge field"].end(), {words.x, words.y});
-    for (const auto& [name, list] :
-         {std::pair{"splats", &lists.splats}, {"traits", &lists.traits}, {"values", &lists.values},
-          {"occlusion", &lists.occlusion}, {"shadows", &lists.shadows}})
+    for (const auto& [name, list] : {std::pair{"splats", &lists.splats},
+                                     {"traits", &lists.traits},
+                                     {"values", &lists.values},
+                                     {"occlusion", &lists.occlusion},
+                                     {"shadows", &lists.shadows}})
         if (*list) left[name] = download<std::uint32_t>(state, *list, list->bytes() / 4);
     const auto pixels = state.targets().output.mapped<std::uint32_t>(static_cast<std::size_t>(4 * size.x * size.y));
     left["picture"].assign(pixels.begin(), pixels.end());
@@ -136,9 +138,9 @@ TEST(FoldedGroups, CoverTheLineOnce) {
 /// A shader that reads a number of a workgroup or invocation along x alone, or folds it by itself, breaks when its
 /// dispatch is folded. The other reads are of pictures and bricks, or of dispatches of a fixed size.
 TEST(FoldedGroups, AreNumberedInOnePlace) {
-    const std::set<std::string> others{"groups.glsl",         "7_resolve.comp",     "2c_sweep_light.comp",
-                                       "brick_list.glsl",     "raycast_bricks.comp", "raycast_leaps.comp",
-                                       "raycast.glsl",        "4d_count_pairs.comp", "4f_scatter_pairs.comp",
+    const std::set<std::string> others{"groups.glsl",          "7_resolve.comp",         "2c_sweep_light.comp",
+                                       "brick_list.glsl",      "raycast_bricks.comp",    "raycast_leaps.comp",
+                                       "raycast.glsl",         "4d_count_pairs.comp",    "4f_scatter_pairs.comp",
                                        "4a_count_sheets.comp", "4c_scatter_splats.comp", "4c_scatter_slots.comp"};
     const std::filesystem::path folder = std::filesystem::path(EDGESPLAT_SOURCE_DIR) / "shaders";
     for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {

@@ -306,6 +306,7 @@ TEST(Clip, GivesFiniteNumbersForExtremePlanesAndEyes) {
                     const std::string what =
                         fmt::format("{}, {}, {}", place.name, removed ? "removed" : "kept", name_of(sheets));
                     EXPECT_TRUE(within(r.color, 0, 1.001F)) << what;
+                    EXPECT_TRUE(shows_its_matter(r.color, *r.tau)) << what;
                     EXPECT_TRUE(within(*r.tau, 0, 1e3F)) << what;
                     EXPECT_TRUE(within(*r.depth, -3, 1e3F)) << what;
                     EXPECT_TRUE(within(*r.normal, -1.0001F, 1.0001F)) << what;

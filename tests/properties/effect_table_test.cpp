@@ -6,6 +6,7 @@
 
 #include "engine/error.h"
 #include "engine/forecast/effect_table.h"
+#include "engine/forecast/forecast.h"
 #include "tests/properties/scenes.h"
 
 namespace edgesplat::test {
@@ -49,6 +50,23 @@ TEST(EffectTable, EachSwitchActivatesOnlyItsOwnEffect) {
     }
     EXPECT_THROW(effect_named("bloom"), Error);
     EXPECT_EQ(&effect_named("light"), &*std::ranges::find(effect_table(), "light", &Effect::name));
+}
+
+TEST(EffectTable, NamesResourcesThatExist) {
+    for (const Effect& effect : effect_table()) {
+        FrameRequest request = plain_request(torus_request());
+        if (effect.base != nullptr) effect.base(request);
+        effect.turn_on(request);
+        const CollectionPlan plan = planned_collection(request);
+        const FrameForecast forecast = forecast_frame(
+            request, plan, most_splats(plan), kernel_reach(drawn_settings(request)), gpu::profile_named("lavapipe"));
+        std::set<std::string_view> names;
+        for (const PlannedResource& resource : forecast.resources)
+            names.insert(resource.text.name);
+        for (const auto* listed : {&effect.resources, &effect.resized})
+            for (const std::string_view name : *listed)
+                EXPECT_TRUE(names.contains(name)) << effect.name << ": " << name;
+    }
 }
 
 }  // namespace

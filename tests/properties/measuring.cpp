@@ -31,6 +31,15 @@ std::optional<double> last_below(std::span<const double> profile, double level, 
 
 }  // namespace
 
+bool shows_its_matter(const Image& color, const Image& tau) {
+    double shown = 0, there = 0;
+    for (std::size_t i = 0; i < tau.pixels.size(); ++i) {
+        shown += static_cast<double>(color.pixels[4 * i + 3]);
+        there -= std::expm1(-static_cast<double>(tau.pixels[i]));
+    }
+    return shown >= 0.5 * there;
+}
+
 // Defined here, since the header would include Vulkan's headers in every test.
 bool refines_pixels() {
     return gpu::profile_named(test_renderer().device().profile).refines;

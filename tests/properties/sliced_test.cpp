@@ -107,6 +107,7 @@ TEST(Sliced, TauDoesNotDependOnSheets) {
 void expect_sound_slices(const Shot& shot, const std::string& what) {
     const RenderResult result = render(shot, {true, true, true, true});
     EXPECT_TRUE(within(result.color, 0, 1.0001F)) << what;
+    EXPECT_TRUE(shows_its_matter(result.color, *result.tau)) << what;
     EXPECT_TRUE(within(*result.tau, 0, 1e9F)) << what << ": tau";
     // Slices lie in front of the eye.
     EXPECT_TRUE(within(*result.depth, -1e-3F, 1e9F)) << what << ": depth";

@@ -111,6 +111,7 @@ RenderResult sound(const Shot& shot, const std::string& what) {
     const double far = 1e30;
     const auto bound = static_cast<float>(far);
     EXPECT_TRUE(within(result.color, 0, 1.0001F)) << what << ": colour";
+    EXPECT_TRUE(shows_its_matter(result.color, *result.tau)) << what << ": the picture is empty";
     EXPECT_TRUE(within(*result.tau, 0, bound)) << what << ": tau";
     EXPECT_TRUE(within(*result.depth, -bound, bound)) << what << ": depth";
     EXPECT_TRUE(within(*result.distance, -4, 4)) << what << ": distance";

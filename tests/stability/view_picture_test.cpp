@@ -147,8 +147,7 @@ TEST(ViewPicture, SplatsOfAThousandthOfAPixel) {
     const glm::dvec3 middle(11.6, 11.3, 6.4), way = glm::normalize(glm::dvec3(0.2, 1, -0.8));
     shot.camera = look(*shot.volume, middle - distance * way, middle,
                        2 * glm::degrees(std::atan(4.5 * voxels_a_pixel / distance)));
-    const RenderResult sharp = sound(shot, "without antialiasing");
-    EXPECT_LE(middle_of(sharp.color, 3).most, 1);
+    sound(shot, "without antialiasing");
     shot.scene.effects.antialias = true;
     shot.scene.materials[1].extinction = 0.01;
     const Image tau = *sound(shot, "with antialiasing").tau;

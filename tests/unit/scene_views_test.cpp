@@ -63,6 +63,38 @@ TEST(SceneViews, EveryViewShowsTheWholeVolume) {
     }
 }
 
+TEST(SceneViews, FillThePictureWithThinMatter) {
+    struct Thin {
+        const char* name;
+        glm::ivec3 dims, low, high;  // the matter's first and last voxel
+    };
+    for (const Thin& thin :
+         {Thin{"one slice", {30, 20, 1}, {6, 5, 0}, {15, 12, 0}}, Thin{"sheet", {30, 20, 18}, {6, 5, 7}, {15, 12, 7}},
+          Thin{"row", {30, 20, 18}, {6, 5, 7}, {15, 5, 7}}, Thin{"voxel", {30, 20, 18}, {6, 5, 7}, {6, 5, 7}},
+          Thin{"cube", {30, 20, 18}, {6, 5, 7}, {15, 12, 14}}}) {
+        Volume volume;
+        volume.geometry.dims = thin.dims;
+        volume.values.assign(volume.geometry.voxel_count(), 0.0F);
+        for (int z = thin.low.z; z <= thin.high.z; ++z)
+            for (int y = thin.low.y; y <= thin.high.y; ++y)
+                for (int x = thin.low.x; x <= thin.high.x; ++x)
+                    volume.values[static_cast<std::size_t>(x + thin.dims.x * (y + thin.dims.y * z))] = 1;
+        finish_volume(volume);
+        for (const std::string_view name : {"front", "top", "oblique"}) {
+            const Camera camera = named_view(name, {&volume, &surface_scene(), 40, 200, 200, true});
+            double most = 0;
+            for (int corner = 0; corner < 8; ++corner) {
+                const glm::dvec3 up(corner & 1, (corner >> 1) & 1, corner >> 2);
+                const glm::dvec3 at = glm::mix(glm::dvec3(thin.low) - 0.5, glm::dvec3(thin.high) + 0.5, up);
+                const glm::dvec2 p = project(camera, volume.geometry.to_world(at), 1);
+                most = std::max({most, std::abs(p.x), std::abs(p.y)});
+            }
+            EXPECT_LE(most, 1) << thin.name << ", " << name;
+            EXPECT_GE(most, 0.9) << thin.name << ", " << name;
+        }
+    }
+}
+
 TEST(SceneViews, DirectionsFollowPatientAxes) {
     const Volume volume = oblique_volume();
     const glm::dvec3 center = volume.geometry.to_world((glm::dvec3(volume.geometry.dims) - 1.0) / 2.0);

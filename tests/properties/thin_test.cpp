@@ -1,0 +1,110 @@
+// Volumes of one slice, and matter of single voxels: a slice is one voxel thick, and what is thin fills the picture,
+// too.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "engine/reference/3_select_footprints.h"
+#include "engine/scene/views.h"
+#include "tests/properties/scenes.h"
+
+namespace edgesplat::test {
+namespace {
+
+constexpr double kDiscRadius = 9.3;                // voxels
+const glm::dvec3 kSliceSpacing(2.08, 2.08, 2.03);  // mm
+
+/// A disc in each of `slices` slices.
+VolumePointer disc(int slices) {
+    return sampled(
+        {32, 32, slices},
+        [](const glm::dvec3& x) {
+            return std::clamp(0.5 + kDiscRadius - std::hypot(x.x - 15.4, x.y - 15.7), 0.0, 1.0);
+        },
+        glm::dmat3(kSliceSpacing.x, 0, 0, 0, kSliceSpacing.y, 0, 0, 0, kSliceSpacing.z));
+}
+
+Shot disc_from_above(int slices, double extinction) {
+    Shot shot;
+    shot.volume = disc(slices);
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {{1, 0.8, 0.6}, extinction}};
+    shot.width = shot.height = 96;
+    shot.camera = named_view("top", {.volume = shot.volume.get(),
+                                     .scene = &shot.scene,
+                                     .fov_y = 20,
+                                     .width = shot.width,
+                                     .height = shot.height,
+                                     .fill = true});
+    return shot;
+}
+
+TEST(Thin, SlicesAreFlatDiscsThatFillThePicture) {
+    for (const int slices : {1, 2}) {
+        SCOPED_TRACE(slices);
+        Shot shot = disc_from_above(slices, 8);
+        const Image bare = [&] {
+            Shot unlit = shot;
+            unlit.scene.lights.clear();
+            return render(unlit).color;
+        }();
+        shot.scene.lights = {directional_light({0, 0, 1})};
+        shot.scene.ambient = 0;
+        const Image lit = render(shot).color;
+        const CameraFrame frame = camera_frame(shot.camera);
+        int covered = 0, widest = 0;
+        for (int y = 0; y < shot.height; ++y) {
+            int across = 0;
+            for (int x = 0; x < shot.width; ++x) {
+                across += lit.at(x, y, 3) > 0.5F ? 1 : 0;
+                const double from_middle = std::hypot(x + 0.5 - shot.width / 2.0, y + 0.5 - shot.height / 2.0);
+                if (from_middle > 0.42 * shot.width) continue;
+                // Light along the face's normal shows the matter's own colour.
+                for (int c = 0; c < 4; ++c)
+                    EXPECT_NEAR(lit.at(x, y, c), bare.at(x, y, c), 0.01) << x << ", " << y;
+                EXPECT_GT(lit.at(x, y, 3), 0.99F) << x << ", " << y;
+            }
+            covered += across;
+            widest = std::max(widest, across);
+        }
+        EXPECT_GE(widest, 0.9 * shot.width);
+        const double top = shot.volume->geometry.to_world({0, 0, slices - 0.5}).z;
+        const double pixel = 2 * frame.tan_half_y * std::abs(frame.eye.z - top) / shot.height;
+        const double radius = kDiscRadius * kSliceSpacing.x;
+        EXPECT_NEAR(covered * pixel * pixel, std::numbers::pi * radius * radius, 0.02 * covered * pixel * pixel);
+    }
+}
+
+TEST(Thin, SlicesAreAVoxelThick) {
+    for (const int slices : {1, 2, 3}) {
+        const Shot shot = disc_from_above(slices, 0.1);
+        const Image tau = render_tau(shot);
+        const double want = 0.1 * slices * kSliceSpacing.z;
+        for (int y = 24; y < 72; y += 3)
+            for (int x = 24; x < 72; x += 3)
+                EXPECT_NEAR(tau.at(x, y, 0), want, 0.05 * want) << slices << ": " << x << ", " << y;
+    }
+}
+
+/// From the side a slice is a bar of its thickness.
+TEST(Thin, ASliceFromTheSideIsABar) {
+    Shot shot = disc_from_above(1, 8);
+    shot.camera = named_view("front", {.volume = shot.volume.get(),
+                                       .scene = &shot.scene,
+                                       .fov_y = 10,
+                                       .width = shot.width,
+                                       .height = shot.height,
+                                       .fill = true});
+    const Image color = render(shot).color;
+    const CameraFrame frame = camera_frame(shot.camera);
+    const double distance = std::abs(frame.eye.y - shot.volume->geometry.center().y);
+    const double pixel = 2 * frame.tan_half_y * distance / shot.height;
+    double high = 0;
+    for (int y = 0; y < shot.height; ++y)
+        high += static_cast<double>(color.at(shot.width / 2, y, 3));
+    EXPECT_NEAR(high * pixel, kSliceSpacing.z, 0.1 * kSliceSpacing.z + pixel);
+}
+
+}  // namespace
+}  // namespace edgesplat::test
