@@ -48,10 +48,12 @@ double organ(const glm::dvec3& p) {
 TEST(Labels, AreFewWholeNumbersWithoutPartialVolume) {
 <<<<<<< HEAD
     EXPECT_EQ(label_values(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
-    EXPECT_EQ(label_values(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })), (std::vector<float>{0, 1}))
+    EXPECT_EQ(label_values(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })),
+              (std::vector<float>{0, 1}))
 =======
     EXPECT_EQ(numbers_of_labels(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
-    EXPECT_EQ(numbers_of_labels(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })), (std::vector<float>{0, 1}))
+    EXPECT_EQ(numbers_of_labels(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })),
+              (std::vector<float>{0, 1}))
 >>>>>>> cfa96c8 (docs, tests: list the keys of labels)
         << "a mask";
 }
@@ -74,7 +76,8 @@ TEST(Labels, RejectsMeasuredValues) {
     EXPECT_TRUE(numbers_of_labels(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
         << "partial volume, in whole numbers";
     EXPECT_TRUE(numbers_of_labels(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
-    EXPECT_TRUE(numbers_of_labels(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
+    EXPECT_TRUE(numbers_of_labels(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty())
+        << "many values";
 >>>>>>> cfa96c8 (docs, tests: list the keys of labels)
 }
 
