@@ -15,11 +15,7 @@ namespace {
 using edgesplat::Volume;
 
 /// The values of the recognised labels; empty if the volume is no segmentation.
-<<<<<<< HEAD
-std::vector<float> label_values(const Volume& volume) {
-=======
 std::vector<float> numbers_of_labels(const Volume& volume) {
->>>>>>> cfa96c8 (docs, tests: list the keys of labels)
     std::vector<float> values;
     if (const auto table = edgesplat::labels_of(volume))
         for (const edgesplat::Label& label : table->labels)
@@ -46,15 +42,9 @@ double organ(const glm::dvec3& p) {
 }
 
 TEST(Labels, AreFewWholeNumbersWithoutPartialVolume) {
-<<<<<<< HEAD
-    EXPECT_EQ(label_values(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
-    EXPECT_EQ(label_values(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })),
-              (std::vector<float>{0, 1}))
-=======
     EXPECT_EQ(numbers_of_labels(sampled(organ)), (std::vector<float>{0, 3, 7, 250}));
     EXPECT_EQ(numbers_of_labels(sampled([](const glm::dvec3& p) { return organ(p) == 3 ? 1 : 0; })),
               (std::vector<float>{0, 1}))
->>>>>>> cfa96c8 (docs, tests: list the keys of labels)
         << "a mask";
 }
 
@@ -65,20 +55,12 @@ TEST(Labels, RejectsMeasuredValues) {
             sum += organ(p + glm::dvec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
         return sum / 27;
     };
-<<<<<<< HEAD
-    EXPECT_TRUE(label_values(sampled(blurred)).empty()) << "fractions";
-    EXPECT_TRUE(label_values(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
-        << "partial volume, in whole numbers";
-    EXPECT_TRUE(label_values(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
-    EXPECT_TRUE(label_values(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty()) << "many values";
-=======
     EXPECT_TRUE(numbers_of_labels(sampled(blurred)).empty()) << "fractions";
     EXPECT_TRUE(numbers_of_labels(sampled([&](const glm::dvec3& p) { return std::round(blurred(p)); })).empty())
         << "partial volume, in whole numbers";
     EXPECT_TRUE(numbers_of_labels(sampled([](const glm::dvec3&) { return 4; })).empty()) << "constant";
     EXPECT_TRUE(numbers_of_labels(sampled([](const glm::dvec3& p) { return p.x + 40 * p.y; })).empty())
         << "many values";
->>>>>>> cfa96c8 (docs, tests: list the keys of labels)
 }
 
 /// Cells of 4^3 voxels with a number each, in no order, and a background around them.
@@ -90,11 +72,7 @@ double cell(const glm::dvec3& p) {
 }
 
 TEST(Labels, MayBeMany) {
-<<<<<<< HEAD
-    const std::vector<float> cells = label_values(sampled(cell));
-=======
     const std::vector<float> cells = numbers_of_labels(sampled(cell));
->>>>>>> cfa96c8 (docs, tests: list the keys of labels)
     EXPECT_GT(cells.size(), 190U);
     EXPECT_EQ(cells.front(), 0);
     // A measurement that was enlarged without interpolation has no transitions either.
@@ -102,11 +80,7 @@ TEST(Labels, MayBeMany) {
         const glm::dvec3 q = glm::floor(p / 2.0);
         return std::round(500 + 400 * std::sin(q.x / 7) + 90 * q.y + 17 * q.z);
     };
-<<<<<<< HEAD
-    EXPECT_TRUE(label_values(sampled(enlarged)).empty());
-=======
     EXPECT_TRUE(numbers_of_labels(sampled(enlarged)).empty());
->>>>>>> cfa96c8 (docs, tests: list the keys of labels)
 }
 
 TEST(Labels, AreDrawnAsMask) {
