@@ -23,21 +23,15 @@ find_package(pugixml REQUIRED)
 # Scene files.
 pkg_check_modules(TOMLPLUSPLUS REQUIRED IMPORTED_TARGET tomlplusplus)
 
-# Named components: otherwise ITK loads every module of its build.
-set(EDGESPLAT_ITK_COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK
-    ITKIOGIPL ITKImageFunction ITKImageGrid)
-find_package(ITK REQUIRED COMPONENTS ${EDGESPLAT_ITK_COMPONENTS})
-# ITK's use file registers factories per directory. An interface target holds its settings instead.
-add_library(edgesplat_itk INTERFACE)
-target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
-target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
+# What reads files of volumes, for edgesplat_volume.
+add_library(edgesplat_formats INTERFACE)
 
 # Compressed pixels of DICOM files.
 find_package(GDCM REQUIRED)
-target_include_directories(edgesplat_itk SYSTEM INTERFACE ${GDCM_INCLUDE_DIRS})
-target_link_libraries(edgesplat_itk INTERFACE gdcmMSFF gdcmDSED gdcmCommon)
+target_include_directories(edgesplat_formats SYSTEM INTERFACE ${GDCM_INCLUDE_DIRS})
+target_link_libraries(edgesplat_formats INTERFACE gdcmMSFF gdcmDSED gdcmCommon)
 
-# Packed volumes and HDF5 files. ITK's search has already run this CMake module.
+# Packed volumes and HDF5 files.
 find_package(HDF5 REQUIRED COMPONENTS C)
 # netCDF files.
 pkg_check_modules(NETCDF REQUIRED IMPORTED_TARGET netcdf)
@@ -45,14 +39,14 @@ pkg_check_modules(NETCDF REQUIRED IMPORTED_TARGET netcdf)
 # bzip2 in NRRD; gzip in NIfTI, MGH and MRC.
 find_package(ZLIB REQUIRED)
 find_package(BZip2 REQUIRED)
-target_link_libraries(edgesplat_itk INTERFACE ZLIB::ZLIB BZip2::BZip2)
+target_link_libraries(edgesplat_formats INTERFACE ZLIB::ZLIB BZip2::BZip2)
 # Series in zip archives.
 find_package(LibArchive REQUIRED)
 # VTK's XML files: the document, and blocks compressed by LZ4 and LZMA.
 find_package(pugixml REQUIRED)
 find_package(LibLZMA REQUIRED)
 pkg_check_modules(LZ4 REQUIRED IMPORTED_TARGET liblz4)
-target_link_libraries(edgesplat_itk INTERFACE pugixml::pugixml LibLZMA::LibLZMA PkgConfig::LZ4)
+target_link_libraries(edgesplat_formats INTERFACE pugixml::pugixml LibLZMA::LibLZMA PkgConfig::LZ4)
 
 # The navigation app: window and widgets. Debian's imgui library contains the Vulkan backend.
 find_package(glfw3 3.3 REQUIRED)
@@ -72,4 +66,10 @@ endif()
 
 if(EDGESPLAT_TESTS)
     find_package(GTest REQUIRED)
+    # Tests write volumes through ITK. Named components: otherwise ITK loads every module of its build. Its use file
+    # registers factories per directory; an interface target holds its settings instead.
+    find_package(ITK REQUIRED COMPONENTS ITKCommon ITKIOImageBase ITKIONRRD ITKIOMeta ITKIONIFTI ITKIOVTK ITKIOGIPL)
+    add_library(edgesplat_itk INTERFACE)
+    target_include_directories(edgesplat_itk SYSTEM INTERFACE ${ITK_INCLUDE_DIRS})
+    target_link_libraries(edgesplat_itk INTERFACE ${ITK_LIBRARIES})
 endif()

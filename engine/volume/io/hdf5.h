@@ -15,7 +15,7 @@
 namespace edgesplat::detail {
 
 /// HDF5 keeps global state and may be built without thread safety. Lock this mutex around every use of it, including
-/// ITK's MINC reader. Recursive.
+/// libnetcdf. Recursive.
 std::recursive_mutex& hdf5_mutex();
 
 /// Owns an HDF5 identifier and closes it in the destructor.

@@ -15,7 +15,7 @@ namespace {
 static_assert(sizeof(hid_t) == sizeof(std::int64_t) && sizeof(hsize_t) == sizeof(std::uint64_t));
 
 /// Holds the HDF5 lock and disables HDF5's error printing, because the messages here replace it. Restores the printing
-/// afterwards: ITK's MINC reader detects failures by it.
+/// afterwards: other users of the library detect failures by it.
 class Quiet {
   public:
     Quiet() : lock_(hdf5_mutex()) {
