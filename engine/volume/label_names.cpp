@@ -204,7 +204,7 @@ std::optional<Label> label_in(const Columns& columns, std::string_view line) {
     } else if (columns.hex && *columns.hex < fields.size()) {
         // Spreadsheets drop leading zeros.
         const std::string& hex = fields[*columns.hex];
-        label.color = hex_color(hex.size() < 6 ? std::string(6 - hex.size(), '0') + hex : hex);
+        if (!hex.empty()) label.color = hex_color(hex.size() < 6 ? std::string(6 - hex.size(), '0') + hex : hex);
     }
     return label;
 }

@@ -34,7 +34,7 @@ VolumePointer label_volume(const std::vector<bool>& shown) {
 Shot label_shot(const std::vector<bool>& shown, double extinction) {
     Shot shot;
     shot.volume = label_volume(shown);
-    shot.scene = two_tone(0.5, extinction);
+    shot.scene = two_tone(0, extinction);
     shot.scene.lights.clear();
     shot.scene.label_colors = {glm::dvec3(0), kRed, kBlue, {0, 1, 0}};
     shot.camera = look(*shot.volume, {-14, 3, 21}, {11.5, 11.5, 11.5}, 40, {0, 0, 1});
@@ -126,7 +126,7 @@ TEST(Labels, AreThousands) {
     finish_volume(volume);
     Shot shot;
     shot.volume = std::make_shared<const Volume>(drawn_labels(volume));
-    shot.scene = two_tone(0.5, 8);
+    shot.scene = two_tone(0, 8);
     shot.scene.lights.clear();
     // The label of each voxel column says where it is.
     shot.scene.label_colors.assign(table->labels.size(), glm::dvec3(0));
