@@ -93,18 +93,17 @@ TEST(Labels, DoNotChangeTheSurface) {
 }
 
 TEST(Labels, LookAsInTheReference) {
-    for (const double extinction : {8.0, 0.4}) {
-        Shot shot = label_shot({false, true, true, true}, extinction);
-        shot.scene.lights = {Light{}};
-        shot.width = shot.height = 40;
-        const Image device = render(shot).color;
-        const Image exact =
-            reference::render(*shot.volume, shot.scene, shot.camera, shot.settings, shot.width, shot.height);
-        double square = 0;
-        for (std::size_t i = 0; i < device.pixels.size(); ++i)
-            square += std::pow(static_cast<double>(device.pixels[i] - exact.pixels[i]), 2);
-        EXPECT_LT(std::sqrt(square / static_cast<double>(device.pixels.size())), 4e-3) << extinction;
-    }
+    // Translucent: voxels beside labels have splats, too.
+    Shot shot = label_shot({false, true, true, true}, 0.4);
+    shot.scene.lights = {Light{}};
+    shot.width = shot.height = 20;
+    const Image device = render(shot).color;
+    const Image exact =
+        reference::render(*shot.volume, shot.scene, shot.camera, shot.settings, shot.width, shot.height);
+    double square = 0;
+    for (std::size_t i = 0; i < device.pixels.size(); ++i)
+        square += std::pow(static_cast<double>(device.pixels[i] - exact.pixels[i]), 2);
+    EXPECT_LT(std::sqrt(square / static_cast<double>(device.pixels.size())), 4e-3);
 }
 
 TEST(Labels, AreThousands) {
