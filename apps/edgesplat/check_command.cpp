@@ -16,6 +16,7 @@
 #include "engine/error.h"
 #include "engine/scene/views.h"
 #include "engine/volume/find_volumes.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
 #include "engine/volume/value_text.h"
 
@@ -43,6 +44,16 @@ std::string orientation(const Volume& volume) {
     return letters;
 }
 
+/// Smallest and largest value in the file's unit; of labels that are stored as ranks: their numbers.
+Json range_of(const edgesplat::Volume& volume) {
+    if (volume.labels && has_ranks(*volume.labels)) {
+        const auto number = [&](const edgesplat::Label& label) { return std::stod(volume.labels->number_of(label)); };
+        return {number(volume.labels->labels.front()), number(volume.labels->labels.back())};
+    }
+    return {volume.in_file_unit(static_cast<double>(volume.min_value)),
+            volume.in_file_unit(static_cast<double>(volume.max_value))};
+}
+
 /// What the table and the JSON file say of a volume.
 Json entry_of(const std::string& path, const Volume& volume) {
     const auto& geometry = volume.geometry;
@@ -56,9 +67,7 @@ Json entry_of(const std::string& path, const Volume& volume) {
             {"orientation", orientation(volume)},
             {"geometry_source", volume.geometry_source.empty() ? "none" : volume.geometry_source},
             {"length_unit", volume.length_unit},
-            {"range",
-             {volume.in_file_unit(static_cast<double>(volume.min_value)),
-              volume.in_file_unit(static_cast<double>(volume.max_value))}},
+            {"range", range_of(volume)},
             {"no_data", volume.non_finite_count},
             {"notes", volume.notes},
             {"warnings", volume.warnings}};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "engine/error.h"
 #include "engine/forecast/effect_rows.h"
 #include "engine/plan/plan.h"
 #include "engine/scene/default_materials.h"
@@ -107,6 +108,7 @@ void mask(FrameRequest& request) {
 
 /// Gives the labels their colours.
 void label(FrameRequest& request) {
+    if (!request.volume->labels) fail("the samples are no labels");
     request.scene.label_colors = label_colors(*request.volume->labels);
 }
 

@@ -11,7 +11,7 @@
 namespace edgesplat {
 namespace {
 
-constexpr int kUpSteps = 16;            ///< steps of the transport of the up direction between two keys
+constexpr int kUpSteps = 16;          ///< steps of the transport of the up direction between two keys
 constexpr double kRunsThrough = 0.1;  ///< share of the keys' distances to their targets: below it, the view is rotated
 constexpr double kAlongUp = 0.985;    ///< cosine (10 degrees) above which a view counts as parallel to `up`
 

@@ -113,6 +113,8 @@ class Labels {
                                           table_.labels.size(), table_.number_of(table_.labels.front()),
                                           table_.number_of(table_.labels.back()))
                                     : "; `edgesplat info` lists them";
+        else
+            hint += "?";
         fail("volume.{0} (--{0}): {1} has no label '{2}'{3}", key, volume_.name, stripped(entry), hint);
     }
 

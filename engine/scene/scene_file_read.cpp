@@ -346,7 +346,12 @@ void set_key(SceneDocument& document, std::string_view assignment) {
 void animate_number(SceneDocument& document, std::string_view key, double value) {
     const SceneKey* entry = find_key(key_address(key).path);
     const bool whole = entry && (entry->type == KeyType::Integer || entry->type == KeyType::Integers);
-    set_key(document, fmt::format("{}={}", key, whole ? std::round(value) : value));
+    const double number = whole ? std::round(value) : value;
+    // A volume's keys may be open before; effects and list entries must exist.
+    if (key.starts_with("volume."))
+        set_key(document, fmt::format("{}={}", key, number));
+    else
+        set_number(document, key, number);
 }
 
 }  // namespace edgesplat

@@ -202,7 +202,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Lie{"f.nrrd", NRRD("double", "18446744073709551615 1 1", "raw"), "whole number"},
                     Lie{"g.nrrd", NRRD("uint8", "1290 1290 1290", "raw"), "2146689000"},
                     Lie{"a.mha", META("1000 1000 1000", ""), "4000000000"},
-                    Lie{"b.mha", META("1000 1000 1000", "CompressedData = True\n"), "1000000000"},
+                    Lie{"b.mha", META("1000 1000 1000", "CompressedData = True\n"), "4000000000"},
                     Lie{"c.mha", META("9223372036854775807 9223372036854775807 2", ""), "at most"},
                     Lie{"d.mha", META("1000 1000 1000", "ElementNumberOfChannels = 1000000000\n"), "d.mha"},
                     Lie{"a.vtk",

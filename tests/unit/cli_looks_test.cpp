@@ -50,7 +50,7 @@ TEST_F(CliLooks, PrintsManualAndCompletionScripts) {
     for (const char* shell : {"bash", "zsh", "fish"})
         EXPECT_THAT(run(std::string("--completion ") + shell).out, HasSubstr("sheet-format")) << shell;
     EXPECT_THAT(run("--version").out,
-                AllOf(StartsWith("edgesplat 0."), HasSubstr("built with Vulkan"), HasSubstr("ITK ")));
+                AllOf(StartsWith("edgesplat 0."), HasSubstr("built with Vulkan"), HasSubstr("GDCM ")));
 }
 
 TEST_F(CliLooks, CompletesInBash) {

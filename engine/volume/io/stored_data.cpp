@@ -413,7 +413,8 @@ void read_stored(const StoredData& data, const StoredSelection& selection, Volum
     const auto nx = static_cast<std::size_t>(dims.x), ny = static_cast<std::size_t>(dims.y);
     const std::size_t voxels = volume.geometry.voxel_count(), item = size_of(data.type), step = selection.step[0];
     const bool even = selection.step[1] == step * nx && selection.step[2] == step * nx * ny;
-    const bool can_be_ranked = item >= 4 && data.type != SampleType::Float32 && data.type != SampleType::Float64;
+    // Integers that may be labels, and values that floats may not hold, are looked at as a whole.
+    const bool as_a_whole = (item >= 4 && data.type != SampleType::Float32) || data.slope != 1 || data.intercept != 0;
     const std::size_t begin = even ? selection.first - selection.first % step : 0;
     const std::size_t count = even ? voxels * step : data.samples;
     if (volume.stored_type.empty()) volume.stored_type = name_of(data.type);
@@ -426,14 +427,14 @@ void read_stored(const StoredData& data, const StoredSelection& selection, Volum
     report(options, 0.05, "reading voxels");
     try {
         stream.skip(begin * item);
-        if (even && !can_be_ranked) {
-            volume.values.resize(voxels);
+        if (even && !as_a_whole) {
             const std::size_t part = std::max<std::size_t>(kChunk / (step * item), 1);
             const auto buffer = std::make_unique_for_overwrite<char[]>(std::min(part, voxels) * step * item);
             stored.data = buffer.get() + (selection.first - begin) * item;
             for (std::size_t done = 0; done < voxels; done += part) {
                 const std::size_t now = std::min(part, voxels - done);
                 stream.read(buffer.get(), now * step * item);
+                if (done == 0) volume.values.resize(voxels);  // a file of another content has failed by now
                 convert_stored(stored, now, volume.values.data() + done);
                 report(options, 0.05 + 0.8 * static_cast<double>(done) / static_cast<double>(voxels), "reading voxels");
             }
