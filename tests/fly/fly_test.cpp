@@ -137,7 +137,7 @@ TEST_F(FlyTest, ShowsAndHidesLabels) {
                 file.put(static_cast<char>(in < 3 ? 0 : x < 8 ? 2 : x < 16 ? 5 : 9));
             }
     file.close();
-    fly("size 900 1000\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
+    fly("size 640 760\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
         "settle\nexpect error == none\npicture some.png\nsave some.toml\nkey Ctrl+Z\nframes 2\nsettle\n"
         "picture again.png\ntap scene.labels.own_colours\nframes 2\nsettle\nexpect error == none\n"
         "expect iso > 0\nsave numbers.toml\n",
