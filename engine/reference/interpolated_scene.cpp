@@ -62,7 +62,7 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter, con
         double end = std::numeric_limits<double>::infinity();
         for (const double iso : look.iso_values)
             if (scaled_iso_value(volume, iso) > 0) end = std::min(end, scaled_iso_value(volume, iso));
-        scene.missing = [=](const glm::dvec3& x) {
+        scene.without_data = [=](const glm::dvec3& x) {
             const Field f = field();
             return !f.has_data(f.offset(f.clamped(glm::ivec3(glm::round(held(x)))))) &&
                    (of_data || sample(f, held(x), cubic) < end);

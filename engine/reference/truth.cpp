@@ -90,7 +90,7 @@ class TruthWalker {
         Probe p{t, scene_.value(x), scene_.signed_distance ? scene_.signed_distance(x) : 0.0, 0};
         const auto above = std::upper_bound(look_.iso_values.begin(), look_.iso_values.end(), p.value);
         p.material = static_cast<int>(above - look_.iso_values.begin());
-        if (scene_.missing && scene_.missing(x)) p.material = kNoMatter;
+        if (scene_.without_data && scene_.without_data(x)) p.material = kNoMatter;
         ++sum_.samples;
         return p;
     }

@@ -190,8 +190,8 @@ Volume preprocessed(Volume volume, const VolumeSource& source);
 /// `document.volume.labels`. Iso-values, a transfer function and a threshold are about the file's numbers, so with them
 /// labels are not drawn, whatever `volume.labels` says. Otherwise they are if `volume.labels` is true, if labels are
 /// chosen (`volume.only`, `volume.hide`), or if `volume.labels` is omitted and the volume is a segmentation in memory
-/// of at least 3 labels, or 2 of which one has a name, and neither builtin nor filtered. Throws Error if labels are
-/// chosen that are not drawn.
+/// that is neither builtin nor filtered and has at least 3 labels, or 2 and a name. Throws Error if labels are chosen
+/// but not drawn.
 void choose_labels(SceneDocument& document, const Volume& volume);
 
 /// The scene for a volume from `load_source`. Omitted iso-values come from, in this order: `iso_sigmas`; the materials'

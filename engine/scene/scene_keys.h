@@ -98,8 +98,8 @@ double number_at(const SceneDocument& document, std::string_view key);
 /// naming key, value and range.
 void set_number(SceneDocument& document, std::string_view key, double value);
 
-/// Sets a key to an animated value between others: `value` is rounded if the key holds whole numbers. Keys of the volume
-/// may be open before; effects and list entries must exist. Throws Error naming key, value and range.
+/// Sets a key to an animated value between others: `value` is rounded if the key holds whole numbers. Keys of the
+/// volume may be open before; effects and list entries must exist. Throws Error naming key, value and range.
 void animate_number(SceneDocument& document, std::string_view key, double value);
 
 }  // namespace edgesplat

@@ -58,8 +58,8 @@ Clip with_unit_normals(Clip clip) {
 }  // namespace
 
 struct Walls::Matter {
-    SolidValues values;
     std::shared_ptr<const Volume> volume;
+    SolidValues values;
     VolumeGeometry geometry;
     CellField field;
     std::vector<float> distances;  ///< signed, mm, at the voxels' centres
@@ -69,10 +69,10 @@ struct Walls::Matter {
     bool any = false, all = false;
 
     Matter(const std::shared_ptr<const Volume>& given, const Scene& scene)
-        : values(solid_values(scene, given->geometry.mean_spacing())),
-          volume(without_missing(limited_resolution(given), values)),
+        : volume(limited_resolution(given)),
+          values(solid_values(scene, given->geometry.mean_spacing())),
           geometry(volume->geometry),
-          field(*volume) {
+          field(*(volume = without_missing(volume, values))) {
         const glm::dvec3 spacing = geometry.spacing();
         const glm::dmat3 rows = glm::transpose(field.to_index);
         for (int axis = 0; axis < 3; ++axis)

@@ -35,8 +35,8 @@ struct AnalyticScene {
     /// a closed form (marschner-lobb, orbital, phantom). Exact except for gyroid: there it is 0 on the surface, has
     /// unit slope there, and is wrong by a few per cent one voxel away.
     std::function<double(const glm::dvec3&)> signed_distance;
-    std::function<bool(const glm::dvec3&)>
-        missing;                   ///< whether there is no matter at x, whatever its value; empty: nowhere
+    /// Whether there are no data at x; empty: there are data everywhere.
+    std::function<bool(const glm::dvec3&)> without_data;
     double rise = 1;               ///< reference for relative noise: inside - outside, else the value range
     double noise = 0;              ///< standard deviation of the noise that `sample` adds, in the unit of the value
     std::uint32_t noise_seed = 1;  ///< the same seed gives the same samples on every machine

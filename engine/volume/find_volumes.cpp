@@ -25,7 +25,7 @@ bool is_zarr(const fs::path& folder) {
                                [&](const char* name) { return fs::exists(folder / name, none); });
 }
 
-/// The header's text, of which data files' names are a part.
+/// The header's text; it contains the names of data files.
 std::string start_of(const fs::path& path) {
     constexpr std::size_t kHeader = 65536;
     std::ifstream file(path, std::ios::binary);

@@ -73,8 +73,8 @@ struct Volume {
     /// Per sample whether it contains no data: NaN, infinite, or the fill value that the file or the user declares. Not
     /// set: none. Such samples are transparent and count in no statistics.
     std::shared_ptr<const std::vector<bool>> no_data;
-    /// A value in the file's unit is `value_scale` times a sample: a power of two, 1 unless floats cannot hold the values.
-    /// Scenes, `min_value`, and everything in the engine use the samples' unit.
+    /// A value in the file's unit is `value_scale` times a sample: a power of two, 1 unless floats cannot hold the
+    /// values. Scenes, `min_value`, and everything in the engine use the samples' unit.
     double value_scale = 1;
     std::shared_ptr<const LabelTable> labels;  ///< set by load_volume if the samples are labels (labels_of)
     /// Only of drawn_labels(). `values` is then 1 where a label is shown, else 0; its range counts as 0 to 1 even if

@@ -61,7 +61,7 @@ TEST(Devices, AreRefusedIfTheyLackShaderRequirements) {
     EXPECT_THAT(gpu::exceeds_limits(limits, subgroups), testing::ElementsAre(testing::HasSubstr("{ Ballot }")));
     limits.maxPerStageDescriptorStorageImages = 4;
     EXPECT_THAT(gpu::exceeds_limits(limits, subgroups),
-                testing::ElementsAre("maxPerStageDescriptorStorageImages is 4, 16 are needed", testing::_));
+                testing::ElementsAre("maxPerStageDescriptorStorageImages is 4, 17 are needed", testing::_));
 }
 
 TEST(Texels, AreCountedByTheirFormat) {

@@ -20,8 +20,8 @@ struct Pose {
 };
 std::vector<Pose> poses(int count);
 
-/// Whether a picture is at least half as opaque, in the mean, as its optical depth says: finite and black is no picture of
-/// matter.
+/// Whether a picture is at least half as opaque, in the mean, as its optical depth says: finite and black is no picture
+/// of matter.
 bool shows_its_matter(const Image& color, const Image& tau);
 
 /// Samples a function of index space into a finished volume.

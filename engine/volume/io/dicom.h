@@ -192,7 +192,7 @@ struct DicomStack {
     std::string note;  ///< the choice
 };
 /// Chooses a series and, if its frames differ in size, orientation, spacing or Stack ID, one of its stacks. Leaves out
-/// localizers, which warnings name. Throws Error that lists what there is.
+/// localizers; warnings name them. Throws Error with a list of the choices.
 DicomStack choose_dicom_series(const std::string& name, const std::vector<DicomImage>& images,
                                const LoadOptions& options, std::vector<std::string>& warnings);
 

@@ -117,8 +117,7 @@ std::vector<std::string> files_of_dicom_directory(const std::string& path, std::
         example = id;
     }
     if (files.empty())
-        fail("{}: a DICOMDIR lists the files of its folder, of which none is there; give a folder with DICOM files",
-             path);
+        fail("{}: a DICOMDIR lists the files of its folder, and none is there; give a folder with DICOM files", path);
     if (missing > 0)
         warnings.push_back(
             fmt::format("{}: {} of the files that it lists are not there, such as {}.", path, missing, example));

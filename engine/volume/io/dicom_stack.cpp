@@ -34,7 +34,7 @@ std::string shown_value(const std::string& value) {
     return shown;
 }
 
-/// Frames at several positions, some of which may have several.
+/// Frames at several positions; a position may have several.
 struct DicomPlaces {
     const std::string& name;
     const std::vector<DicomImage>& images;

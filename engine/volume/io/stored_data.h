@@ -15,7 +15,7 @@ namespace edgesplat::detail {
 /// Deflate: a zlib or gzip stream. Text: numbers between white space or commas. Hex: two digits a byte.
 enum class StoredEncoding { Raw, Deflate, Bzip2, Text, Hex };
 
-/// Where samples are stored, and how.
+/// Place and encoding of stored samples.
 struct StoredData {
     std::string path;                          ///< the user's path, used in messages
     std::vector<std::filesystem::path> files;  ///< data files in order; each holds an equal share of the samples

@@ -71,7 +71,7 @@ ZarrRole role_of(const std::string& type, const std::string& name) {
 std::vector<ZarrAxis> multiscale_axes(const std::string& where, const json& multiscale, std::size_t count) {
     std::vector<ZarrAxis> axes;
     const json* list = member(multiscale, "axes");
-    if (list == nullptr) {  // before 0.3: t, c, z, y, x, of which files may lack the first ones
+    if (list == nullptr) {  // before 0.3: t, c, z, y, x; the first may be missing
         constexpr std::string_view kNames = "tczyx";
         if (count > 5) fail("{}: {} axes without names, expected at most t, c, z, y, x", where, count);
         for (std::size_t i = 5 - count; i < 5; ++i) {
