@@ -48,7 +48,8 @@ glm::ivec3 dims_of(const py::array& array, const std::string& name) {
 }
 
 /// The type of an array of integers that floats may not represent.
-std::optional<SampleType> wide_integer(const py::array& array) {
+std::optional<detail::SampleType> wide_integer(const py::array& array) {
+    using detail::SampleType;
     const char kind = array.dtype().kind();
     const auto bytes = array.dtype().itemsize();
     if (bytes != 4 && bytes != 8) return std::nullopt;
