@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/scene/views.h"
+#include "engine/volume/labels.h"
 
 namespace edgesplat::test {
 namespace {
@@ -20,6 +21,24 @@ Shot builtin(const char* name, const glm::ivec3& dims, double extinction = 3) {
     shot.scene.materials.resize(scene.iso_values.size() + 1);
     if (scene.iso_values.size() > 1) shot.scene.materials[1] = {{0.3, 0.5, 1}, 0.12};
     shot.scene.materials.back() = {{1, 0.8, 0.55}, extinction};
+    shot.width = shot.height = kSide;
+    return shot;
+}
+
+/// A ball of two labels.
+Shot two_labels() {
+    Volume ball;
+    ball.geometry.dims = glm::ivec3(16);
+    for (int z = 0; z < 16; ++z)
+        for (int y = 0; y < 16; ++y)
+            for (int x = 0; x < 16; ++x)
+                ball.values.push_back(glm::length(glm::dvec3(x, y, z) - 7.5) > 6 ? 0.0F : x + z < 15 ? 1.0F : 2.0F);
+    finish_volume(ball);
+    Shot shot;
+    shot.volume = std::make_shared<const Volume>(drawn_labels(ball));
+    shot.scene.iso_values = {0.5};
+    shot.scene.materials = {{}, {.extinction = 8}};
+    shot.scene.label_colors = {glm::dvec3(0), {1, 0.3, 0.1}, {0.1, 0.4, 1}};
     shot.width = shot.height = kSide;
     return shot;
 }
@@ -272,6 +291,9 @@ std::vector<ImageCase> shading_cases() {
     // Away from the iso-value, matter is no longer lit by the gradient.
     orbital.scene.lit = Lit::Edges;
     cases.push_back({"light_on_edges_only", orbital});
+    Shot labels = two_labels();
+    from(labels, "oblique", 40);
+    cases.push_back({"labels", labels});
     Shot several = torus_shot();
     several.scene.ambient = 0.05;
     several.scene.lights = {directional_light({1, -1, 0.3}), directional_light({-1, -0.5, 0.2}),
