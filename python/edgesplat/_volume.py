@@ -175,7 +175,8 @@ class Volume:
         """The samples, float32, shape (z, y, x). Read-only; shares the volume's memory. A float64 copy if the values are
         too large or too small for float32. Where there are no data: the smallest sample. Labels with numbers above 2^24
         are stored as their places in `labels`, from 0."""
-        return self._core.array if self._core.value_scale == 1 else self._core.array * self._core.value_scale
+        scale = self._core.value_scale
+        return self._core.array if scale == 1 else self._core.array.astype(np.float64) * scale
 
     @property
     def no_data(self) -> np.ndarray | None:

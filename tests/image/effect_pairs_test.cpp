@@ -157,7 +157,7 @@ void expect_agreement(const EffectSet& effects) {
 }
 
 /// Whether the set holds two effects that are not compared together. A scene has labels or a transfer function, not
-/// both. With antialias, the device and the reference differ where outlines are smoothed (a twelfth of full scale at
+/// both. With antialias, the device and the reference differ where outlines are smoothed (an eighth of full scale at
 /// the outline) and where only edges are lit (a fiftieth): which of them is right is not known yet.
 bool left_out(const EffectSet& effects) {
     const auto holds = [&](std::string_view name) {

@@ -187,7 +187,8 @@ def test_marks_are_in_their_places_in_pictures(write, tmp_path, renderer):
             assert weight.sum() > 3
             return (weight * columns).sum() / weight.sum(), (weight * rows).sum() / weight.sum()
 
-        # From the front: the patient's left is at the right, the top at the top, the front in the middle.
-        assert middle(0)[0] > 5 and abs(middle(0)[1]) < 5
-        assert middle(2)[1] < -5 and abs(middle(2)[0]) < 5
-        assert max(map(abs, middle(1))) < 3
+        # From the front: the patient's left is at the right of the front mark, the top above it. Rims of all marks have
+        # the first colour.
+        left, front, top = (np.array(middle(channel)) for channel in range(3))
+        assert left[0] - front[0] > 8 and abs(left[1] - front[1]) < 4
+        assert front[1] - top[1] > 8 and abs(front[0] - top[0]) < 4

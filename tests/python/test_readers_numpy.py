@@ -83,7 +83,7 @@ def test_image_and_labels(tmp_path):
     ids = np.array([0, 8, 997, 312782546, 312782550, 312782554], np.int64)[np.arange(60) % 6].reshape(3, 4, 5)
     assert len(set(Volume(saved(tmp_path / "b.npy", ids)).array.ravel())) == 6
     half = np.array([np.inf, -np.inf, np.nan, 6e-8, 65504, -0.0, 1, 6.1e-5], np.float16).reshape(2, 2, 2)
-    with pytest.warns(UserWarning, match="3 samples are not finite"):
+    with pytest.warns(UserWarning, match="3 samples contain no data"):
         found = Volume(saved(tmp_path / "c.npy", half)).array
     finite = np.isfinite(half)
     assert np.array_equal(found[finite], half[finite].astype(np.float32))

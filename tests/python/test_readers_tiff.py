@@ -228,7 +228,7 @@ def test_ome_companion(tmp_path):
 
 def test_ome_with_missing_planes(tmp_path):
     path = write_pages(tmp_path / "a.tif", STACK[:2], ome('<TiffData IFD="0" FirstZ="0"/><TiffData IFD="1" FirstZ="2"/>'))
-    with pytest.warns(UserWarning, match="20 samples are not finite"):
+    with pytest.warns(UserWarning, match="20 samples contain no data"):
         volume = Volume(path)
     assert np.array_equal(volume.array[[0, 2]], STACK[:2].astype(np.float32))
     assert np.all(volume.array[1] == STACK[:2].min())
@@ -454,7 +454,7 @@ def test_no_data(tmp_path):
     path = tmp_path / "a.tif"
     values = np.array([[1, -9999, 5]], "<i2")
     path.write_bytes(own_tiff(values.tobytes(), 3, 1, 16, kind=2, extra=[(42113, 2, b"-9999\0")]))
-    with pytest.warns(UserWarning, match="1 samples are not finite"):
+    with pytest.warns(UserWarning, match="1 samples contain no data"):
         volume = Volume(path)
     assert (volume.min, volume.max) == (1, 5)
 

@@ -72,7 +72,7 @@ def test_v2_fill_values(tmp_path, value, dtype):
     if np.isfinite(value):
         check(Volume(path), stored[...])
     else:
-        with pytest.warns(UserWarning, match="8 samples are not finite"):
+        with pytest.warns(UserWarning, match="8 samples contain no data"):
             assert Volume(path).max == 1
 
 
@@ -363,7 +363,7 @@ def test_v3_fill_values(tmp_path, fill, dtype, value):
     array = np.ones((2, 2, 4), dtype)
     path = write_v3(tmp_path / "a.zarr", array, (2, 2, 2), [of_bytes()], fill=fill, skip=[(0, 0, 1)])
     if value is None:
-        with pytest.warns(UserWarning, match="8 samples are not finite"):
+        with pytest.warns(UserWarning, match="8 samples contain no data"):
             assert Volume(path).max == 1
     else:
         expected = array.astype(np.float32)
@@ -404,7 +404,7 @@ def test_scale_of_values(tmp_path):
     attributes = {"scale_factor": 0.5, "add_offset": -10, "_FillValue": 3}
     array = np.array([[[0, 1], [3, 30]]], "i2")
     path = write_v3(tmp_path / "a.zarr", array, [1, 2, 2], [of_bytes()], attributes=attributes)
-    with pytest.warns(UserWarning, match="1 samples are not finite"):
+    with pytest.warns(UserWarning, match="1 samples contain no data"):
         volume = Volume(path)
     assert (volume.min, volume.max) == (-10, 5)
 
