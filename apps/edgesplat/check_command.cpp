@@ -130,7 +130,7 @@ std::string fitted(std::string text, std::size_t width, bool keep_end = false) {
         if (keep_end)
             text = ".." + text.substr(text.starts_with("..") ? 3 : 1);
         else
-            text = text.substr(0, text.size() - (text.ends_with("..") ? 3 : 1)) + "..";
+            text.replace(text.size() - (text.ends_with("..") ? 3 : 1), std::string::npos, "..");
     }
     return text + std::string(width - columns_of(text), ' ');
 }

@@ -40,6 +40,7 @@ std::vector<double> chosen_iso_values(const SceneDocument& document, const Volum
     if (suggestions.empty())
         fail("{}: every voxel has the value {}, so there is no surface to show", volume.name,
              value_text(volume, volume.min_value));
+    // cppcheck-suppress containerOutOfBounds; fail() does not return
     return {suggestions.front().value};
 }
 

@@ -88,10 +88,8 @@ void search(const fs::path& folder, FoundVolumes& found) {
         else
             others.push_back(file.string());
     }
-    if (dicom) {
-        // With images in the same folder it is refused, which says why.
-        found.paths.push_back(folder.string());
-    } else if (slices.size() > 1) {
+    // DICOM with images in the same folder is refused, and the message says why.
+    if (dicom || slices.size() > 1) {
         found.paths.push_back(folder.string());
     } else {
         for (const std::string& slice : slices)

@@ -98,8 +98,8 @@ std::vector<SuspectedFill> suspected_fill(const Volume& volume) {
         if (!volume.has_data(i)) continue;
         const float value = volume.values[i];
         if (distinct.size() < kFewestDistinct) distinct.insert(value);
-        if (low.known < 2 || value <= low.values[1]) low.add(value, std::less<float>());
-        if (high.known < 2 || value >= high.values[1]) high.add(value, std::greater<float>());
+        if (low.known < 2 || value <= low.values[1]) low.add(value, std::less<>());
+        if (high.known < 2 || value >= high.values[1]) high.add(value, std::greater<>());
     }
     if (distinct.size() < kFewestDistinct) return {};
     const auto [low_fill, low_next] = low.values;

@@ -241,7 +241,7 @@ bool is_compressed(std::string_view head) {
 
 Volume load_archive(const std::string& path, const LoadOptions& options, const ArchiveLoader& loader) {
     const TemporaryFolder temporary;
-    const fs::path folder = temporary.path();
+    const fs::path& folder = temporary.path();
     LoadOptions rest = options;
     rest.inner.clear();
     return with_names({{folder.string() + "/", path + ":"}, {folder.string(), path}}, [&] {
@@ -267,6 +267,7 @@ Volume load_archive(const std::string& path, const LoadOptions& options, const A
             if (volumes.size() > 1)
                 fail("{}: an archive of {} volumes; choose one: {}", path, volumes.size(),
                      member_list(path, folder, volumes));
+            // cppcheck-suppress containerOutOfBounds; fail() does not return
             chosen = volumes.front();
         }
         Volume volume = loader.load(chosen.string(), files, rest);

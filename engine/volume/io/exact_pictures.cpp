@@ -258,6 +258,7 @@ class GifReader {
   private:
     int byte() {
         if (at_ >= bytes_.size()) fail("{}: truncated at byte {}", path_, bytes_.size());
+        // cppcheck-suppress containerOutOfBounds; fail() does not return
         return static_cast<unsigned char>(bytes_[at_++]);
     }
     std::size_t word() {

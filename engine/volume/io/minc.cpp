@@ -121,7 +121,7 @@ double minc_value(SampleType type, bool swapped, const char* data) {
     const std::size_t size = size_of(type);
     std::memcpy(raw.data(), data, size);
     if (swapped) std::reverse(raw.begin(), raw.begin() + static_cast<std::ptrdiff_t>(size));
-    const auto as = [&]<typename T>(T value) {
+    const auto as = [&](auto value) {
         std::memcpy(&value, raw.data(), sizeof value);
         return static_cast<double>(value);
     };

@@ -67,7 +67,7 @@ class Minc1Parser {
     }
     std::string name() {
         const std::size_t count = whole();
-        const std::string text = take(count);
+        std::string text = take(count);
         take((4 - count % 4) % 4);
         return text;
     }

@@ -182,7 +182,8 @@ void set_nifti_place(const NiftiHeader& header, const LoadOptions& options, Volu
 
     double millimetres = 1;
     if (header.analyze) {
-        const std::string unit = header.bytes.substr(56, 4).c_str();  // vox_units, up to its 0
+        std::string unit = header.bytes.substr(56, 4);  // vox_units, up to its 0
+        unit.resize(std::min(unit.find('\0'), unit.size()));
         if (const auto known = millimetres_in(unit)) {
             volume.length_unit = trimmed(unit);
             millimetres = *known;

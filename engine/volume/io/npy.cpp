@@ -88,7 +88,7 @@ class NpyParser {
         if (!at_string()) wrong("a string");
         const auto end = text_.find(text_[at_], at_ + 1);
         if (end == std::string_view::npos) wrong("a closed string");
-        const std::string value(text_.substr(at_ + 1, end - at_ - 1));
+        std::string value(text_.substr(at_ + 1, end - at_ - 1));
         if (value.find('\\') != std::string::npos) wrong("a string without escapes");
         at_ = end + 1;
         return value;

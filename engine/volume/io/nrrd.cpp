@@ -619,7 +619,7 @@ std::optional<FileLayout> nrrd_layout(const std::string& path, Volume& descripti
     NrrdFile file = NrrdReading(header, {}).read(path);
     if (file.data.samples > kMaxPackedVoxels)
         fail("{}: dims {}: at most 2^40 voxels", path, fmt::join(file.dims, " x "));
-    const auto layout = layout_of_stored(file.data, file.selection, file.volume);
+    auto layout = layout_of_stored(file.data, file.selection, file.volume);
     if (!layout || !file.segments.empty()) return std::nullopt;
     description = std::move(file.volume);
     return layout;

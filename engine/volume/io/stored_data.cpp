@@ -499,7 +499,7 @@ std::string without_gzip(const std::string& path, std::optional<TemporaryFolder>
     data.path = path;
     DeflateBytes bytes(data, path);
     folder.emplace();
-    const std::string target = (folder->path() / "unpacked").string();
+    std::string target = (folder->path() / "unpacked").string();
     std::ofstream out(target, std::ios::binary);
     const std::size_t stored = fs::file_size(path);
     std::vector<char> part(kChunk);

@@ -64,9 +64,6 @@ class TiffFile {
     bool swapped_ = false;
 };
 
-/// Whether a file begins as TIFF or BigTIFF do.
-bool begins_as_tiff(std::string_view head);
-
 /// The type of a page's samples; half floats become float32. Throws Error for types that are not read.
 SampleType tiff_sample_type(const TiffFile& file, const TiffPage& page);
 

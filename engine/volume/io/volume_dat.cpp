@@ -260,8 +260,10 @@ std::optional<std::array<std::size_t, 3>> wien_dims(const std::string& path, std
     std::array<std::size_t, 3> dims{};
     std::size_t bytes = 2;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        dims[axis] = static_cast<unsigned char>(head[2 * axis]) +
-                     std::size_t{256} * static_cast<unsigned char>(head[2 * axis + 1]);
+        const auto low = static_cast<unsigned char>(head[2 * axis]),
+                   high = static_cast<unsigned char>(head[2 * axis + 1]);
+        const std::size_t side = low + 256UL * high;
+        dims[axis] = side;
         bytes *= dims[axis];
     }
     std::error_code error;

@@ -117,6 +117,7 @@ std::size_t chosen_vtk_array(const std::string& path, const LoadOptions& options
         if (found.size() > 1)
             fail("{}:{}: {} arrays have this name; expected {}:{} or {}:{}", path, options.inner, found.size(), path,
                  vtk_full_name(arrays[found[0]]), path, vtk_full_name(arrays[found[1]]));
+        // cppcheck-suppress containerOutOfBounds; fail() does not return
         return found[0];
     }
     if (shown.empty() && arrays.empty()) fail("{}: a grid without samples at its points or in its cells", path);

@@ -27,9 +27,10 @@ std::array<T, n> vtk_attribute(const std::string& path, const pugi::xml_node& no
             found = n + 1;
             break;
         }
+    constexpr bool kWhole = std::is_integral_v<T>;
     if (found != n)
         fail("{}: {} of {} is '{}': expected {} {}numbers", path, name, node.name(), tidy(given.substr(0, 80)), n,
-             std::is_integral_v<T> ? "whole " : "");
+             kWhole ? "whole " : "");
     return numbers;
 }
 
@@ -221,8 +222,12 @@ class VtkParts {
   public:
     VtkParts(const std::string& path, const VtkGrid& grid, const VtkArray& array, std::size_t component,
              bool rectilinear)
-        : path_(path), grid_(grid), array_(array), component_(component), rectilinear_(rectilinear) {
-        dims_ = vtk_dims(path, grid.extent, array.of_cells);
+        : path_(path),
+          grid_(grid),
+          array_(array),
+          component_(component),
+          rectilinear_(rectilinear),
+          dims_(vtk_dims(path, grid.extent, array.of_cells)) {
         voxels_ = dims_[0] * dims_[1] * dims_[2];
         const auto points = vtk_dims(path, grid.extent, false);
         for (std::size_t axis = 0; rectilinear && axis < 3; ++axis)

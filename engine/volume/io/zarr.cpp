@@ -455,7 +455,7 @@ ZarrArray array_at(const ZarrStore& store, const std::string& key) {
 
 /// A dataset's path inside its group.
 std::string dataset_path(const std::string& where, const json& dataset) {
-    const std::string path = text_of(dataset, "path");
+    std::string path = text_of(dataset, "path");
     if (path.empty() || path.starts_with('/') || path.find("..") != std::string::npos)
         fail("{}: a dataset with the path '{}': expected one inside its group", where, path);
     return path;
