@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <fstream>
 #include <optional>
 #include <span>
@@ -12,6 +11,7 @@
 #include <unordered_set>
 
 #include "engine/error.h"
+#include "engine/image/srgb.h"
 
 namespace edgesplat {
 namespace {
@@ -62,10 +62,8 @@ std::optional<double> color_number(std::string_view text) {
 /// Colour of sRGB components from 0 to 255.
 glm::dvec3 linear_color(const std::array<double, 3>& srgb) {
     glm::dvec3 color;
-    for (int c = 0; c < 3; ++c) {
-        const double v = srgb[static_cast<std::size_t>(c)] / 255;
-        color[c] = v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-    }
+    for (int c = 0; c < 3; ++c)
+        color[c] = to_linear(srgb[static_cast<std::size_t>(c)] / 255);
     return color;
 }
 

@@ -2,8 +2,6 @@
 
 #include <zlib.h>
 
-#include <cmath>
-
 namespace edgesplat::detail {
 
 PlainOrGzip::PlainOrGzip(const std::string& name, const std::string& file)
@@ -99,16 +97,6 @@ std::vector<char> read_block(const StoredBlock& block, const LoadOptions& option
         notes.push_back(
             fmt::format("The file is truncated: {} bytes of other frames are missing.", block.after - rest));
     return bytes;
-}
-
-float float_of_half_bits(std::uint16_t bits) {
-    const int exponent = (bits >> 10) & 31, fraction = bits & 1023;
-    float value = 0;
-    if (exponent == 31)
-        value = fraction == 0 ? std::numeric_limits<float>::infinity() : std::numeric_limits<float>::quiet_NaN();
-    else
-        value = std::ldexp(static_cast<float>(exponent == 0 ? fraction : fraction + 1024), std::max(exponent, 1) - 25);
-    return (bits & 0x8000) != 0 ? -value : value;
 }
 
 }  // namespace edgesplat::detail

@@ -69,7 +69,4 @@ std::size_t block_offset(const std::string& path, std::size_t first, std::size_t
 /// Adds a note about bytes that the header does not explain.
 std::vector<char> read_block(const StoredBlock& block, const LoadOptions& options, std::vector<std::string>& notes);
 
-/// An IEEE half-precision number as float.
-float float_of_half_bits(std::uint16_t bits);
-
 }  // namespace edgesplat::detail

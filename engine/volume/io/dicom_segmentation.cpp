@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "engine/image/srgb.h"
 #include "engine/volume/io/dicom.h"
 
 namespace edgesplat::detail {
@@ -72,8 +73,7 @@ struct DicomSegments {
                 const double at = number - first;
                 all = all && at >= 0 && at < static_cast<double>(entries.size());
                 if (!all) break;
-                const double c = entries[static_cast<std::size_t>(at)];
-                colour[channel] = c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4);
+                colour[channel] = to_linear(static_cast<double>(entries[static_cast<std::size_t>(at)]));
             }
             if (all) label.color = colour;
         }

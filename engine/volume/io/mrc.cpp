@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "engine/volume/io/binary_file.h"
+#include "engine/volume/io/half.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -181,8 +182,7 @@ std::vector<char> unpacked(const MrcHeader& header, int mode, const glm::ivec3& 
         for (std::size_t i = 0; i < values.size(); ++i) {
             const auto at = [&](std::size_t byte) { return static_cast<unsigned char>(data[2 * i + byte]); };
             const bool is_big = header.swapped == (std::endian::native == std::endian::little);
-            values[i] =
-                float_of_half_bits(static_cast<std::uint16_t>(is_big ? at(0) << 8 | at(1) : at(1) << 8 | at(0)));
+            values[i] = float_of_half(static_cast<std::uint16_t>(is_big ? at(0) << 8 | at(1) : at(1) << 8 | at(0)));
         }
         data.resize(values.size() * sizeof(float));
         std::memcpy(data.data(), values.data(), data.size());

@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "engine/volume/io/binary_file.h"
+#include "engine/volume/io/half.h"
 
 namespace edgesplat::detail {
 namespace {
@@ -285,7 +286,7 @@ Volume npy_volume(const std::string& path, const std::string& name, const LoadOp
             std::array<unsigned char, 2> raw{};
             std::memcpy(raw.data(), &data[2 * i], 2);
             if (stored.swapped) std::swap(raw[0], raw[1]);
-            halves[i] = float_of_half_bits(std::bit_cast<std::uint16_t>(raw));
+            halves[i] = float_of_half(std::bit_cast<std::uint16_t>(raw));
         }
         stored = {.type = SampleType::Float32, .data = halves.data()};
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/image/srgb.h"
 #include "engine/volume/io/nrrd_header.h"
 #include "engine/volume/io/readers.h"
 
@@ -22,7 +23,7 @@ std::optional<glm::dvec3> segment_color(const std::string& text) {
         double srgb = 0;
         const auto [stop, error] = std::from_chars(at, end, srgb);
         if (error != std::errc() || !(srgb >= 0 && srgb <= 1)) return std::nullopt;
-        color[channel] = srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
+        color[channel] = to_linear(srgb);
         at = stop;
     }
     return color;

@@ -11,6 +11,7 @@
 #include <limits>
 #include <unordered_set>
 
+#include "engine/image/srgb.h"
 #include "engine/volume/io/half.h"
 #include "engine/volume/io/ome.h"
 #include "engine/volume/io/samples.h"
@@ -292,10 +293,6 @@ void take_attributes(const ZarrArray& array, StoredSamples& stored, Volume& volu
     if (!stored.fill) stored.fill = number("missing_value");
 }
 
-double linear_of_srgb(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
 /// Labels with the names and colours of "image-label".
 void take_zarr_labels(const json& image_label, Volume& volume) {
     std::shared_ptr<LabelTable> table;
@@ -334,7 +331,7 @@ void take_zarr_labels(const json& image_label, Volume& volume) {
             glm::dvec3 color{0};
             for (int i = 0; i < 3; ++i) {
                 const json& part = (*rgba)[static_cast<std::size_t>(i)];
-                color[i] = part.is_number() ? linear_of_srgb(std::clamp(part.get<double>() / 255, 0.0, 1.0)) : 0;
+                color[i] = part.is_number() ? to_linear(std::clamp(part.get<double>() / 255, 0.0, 1.0)) : 0;
             }
             label->color = color;
         }
