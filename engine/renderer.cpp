@@ -8,6 +8,7 @@
 #include "engine/image/sample_mean.h"
 #include "engine/overlays/overlays.h"
 #include "engine/renderer/state.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/volume/packed_volume.h"
 #include "footprints/kernel.h"
 
@@ -126,7 +127,10 @@ RenderResult Renderer::render(const Scene& scene, const Camera& camera, const Se
         fail("effects.smooth_outlines: sheets in layers do not store outlines, expected --sheet-format tiles");
     if (scene.effects.smooth_outlines && state_->options.exchange)
         fail("effects.smooth_outlines: it cannot be combined with a division of sheets, expected false");
-    return draw_again_if_lost([&] { return render_once(scene, camera, wanted, width, height, aovs); });
+    // Votes about a surface cannot be divided between processes.
+    Settings drawn = wanted;
+    if (state_->options.exchange) drawn.opaque = OpaqueMatter::Kernels;
+    return draw_again_if_lost([&] { return render_once(scene, camera, drawn, width, height, aovs); });
 }
 
 RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, const Settings& wanted, int width,
@@ -144,7 +148,11 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     device.forget_peaks();
     const std::uint64_t submissions_before = commands.submissions();
     const gpu::PipelineCreation made = pipelines.creation();
-    self.splats.provide({self.splats.original(), scene, camera, wanted, size, aovs}, stats);
+    // Optical depth needs all voxels; surface splats are some. So it is drawn from a list of its own.
+    AovRequest outputs = aovs;
+    const bool tau_apart = aovs.tau && draws_surfaces(settings, scene, self.splats.original()->geometry);
+    outputs.tau = outputs.tau && !tau_apart;
+    self.splats.provide({self.splats.original(), scene, camera, wanted, size, outputs}, stats);
     const LevelStore& level = self.splats.level();
     const auto draw = [&](std::uint32_t payload, const glm::dvec2& offset) {
         FramePlan plan = drawer.plan(level, scene, camera, settings, size, payload);
@@ -171,14 +179,19 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     stats.sheet_groups = drawer.drawn().params.group_count;
     result.color = scene.effects.samples > 1 ? mean.image() : take(floats(drawer.pixels()), size, 0, 4);
 
-    for (const std::uint32_t payload : payloads_of(aovs)) {
-        if (payload == shader::PAYLOAD_COLOR) continue;
+    const auto add_output = [&](std::uint32_t payload) {
         draw(payload, {0, 0});
         for (const PassTime& pass : drawer.times())
             stats.passes.push_back({payload_name(payload) + ": " + pass.name, pass.milliseconds});
         for (const Aov& aov : edgesplat::aovs())
             if (aovs.*aov.wanted && aov.payload == payload)
                 result.*image_of(aov) = take(floats(drawer.pixels()), size, aov.first, aov.count());
+    };
+    for (const std::uint32_t payload : payloads_of(outputs))
+        if (payload != shader::PAYLOAD_COLOR) add_output(payload);
+    if (tau_apart) {
+        self.splats.provide({self.splats.original(), scene, camera, wanted, size, aovs}, stats);
+        add_output(shader::PAYLOAD_TAU);
     }
     const Volume& volume = *level.volume.volume();
     if (scene.effects.overlays.any()) draw_overlays(result.color, volume, scene, camera);

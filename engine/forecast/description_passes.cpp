@@ -171,10 +171,14 @@ class Passes {
                                  {.profile = profile_, .refined = plan.refined, .wide_marks = plan.wide_marks}))});
                 out_.back().depends = true;
             }
-            add(name, "5_draw_tiles", drawing,
-                {variant("5_draw_tiles.comp", passes::tile_constants(plan.variant, {.profile = profile_,
-                                                                                    .refined = plan.refined,
-                                                                                    .wide_marks = plan.wide_marks}))});
+            const gpu::Specialization tiles = passes::tile_constants(
+                plan.variant, {.profile = profile_, .refined = plan.refined, .wide_marks = plan.wide_marks});
+            if (plan.variant.surfaces) {
+                add(name, "5_draw_surfaces", drawing, {variant("5_draw_surfaces.comp", tiles)});
+                add(name, "5_shade_surfaces", kRates.resolve_pixel * pixels, {variant("5_shade_surfaces.comp", tiles)});
+            } else {
+                add(name, "5_draw_tiles", drawing, {variant("5_draw_tiles.comp", tiles)});
+            }
             // The pass is skipped if the splats turn out to be small.
             if (plan.refined) {
                 std::vector<std::string> steps;

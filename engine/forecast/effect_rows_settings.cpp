@@ -5,6 +5,7 @@
 
 #include "engine/forecast/effect_rows.h"
 #include "engine/forecast/forecast.h"
+#include "engine/scene/transfer_function.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat {
@@ -59,6 +60,31 @@ std::vector<Effect> settings_effects() {
                     .base = cut_at_faces,
                     .resources = {"B-spline coefficients"},
                     .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR", 2}}});
+    rows.push_back({.name = "surface splats",
+                    .help = "opaque matter is a surface: splats vote where a ray enters it, and a pixel is shaded once",
+                    .call = "settings.opaque = \"surfaces\"; --opaque surfaces (on by default)",
+                    .reason = [](const FrameRequest& r) -> std::string {
+                        const bool surfaces = draws_surfaces(r.settings, r.scene, r.volume->geometry);
+                        return surfaces && !keeps_buried(r) ? "the matter is one opaque material in plain light" : "";
+                    },
+                    .turn_on = [](FrameRequest& r) { r.settings.opaque = OpaqueMatter::Surfaces; },
+                    .base =
+                        [](FrameRequest& r) {
+                            cut_at_faces(r);
+                            r.settings.edges = EdgeEstimator::Cubic;
+                            r.settings.opaque = OpaqueMatter::Kernels;
+                            const glm::dvec3 spacing = r.volume->geometry.spacing();
+                            for (Material& material : r.scene.materials)
+                                material.extinction = 0;
+                            r.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
+                        },
+                    .passes = {"5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
+                    .resources = {"traced rays", "traced entries"},
+                    .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
+                                "splat traits", "tiles of splats", "unfinished sheets"},
+                    .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
+                    .frame_fields = {"sheets_drawn"},
+                    .scene_fields = {"noise"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",
                     .call = "settings.footprints = \"table\"; --footprints table",

@@ -87,6 +87,28 @@ SplatCount most_splats(const CollectionPlan& plan) {
     return {SplatCount::From::Voxels, {voxels * of_a_voxel, glm::ivec3(0), plan.dims - 1}};
 }
 
+namespace {
+
+/// Whether matter of the voxel's material ends on one of its six sides, or the volume does (2_collect_splats).
+bool ends_beside(const std::vector<std::uint8_t>& materials, const glm::ivec3& dims, const glm::ivec3& at) {
+    const auto of = [&](const glm::ivec3& i) {
+        const auto row =
+            static_cast<std::size_t>(i.y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(i.z);
+        return materials[static_cast<std::size_t>(i.x) + static_cast<std::size_t>(dims.x) * row];
+    };
+    for (int axis = 0; axis < 3; ++axis) {
+        if (at[axis] == 0 || at[axis] == dims[axis] - 1) return true;
+        for (const int step : {-1, 1}) {
+            glm::ivec3 beside = at;
+            beside[axis] += step;
+            if (of(beside) != of(at)) return true;
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const auto& params = plan.params;
     const glm::ivec3 dims = plan.dims;
@@ -106,6 +128,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
         const std::uint32_t here = 1U << (materials[i] & ~kMissing), own = volume.has_data(i) ? here : 0U;
         splats[i] = static_cast<std::uint8_t>(std::popcount((carried & ~here) | (params.visible_mask & own)));
         if (plan.buried) opaque[i] = (params.opaque_mask & own) != 0 ? 1U : 0U;
+        if (plan.surfaces && !ends_beside(materials, dims, at)) splats[i] = 0;
         if (!plan.clip.any()) continue;
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
         if (is_cut_away(params, plan.clip, at, params.reach)) splats[i] = 0;
@@ -153,10 +176,11 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     out.settings = drawn_settings(request);
     out.collection = collection;
     out.splats = splats;
+    out.splats.extent.surfaces = collection.surfaces;
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         out.draws.push_back(
             {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
-                                               request.size, payload, splats.extent, reach, profile.refines)});
+                                               request.size, payload, out.splats.extent, reach, profile.refines)});
     }
     if (!shadow_lights(request.scene).empty()) {
         const ShadowPlan shadows = plan_shadows(request.scene, out.settings);

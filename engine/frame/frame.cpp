@@ -54,6 +54,7 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     if (!continues)
         for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
             commands.fill(*zeroed, 0);
+    if (!continues && plan.variant.surfaces) commands.fill(targets.tile_sheets, 0);
     if (!continues && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
@@ -117,7 +118,19 @@ void TilePasses::draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t til
     commands_.span("4_mark_pixels", [&] { passes::mark_pixels(commands_, plan_.variant, of_chunk, tiles, round); });
     if (plan_.variant.traced)
         commands_.span("5_trace_faces", [&] { passes::trace_faces(commands_, plan_.variant, of_chunk, tiles, part); });
-    commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
+    if (plan_.variant.surfaces)
+        commands_.span("5_draw_surfaces", [&] { passes::draw_surfaces(commands_, plan_.variant, of_chunk, part); });
+    else
+        commands_.span("5_draw_tiles", [&] { passes::draw_tiles(commands_, plan_.variant, of_chunk, part); });
+}
+
+void TilePasses::shade(std::uint32_t step) {
+    if (!plan_.variant.surfaces) return;
+    const passes::TileRound all{.groups = tile_count(plan_) * tile_groups(how_, step),
+                                .round = how_.part ? 1U : 0U,
+                                .tile_groups = tile_groups(how_, step),
+                                .first_pixels = how_.refined && step == shader::REFINE_STEP};
+    commands_.span("5_shade_surfaces", [&] { passes::shade_surfaces(commands_, plan_.variant, how_, all); });
 }
 
 void TilePasses::copy_saturated_to_host() {
@@ -128,6 +141,7 @@ void TilePasses::copy_saturated_to_host() {
 }
 
 void TilePasses::finish(std::uint32_t step) {
+    shade(step);
     if (step > 1) {
         commands_.span("5_refine_pixels", [&] { passes::refine_pixels(commands_, tile_count(plan_), step); });
         copy_saturated_to_host();

@@ -59,6 +59,8 @@ class TilePasses {
     /// Copies the count of saturated pixels of each tile to the host.
     void copy_saturated_to_host();
     /// Records what follows a step: refinement after steps above 1, pass 7 after the last.
+    /// Shades the surfaces that the step's pixels show; only with surface splats.
+    void shade(std::uint32_t step);
     void finish(std::uint32_t step);
 
   private:

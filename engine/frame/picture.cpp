@@ -88,6 +88,7 @@ bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::Tile
     if (!divided) return false;
     const FramePlan whole = plan_;
     draw_bricks(plan_, splats.bricks, divided->front);
+    plan_.params.sheets_drawn = static_cast<std::uint32_t>(std::max(divided->sheet - plan_.params.sheet_base, 0));
     targets_.provide(plan_, splats);
     Chunks chunks = sort_frame(commands, plan_, targets, {.slab = glm::ivec2(0, divided->sheet)});
     times_ = commands.span_times();

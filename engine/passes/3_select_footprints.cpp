@@ -12,6 +12,7 @@ gpu::Specialization select_constants(const DrawVariant& variant) {
             {shader::SPEC_ANTIALIAS, variant.antialias ? 1U : 0U},
             {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
             {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
+            {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
             {shader::SPEC_TILES, variant.tiles ? 1U : 0U},
             {shader::SPEC_CULLED, variant.culled ? 1U : 0U}};
 }

@@ -41,6 +41,18 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
     commands.barrier();
 }
 
+void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
+    commands.dispatch("5_draw_surfaces.comp", tile_constants(variant, how), pushed(round),
+                      commands.groups_for(round.groups, 1));
+    commands.barrier();
+}
+
+void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
+    commands.dispatch("5_shade_surfaces.comp", tile_constants(variant, how), pushed(round),
+                      commands.groups_for(round.groups, 1));
+    commands.barrier();
+}
+
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
     commands.dispatch("5_draw_tiles.comp", tile_constants(variant, how), pushed(round),
                       commands.groups_for(round.groups, 1));

@@ -43,6 +43,14 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
 /// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished.
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
+/// The same for surface splats: counts their votes in `surface_votes`, and marks decided pixels as opaque.
+void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
+
+/// Writes the colour, or other payload, of the surfaces that the pixels' votes decide, and clears the votes; or, as
+/// round 1, only marks the pixels as opaque that are decided up to FrameParams::sheets_drawn. `round`: all pixels of a
+/// step.
+void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
+
 /// Specialization of 5_trace_faces.comp, and of 5_draw_tiles.comp.
 gpu::Specialization trace_constants(const DrawVariant& variant, TileDraw how);
 gpu::Specialization tile_constants(const DrawVariant& variant, TileDraw how);

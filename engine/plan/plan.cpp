@@ -234,7 +234,8 @@ StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wan
     StaleResults stale;
     stale.mask = !same_mask(held, wanted);
     stale.edges = !same_edges(held, wanted) || (wanted.skip_buried && stale.mask);
-    stale.lists = stale.mask || stale.edges || held.faces != wanted.faces || held.labels != wanted.labels ||
+    stale.lists = stale.mask || stale.edges || held.faces != wanted.faces || held.surfaces != wanted.surfaces ||
+                  held.two_values != wanted.two_values || held.labels != wanted.labels ||
                   held.params.visible_mask != wanted.params.visible_mask ||
                   held.params.translucent_mask != wanted.params.translucent_mask ||
                   support_of(held.transfer) != support_of(wanted.transfer);
@@ -279,6 +280,11 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
+    // Optical depth, and the view from inside matter, need all voxels.
+    plan.surfaces = !keep_buried && draws_surfaces(settings, scene, volume.geometry);
+    plan.two_values = plan.surfaces && volume.two_values;
+    const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
+    if (plan.surfaces && range > 0) params.noise = static_cast<float>(volume.noise / range);
     plan.labels = shows_labels(scene, volume);
     params.reach = static_cast<float>(kernel_reach(settings));
     params.translucent_mask = materials_carried_beside(settings, scene, volume.geometry);
@@ -398,6 +404,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && has_single_piece(settings, scene, geometry);
     const auto traced = traced_material(settings, scene, geometry);
     plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && traced;
+    plan.variant.surfaces = payload != shader::PAYLOAD_TAU && splats.surfaces;
     if (plan.variant.traced) p.traced_interval = scaled_interval(volume, scene, *traced);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 

@@ -34,7 +34,9 @@ struct CollectionPlan {
     /// Skips edges of buried voxels. Only with one opaque material: then no buried voxel has an edge in reach of a
     /// visible one. With several, a visible voxel's face may be fitted to an edge between two buried ones.
     bool skip_buried = true;
-    bool faces = false;  ///< edges are faces: estimated on both sides, with second derivatives stored per splat
+    bool faces = false;       ///< edges are faces: estimated on both sides, with second derivatives stored per splat
+    bool two_values = false;  ///< Volume::two_values; only with surface splats
+    bool surfaces = false;    ///< only voxels beside a surface become splats, with faces that agree with the field
     /// Whether edges are estimated on the B-spline through the samples.
     bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }
     bool labels = false;  ///< every splat gets the label of its voxel (Volume::shown_labels)
@@ -101,6 +103,7 @@ struct SplatExtent {
     glm::ivec3 low{0}, high{0};  ///< inclusive bounding box of their voxels
     bool creases = true;         ///< some may have a crease: a plane beside their face
     bool traced = true;          ///< some may have a face that rays must find
+    bool surfaces = false;       ///< they are surface splats
 };
 
 /// Throws Error if the view has more sheets than the sort allows. `farthest_reach`: upper bound of the kernels' reach,

@@ -250,9 +250,11 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(text("saturated pixels, host", "(tiles) uint", "5", "host"), &T::tile_closed_on_host, nullptr,
                          Place::Host, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return of_refined_tiles(p, kWord); }),
-    row<TargetBufferRow>(text("unfinished sheets", "(y, x) vec4", "5", "5"), &T::tile_sheets, &F::tile_sheets,
-                         Place::Device, kSums, shader::BIND_TILE_SHEETS,
-                         [](const FramePlan& p, const Profile&) { return if_tiles(p, picture_bytes(p)); }),
+    row<TargetBufferRow>(text("unfinished sheets", "(y, x) vec4, or votes about surfaces", "5", "5"), &T::tile_sheets,
+                         &F::tile_sheets, Place::Device, kSums, shader::BIND_TILE_SHEETS,
+                         [](const FramePlan& p, const Profile&) {
+                             return if_tiles(p, (p.variant.surfaces ? shader::VOTE_TEXELS : 1U) * picture_bytes(p));
+                         }),
     row<TargetBufferRow>(
         text("outlines", "(y, x) where one crosses the pixel", "5", "7"), &T::outlines, &F::outlines, Place::Device,
         kWords, shader::BIND_OUTLINES,

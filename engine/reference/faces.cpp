@@ -32,21 +32,6 @@ constexpr auto kTurnFrom = static_cast<double>(shader::TURN_FROM);
 constexpr auto kWallBent = static_cast<double>(shader::WALL_BENT);
 constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
 
-/// The surfel of voxel j, relative to voxel i, if it bounds material m.
-std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                                const glm::ivec3& i, const glm::ivec3& j, int m) {
-    if (j != field.clamped(j)) return std::nullopt;
-    const VoxelEdge& edge = surfels[field.offset(j)];
-    if (!edge.has_edge) return std::nullopt;
-    const int own = scene.material(field.at(j));
-    // A surfel of the material below or above also bounds m, if it lies on their common iso-value. A surfel on the
-    // volume's border bounds only its own material.
-    const bool below = own + 1 == m && edge.upper && !edge.border, above = own == m + 1 && !edge.upper && !edge.border;
-    if (own != m && !below && !above) return std::nullopt;
-    return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above,
-                  edge.border};
-}
-
 double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
     const double along = glm::dot(r, n);
     const double shorter = 1 - 0.5 * std::clamp(-2 * glm::dot(n, other), 0.0, 1.0);
@@ -68,27 +53,6 @@ std::pair<Quadric, double> field_quadric(const Field& field, const glm::ivec3& i
     const double slope = std::sqrt(std::max(glm::dot(g, g) + 2 * std::abs(off) * norm, 1e-12)), scale = side / slope;
     return {{scale * off, -scale * g, -scale * dmat3(diagonal.x, xy, xz, xy, diagonal.y, yz, xz, yz, diagonal.z)},
             slope};
-}
-
-struct Foot {
-    dvec3 at, slope;
-    bool real;  ///< false: the quadric has no surface in reach
-};
-
-/// The foot point: the point of the quadric whose normal passes through the voxel, searched from `at`. All positions
-/// are relative to the quadric's middle.
-Foot foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
-    for (int step = 0; step < shader::FOOT_STEPS; ++step) {
-        const double steep = glm::length(q.slope(at)), value = q.at(at);
-        const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
-        const double bend = glm::dot(up, q.h * up);
-        const double moved = -2 * value / (steep + std::sqrt(std::max(steep * steep - 2 * value * bend, 0.0)) + 1e-6);
-        at += std::clamp(moved, -1.0, 1.0) * up;
-        const dvec3 from = at - voxel_at;
-        if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
-    }
-    const dvec3 slope = q.slope(at);
-    return {at, slope, glm::length(slope) >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius};
 }
 
 /// The same for the field's own quadric around the voxel.
@@ -221,6 +185,34 @@ double steep_of(double slope, double way, double d) {
 }
 
 }  // namespace
+
+std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+                                const glm::ivec3& i, const glm::ivec3& j, int m) {
+    if (j != field.clamped(j)) return std::nullopt;
+    const VoxelEdge& edge = surfels[field.offset(j)];
+    if (!edge.has_edge) return std::nullopt;
+    const int own = scene.material(field.at(j));
+    // A surfel of the material below or above also bounds m, if it lies on their common iso-value. A surfel on the
+    // volume's border bounds only its own material.
+    const bool below = own + 1 == m && edge.upper && !edge.border, above = own == m + 1 && !edge.upper && !edge.border;
+    if (own != m && !below && !above) return std::nullopt;
+    return Surfel{dvec3(j - i) + edge.D * edge.n, own == m ? edge.n : -edge.n, own == m ? edge.upper : above,
+                  edge.border};
+}
+
+Foot foot_of(const Quadric& q, const dvec3& voxel_at, dvec3 at) {
+    for (int step = 0; step < shader::FOOT_STEPS; ++step) {
+        const double steep = glm::length(q.slope(at)), value = q.at(at);
+        const dvec3 up = q.slope(at) / std::max(steep, 1e-6);
+        const double bend = glm::dot(up, q.h * up);
+        const double moved = -2 * value / (steep + std::sqrt(std::max(steep * steep - 2 * value * bend, 0.0)) + 1e-6);
+        at += std::clamp(moved, -1.0, 1.0) * up;
+        const dvec3 from = at - voxel_at;
+        if (step + 2 < shader::FOOT_STEPS) at -= 0.7 * (from - glm::dot(from, up) * up);
+    }
+    const dvec3 slope = q.slope(at);
+    return {at, slope, glm::length(slope) >= 0.3 && std::abs(q.at(at)) < 0.05 && glm::length(at) < kFitRadius};
+}
 
 VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                    const glm::ivec3& i, int m) {

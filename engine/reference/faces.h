@@ -2,7 +2,11 @@
 // (docs/method/faces.md). Lengths are voxels, index space.
 #pragma once
 
+#include <optional>
+
 #include "engine/reference/1_estimate_edges.h"
+#include "engine/reference/creases.h"
+#include "engine/reference/quadrics.h"
 #include "footprints/face.h"
 
 namespace edgesplat::reference {
@@ -10,6 +14,19 @@ namespace edgesplat::reference {
 /// The surfel of voxel i, as an edge (n, D): the surface point, at most 1.25 voxels away, whose normal passes through
 /// the voxel. Without one only a normal. Newton's method on the trilinear field, or with `cubic` on the spline.
 VoxelEdge find_surfel(const Field& field, const ScaledScene& scene, const glm::ivec3& i, bool cubic);
+
+/// The surfel of voxel j, relative to voxel i, if it bounds material m.
+std::optional<Surfel> surfel_of(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+                                const glm::ivec3& i, const glm::ivec3& j, int m);
+
+/// A point of a quadric whose normal passes through a voxel.
+struct Foot {
+    glm::dvec3 at{0}, slope{0};
+    bool real = false;  ///< false: the quadric has no surface in reach
+};
+
+/// That point, searched from `at`; positions are relative to the quadric's middle.
+Foot foot_of(const Quadric& q, const glm::dvec3& voxel_at, glm::dvec3 at);
 
 /// Smallest and largest sample around a voxel. The surface that the voxel finds passes between these samples.
 std::pair<double, double> values_around(const Field& field, const glm::ivec3& i);

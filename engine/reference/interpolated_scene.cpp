@@ -49,13 +49,13 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter, con
     scene.name = volume.name;
     scene.dims = volume.geometry.dims;
     scene.iso_values = {low + range / 2};
-    // Beyond the outermost samples the field is constant along each axis.
+    // Beyond the outermost samples the trilinear field is constant along each axis; the spline continues linearly.
     const auto held = [last = glm::dvec3(volume.geometry.dims - 1)](const glm::dvec3& x) {
         return glm::clamp(x, glm::dvec3(0), last);
     };
     const bool missing = draws_missing_samples(look, volume), of_data = missing && !look.transfer.empty();
     scene.value = [=](const glm::dvec3& x) {
-        return low + range * (of_data ? sample_of_data(field(), held(x)) : sample(field(), held(x), cubic));
+        return low + range * (of_data ? sample_of_data(field(), held(x)) : sample(field(), cubic ? x : held(x), cubic));
     };
     if (missing) {
         // Matter of the smallest value ends at the first iso-value above it.
@@ -65,12 +65,12 @@ AnalyticScene interpolated_scene(const Volume& volume, RaycastFilter filter, con
         scene.without_data = [=](const glm::dvec3& x) {
             const Field f = field();
             return !f.has_data(f.offset(f.clamped(glm::ivec3(glm::round(held(x)))))) &&
-                   (of_data || sample(f, held(x), cubic) < end);
+                   (of_data || sample(f, cubic ? x : held(x), cubic) < end);
         };
     }
     scene.gradient = [=](const glm::dvec3& x) {
+        if (cubic) return range * spline_gradient(field(), x);
         const glm::dvec3 p = inside(x);
-        if (cubic) return range * spline_gradient(field(), p);
         glm::dvec3 slope(0);
         for (int axis = 0; axis < 3; ++axis) {
             glm::dvec3 step(0);

@@ -9,6 +9,7 @@
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/parallel.h"
 #include "engine/reference/pixel_rows.h"
+#include "engine/reference/surfaces.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
 
@@ -67,6 +68,11 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     if (draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
     const std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
+    draws_surfaces_ = draws_surfaces(settings_, scene_, volume.geometry);
+    const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
+    if (draws_surfaces_)
+        surfaces_ =
+            surface_splats(field(), scaled_, edges, range > 0 ? volume.noise / range : 0, volume.two_values, quantised);
     edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (draws_faces(settings_)) {
         carried_ = voxels_beside(field(), scaled_);
@@ -106,13 +112,35 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
         if (output == Output::Tau) record.edge.traced.reset();
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
-    if (samples == 1) return draw(records, view, output);
+    // Optical depth, and the view from inside matter, need all voxels.
+    const bool surfaces = draws_surfaces_ && output != Output::Tau && !starts_in_opaque(camera.eye);
+    const auto drawn = [&] {
+        if (!surfaces) return draw(records, view, output);
+        const std::vector<glm::dvec4> frame =
+            draw_surfaces(surfaces_, field(), scene_, view, settings_, payload_for(output));
+        return resolve(frame, width, height, scene_, output);
+    };
+    if (samples == 1) return drawn();
     SampleMean mean({width, height});
     for (const glm::dvec2& offset : sample_offsets(samples)) {
         view.offset = offset;
-        mean.add(draw(records, view, output).pixels);
+        mean.add(drawn().pixels);
     }
     return mean.image();
+}
+
+void PreparedVolume::replace_surface(std::size_t voxel, const VoxelEdge& edge) {
+    const auto at = std::ranges::lower_bound(surfaces_, voxel, {}, &SplatRecord::voxel);
+    if (at != surfaces_.end() && at->voxel == voxel) at->edge = edge;
+}
+
+bool PreparedVolume::starts_in_opaque(const glm::dvec3& eye) const {
+    const glm::dvec3 nearest = glm::round(volume_->geometry.to_index(eye)), last(volume_->geometry.dims - 1);
+    if (!glm::all(glm::greaterThanEqual(nearest, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(nearest, last)))
+        return false;
+    const std::size_t at = field().offset(glm::ivec3(nearest));
+    return field().has_data(at) &&
+           scaled_.drawn[static_cast<std::size_t>(scaled_.material(field().at(glm::ivec3(nearest))))];
 }
 
 void PreparedVolume::find_light(std::span<SplatRecord> records) const {

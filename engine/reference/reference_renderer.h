@@ -32,14 +32,22 @@ class PreparedVolume {
     /// classified_values() of the voxels; empty without a transfer function.
     const std::vector<double>& classified() const { return classified_; }
 
+    /// The surface splats that draw the scene instead (draws_surfaces); empty if kernels do.
+    const std::vector<SplatRecord>& surfaces() const { return surfaces_; }
+
     /// Replaces the edge of this voxel and material.
     void replace_edge(std::size_t voxel, int material, const VoxelEdge& edge);
+
+    /// Replaces the face of this voxel's surface splat.
+    void replace_surface(std::size_t voxel, const VoxelEdge& edge);
 
     /// Passes 2 to 7. Color has 4 channels, Normal 3, the others 1, as engine/renderer.h documents. Throws Error for an
     /// invalid camera or a picture without pixels.
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
+    /// Whether the voxel nearest to the eye is of opaque matter.
+    bool starts_in_opaque(const glm::dvec3& eye) const;
     /// Finds the light that reaches each splat: ambient occlusion and shadows.
     void find_light(std::span<SplatRecord> records) const;
     /// One picture with one ray per pixel, of the scene's splats.
@@ -52,6 +60,8 @@ class PreparedVolume {
     std::vector<float> values_, coefficients_;
     std::vector<VoxelEdge> edges_;
     std::vector<CarriedEdge> carried_;
+    std::vector<SplatRecord> surfaces_;
+    bool draws_surfaces_ = false;
     std::vector<double> classified_;
     Footprints footprints_;
 };

@@ -26,6 +26,7 @@ std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameReq
     // Assume that a mask of buried voxels is needed unless the settings exclude it.
     wanted.buried = drawn.cull_buried;
     wanted.blocks = true;
+    wanted.surfaces = false;
     const auto fits = [&](std::uint64_t splats) {
         const SplatCount count{SplatCount::From::Voxels, {splats, glm::ivec3(0), request.volume->geometry.dims - 1}};
         return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
@@ -54,6 +55,7 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
     const bool keep_buried = request.outputs.tau || eye_in_opaque(original, request.scene, request.camera);
     CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
     wanted.blocks = true;
+    wanted.surfaces = false;
     const Gathered gathered = collect_blocks(request, wanted, *most, patience);
     if (gathered == Gathered::All) drawer_->provide_shadows(shown_, request.scene, settings, cost_);
     if (!cost_.times.empty()) milliseconds += milliseconds_since(start);

@@ -94,6 +94,16 @@ std::vector<Knob> make_ladder() {
                      .others = {},
                      .get = get_name<&Settings::sheet_format>,
                      .assign = [](Settings& s, const Knob&, View v) { s.sheet_format = sheet_format_named(v); }});
+    knobs.push_back({.name = "opaque",
+                     .help =
+                         "How opaque matter is drawn: by kernels cut at faces, or by surface splats that vote where "
+                         "a ray enters it",
+                     .kind = KnobKind::Model,
+                     .steps = all(opaque_matter_names()),
+                     .others = {},
+                     .get = get_name<&Settings::opaque>,
+                     .assign = [](Settings& s, const Knob&, View v) { s.opaque = opaque_matter_named(v); },
+                     .matters = allows_surfaces});
     knobs.push_back({.name = "detail",
                      .help = "Maximum voxel size of a coarser level, in pixels; 0: never coarser",
                      .kind = KnobKind::Method,

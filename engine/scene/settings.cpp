@@ -19,6 +19,7 @@ constexpr std::array<std::string_view, 4> kFootprintModes{"isotropic", "warp2d",
 constexpr std::array<std::string_view, 2> kWarpFamilies{"paper", "face"};
 constexpr std::array<std::string_view, 2> kSheetCuts{"whole", "sliced"};
 constexpr std::array<std::string_view, 2> kSheetFormats{"layers", "tiles"};
+constexpr std::array<std::string_view, 2> kOpaqueMatter{"kernels", "surfaces"};
 constexpr std::array<std::string_view, 2> kPixelChoices{"refined", "every"};
 
 template <typename Enum>
@@ -58,6 +59,9 @@ SheetCut sheet_cut_named(std::string_view name) {
 SheetFormat sheet_format_named(std::string_view name) {
     return named<SheetFormat>(name, "sheet-format", "sheet format", kSheetFormats);
 }
+OpaqueMatter opaque_matter_named(std::string_view name) {
+    return named<OpaqueMatter>(name, "opaque", "way to draw opaque matter", kOpaqueMatter);
+}
 PixelChoice pixel_choice_named(std::string_view name) {
     return named<PixelChoice>(name, "pixels", "choice of pixels", kPixelChoices);
 }
@@ -77,6 +81,9 @@ std::string_view name_of(SheetCut value) {
 std::string_view name_of(SheetFormat value) {
     return spelled(value, kSheetFormats);
 }
+std::string_view name_of(OpaqueMatter value) {
+    return spelled(value, kOpaqueMatter);
+}
 std::string_view name_of(PixelChoice value) {
     return spelled(value, kPixelChoices);
 }
@@ -95,6 +102,9 @@ std::span<const std::string_view> sheet_cut_names() {
 }
 std::span<const std::string_view> sheet_format_names() {
     return kSheetFormats;
+}
+std::span<const std::string_view> opaque_matter_names() {
+    return kOpaqueMatter;
 }
 std::span<const std::string_view> pixel_choice_names() {
     return kPixelChoices;
@@ -128,6 +138,11 @@ Settings paper_settings(Settings base) {
     return base;
 }
 
+bool allows_surfaces(const Settings& settings) {
+    return draws_faces(settings) && settings.edges == EdgeEstimator::Cubic && !draws_table(settings) &&
+           settings.sheets == SheetCut::Whole && settings.sheet_format == SheetFormat::Tiles;
+}
+
 Settings canonical_settings(const Settings& settings) {
     const Settings usual;
     Settings s = settings;
@@ -139,6 +154,7 @@ Settings canonical_settings(const Settings& settings) {
     const bool short_cut = s.footprints == FootprintMode::Warp2d && s.warp == WarpFamily::Paper;
     if (draws_warped(s) && !short_cut && !draws_table(s)) s.footprints = FootprintMode::Procedural;
     if (s.sheet_format != SheetFormat::Tiles) s.pixels = usual.pixels;
+    if (!allows_surfaces(s)) s.opaque = usual.opaque;
     return s;
 }
 

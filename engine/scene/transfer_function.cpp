@@ -99,6 +99,14 @@ std::optional<std::size_t> traced_material(const Settings& settings, const Scene
     return only;
 }
 
+bool draws_surfaces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+    const Effects& effects = scene.effects;
+    const bool plain = !effects.antialias && !smooths_outlines(settings, scene) && !occludes_ambient(scene) &&
+                       shadow_lights(scene).empty() && scene.label_colors.empty() && scene.transfer.empty();
+    return plain && settings.opaque == OpaqueMatter::Surfaces && allows_surfaces(canonical_settings(settings, scene)) &&
+           traced_material(settings, scene, geometry).has_value();
+}
+
 bool draws_missing_samples(const Scene& scene, const Volume& volume) {
     if (!volume.no_data) return false;
     if (!scene.transfer.empty()) return true;

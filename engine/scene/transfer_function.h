@@ -51,6 +51,10 @@ bool has_single_piece(const Settings& settings, const Scene& scene, const Volume
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry);
 
+/// Whether surface splats draw the scene: one unclipped opaque material in plain light (traced_material), with settings
+/// that allow it.
+bool draws_surfaces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+
 /// Whether matter would be drawn where samples contain no data, if they counted as the smallest value: with a transfer
 /// function, because values between them and others are drawn, too.
 bool draws_missing_samples(const Scene& scene, const Volume& volume);

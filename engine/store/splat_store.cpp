@@ -40,6 +40,8 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
             .buried = plan.buried,
             .estimator = plan.estimator,
             .faces = plan.faces,
+            .surfaces = plan.surfaces,
+            .two_values = plan.two_values,
             .clip = plan.clip,
             .transfer = !plan.transfer.empty(),
             .labels = plan.labels};
@@ -145,6 +147,7 @@ void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& larg
     if (stale.edges) lists_.edges = {};
     if (stale.mask) lists_.buried = {};
     clear_counts();
+    lists_.surfaces = plan.surfaces;
     std::vector<const gpu::GpuImage*> made;
     for (const auto& row : field_image_rows()) {
         gpu::GpuImage& image = lists_.*row.image;

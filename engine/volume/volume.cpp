@@ -63,6 +63,33 @@ void check_axes(const Volume& volume) {
 
 }  // namespace detail
 
+double noise_of(const Volume& volume) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    if (volume.values.empty() || glm::any(glm::lessThan(dims, glm::ivec3(3)))) return 0;
+    constexpr double kMostPlaces = 1 << 17;
+    const double places = static_cast<double>(dims.x - 2) * (dims.y - 2) * (dims.z - 2);
+    const int step = std::max(1, static_cast<int>(std::ceil(std::cbrt(places / kMostPlaces))));
+    std::vector<double> differences;
+    for (int z = 1; z + 1 < dims.z; z += step)
+        for (int y = 1; y + 1 < dims.y; y += step)
+            for (int x = 1; x + 1 < dims.x; x += step) {
+                // The second difference along all three axes.
+                double sum = 0;
+                for (int k = 0; k < 27; ++k) {
+                    const int a = k % 3 - 1, b = k / 3 % 3 - 1, c = k / 9 - 1;
+                    const int weight = (a == 0 ? -2 : 1) * (b == 0 ? -2 : 1) * (c == 0 ? -2 : 1);
+                    sum += weight * static_cast<double>(volume.at(x + a, y + b, z + c));
+                }
+                // Constant samples are clipped and say nothing.
+                if (sum != 0) differences.push_back(std::abs(sum));
+            }
+    if (differences.empty()) return 0;
+    const auto quartile = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 4);
+    std::ranges::nth_element(differences, quartile);
+    constexpr double kQuartile = 0.3186;  // of |x| for a normal deviate x
+    return *quartile / (kQuartile * std::sqrt(216.0));
+}
+
 void finish_volume(Volume& volume) {
     check_geometry(volume);
     if (volume.no_data && volume.no_data->size() != volume.values.size())
@@ -98,6 +125,10 @@ void finish_volume(Volume& volume) {
         volume.no_data.reset();
     }
 
+    volume.noise = noise_of(volume);
+    volume.two_values = !volume.values.empty() && std::ranges::all_of(volume.values, [&](float value) {
+        return value == volume.min_value || value == volume.max_value;
+    });
     detail::VolumeChecksum checksum(volume.geometry);
     checksum.add(volume.values);
     if (volume.value_scale != 1) checksum.add_scale(volume.value_scale);

@@ -69,6 +69,10 @@ struct Volume {
     bool in_patient = false;    ///< the world axes are the patient's: +x left, +y back, +z up
     float min_value = 0;        ///< smallest finite sample
     float max_value = 0;        ///< largest finite sample
+    /// Standard deviation of the samples' noise, where most of them vary smoothly; 0 if none is noticed.
+    double noise = 0;
+    /// Whether all samples with data are the smallest or the largest one, as in a mask.
+    bool two_values = false;
     std::size_t non_finite_count = 0;  ///< samples without data (`no_data`)
     /// Per sample whether it contains no data: NaN, infinite, or the fill value that the file or the user declares. Not
     /// set: none. Such samples are transparent and count in no statistics.
@@ -104,9 +108,13 @@ struct Volume {
     double in_file_unit(double value) const { return value * value_scale; }
 };
 
+/// An estimate of the standard deviation of the samples' noise, from a difference that is 0 where samples vary
+/// smoothly: a lower quartile, so that edges do not count. 0 for fewer than 3 voxels along an axis.
+double noise_of(const Volume& volume);
+
 /// Completes a volume with given geometry and values: samples that are not finite, or already marked in `no_data`,
 /// contain no data. They are replaced by the smallest of the others (0 if there is none), counted and marked. Sets min,
-/// max and checksum. Throws Error if dims and values disagree.
+/// max, noise, two_values and checksum. Throws Error if dims and values disagree.
 void finish_volume(Volume& volume);
 
 }  // namespace edgesplat

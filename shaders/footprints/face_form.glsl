@@ -8,6 +8,11 @@
 
 const bool FACES = FOOTPRINTS != ISOTROPIC && WARP == FACE;  // kernels are cut at faces
 
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
+
+// Radius of the ball around its voxel in which a ray finds a traced splat's face.
+float trace_reach() { return SURFACES == 1u ? SURFACE_REACH : TRACE_REACH; }
+
 // A face and how it cuts the kernel, or a plain kernel with the normal that it is lit by.
 struct FaceForm {
     float value;  // phi at the voxel's centre

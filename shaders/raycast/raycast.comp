@@ -17,7 +17,7 @@ float crossing(Ray ray, float low, float high, float f_low, float f_high, float 
         // Newton's method from the secant's zero; bisection if a step leaves the bracket. Accurate to 1e-3 voxel.
         c = low + (high - low) * f_low / (f_low - f_high);
         for (int k = 0; k < 3; ++k) {
-            vec4 s = bspline_slope(ivec3(0), within_samples(at(ray, c)));
+            vec4 s = bspline_slope(ivec3(0), at(ray, c));
             float f = s.w - iso;
             bool near = (f < 0.0) == (f_low < 0.0);
             low = near ? c : low;

@@ -29,10 +29,10 @@ uint visible_mask;
 // Clamps to the outermost samples.
 vec3 within_samples(vec3 p) { return clamp(p, vec3(0.0), vec3(dims - 1)); }
 
-// trilinear() with a cheaper cell (width 0 at the last sample), or the spline.
+// trilinear() with a cheaper cell (width 0 at the last sample), or the spline, which continues linearly.
 float field(vec3 p) {
-    p = within_samples(p);
     if (FILTER == FILTER_CUBIC) return bspline(p);
+    p = within_samples(p);
     ivec3 c = ivec3(p);
     return within_cell(c, min(c + 1, dims - 1), p - vec3(c));
 }
@@ -104,9 +104,9 @@ float leave(Ray ray, vec3 p) {
 // Interpolated central differences of the voxels around p, clamped so that both ends lie between voxels. Equal to
 // differences of six interpolated values, with 32 loads instead of 48. With the spline: its own slope.
 vec3 gradient(vec3 p) {
+    if (FILTER == FILTER_CUBIC) return bspline_slope(ivec3(0), p).xyz;
     vec3 last = vec3(dims - 1);
     p = clamp(p, min(vec3(1.0), 0.5 * last), max(last - 1.0, 0.5 * last));
-    if (FILTER == FILTER_CUBIC) return bspline_slope(ivec3(0), p).xyz;
     ivec3 c = ivec3(p);
     vec3 t = p - vec3(c);
     ivec3 end = dims - 1;

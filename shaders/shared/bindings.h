@@ -27,7 +27,7 @@ EDGESPLAT_CONSTANT uint BIND_TILE_MARKS = 17u;     // r32ui: for each MARKED_AT_
 EDGESPLAT_CONSTANT uint BIND_TILE_RANGES = 18u;    // rg32ui (tiles): range of entries, half open, relative to entries_first
 EDGESPLAT_CONSTANT uint BIND_TILE_ORDER = 19u;     // r32ui (tiles, then groups of their pixels): longest list first; only with rounds
 EDGESPLAT_CONSTANT uint BIND_TILE_PIXELS = 20u;    // r32ui (tiles, TILE * TILE): pixels to draw, x | y << 8 in the tile; only with refined pixels
-EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 21u;    // rgba32f (size.y, size.x): partial sum of a sheet that continues in the next round
+EDGESPLAT_CONSTANT uint BIND_TILE_SHEETS = 21u;    // rgba32f (size.y, size.x): partial sum of a sheet that continues in the next round; with surface splats VOTE_TEXELS for each pixel (surface_pixel.glsl)
 EDGESPLAT_CONSTANT uint BIND_OUTLINES = 22u;       // r32ui (size.y, size.x): the outline that passes each pixel (outline.glsl)
 EDGESPLAT_CONSTANT uint BIND_COUNT = 23u;
 

@@ -59,6 +59,21 @@ EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // upper bound of steps toward
 EDGESPLAT_CONSTANT float TRACE_NEAR = 1e-3f;      // voxels
 EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.0f;       // voxels to a face that cuts nothing: less than narrow R + depth
 EDGESPLAT_CONSTANT float TRACE_DEEP = 2.5f;       // voxels within opaque matter; everything behind is occluded
+// Surface splats: opaque matter drawn where rays enter it (engine/geometry). Lengths are voxels.
+EDGESPLAT_CONSTANT float SURFACE_REACH = 1.3f;   // from a splat's foot point: its vote weighs nothing further away
+EDGESPLAT_CONSTANT float SURFACE_WINDOW = 0.8f;  // votes along a ray that are this near to each other are about one surface
+EDGESPLAT_CONSTANT float SURFACE_FIT = 2.5f;     // radius around the nearest surfel in which the face is fitted
+EDGESPLAT_CONSTANT float SURFACE_RING = 1.04f;   // from the foot point to the points around it where the face is compared with the field
+EDGESPLAT_CONSTANT float SURFACE_ERROR = 0.02f;  // upper bound of a kept face's distance from the field's surface there, without noise
+EDGESPLAT_CONSTANT float SURFACE_TURN = 0.3f;    // radians: the same between their normals
+EDGESPLAT_CONSTANT float SURFACE_NOISE = 4.0f;   // standard deviations of noise that both bounds also allow
+EDGESPLAT_CONSTANT float SURFACE_CREASE = 1.2f;  // from a voxel to the foot points of the planes of a crease that it votes for
+EDGESPLAT_CONSTANT float SURFACE_SHOWS = 0.1f;    // pixels: a smaller error of a face does not show
+EDGESPLAT_CONSTANT float SURFACE_DEEP = 1.0f;    // a ray that is this deep in matter is not traced further
+EDGESPLAT_CONSTANT float SURFACE_NEAR = 0.01f;   // last step towards a traced surface
+EDGESPLAT_CONSTANT float SURFACE_CERTAIN = 1e3f;  // factor on votes that are no estimates: at the volume's border
+EDGESPLAT_CONSTANT uint VOTE_TEXELS = 5u;       // of a pixel: both surfaces' votes, ten numbers each
+EDGESPLAT_CONSTANT float SURFACE_SIDE = 0.1f;    // the same of samples on a kept face's wrong side, without noise
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // steps towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H, 1/voxel, are stored as 10 bits of sign(h) sqrt(|h| / 8)
 EDGESPLAT_CONSTANT uint MAX_MATERIALS = 16u;         // 4 bits of the splat record
@@ -140,7 +155,9 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_TRACED, 42u)       /* 1: rays find some splats' faces */ \
     X(SPEC_NARROW, 43u)       /* 1: narrow kernels */ \
     X(SPEC_NO_DATA, 44u)      /* 1: rays meet samples without data where matter would be drawn */ \
-    X(SPEC_LABELS, 45u)       /* 1: every label has its own colour */
+    X(SPEC_LABELS, 45u)       /* 1: every label has its own colour */ \
+    X(SPEC_SURFACES, 46u)     /* 1: splats are surface splats */ \
+    X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;
 EDGESPLAT_SPECIALIZATIONS(EDGESPLAT_SPECIALIZATION)
 #undef EDGESPLAT_SPECIALIZATION

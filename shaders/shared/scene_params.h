@@ -30,6 +30,7 @@ struct SceneParams {
     uint list_first;         // first splat that 2a_finish_splats finishes
     uint list_count;
     uint edge_count_at;      // index in run_offsets of the number of splats with an edge
+    float noise;             // standard deviation of the samples' noise, scaled; only with surface splats
 };
 
 /// One splat as collected: 12 bytes.
@@ -49,7 +50,7 @@ EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 472);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 476);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

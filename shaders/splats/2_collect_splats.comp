@@ -13,6 +13,7 @@ layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
 layout(binding = BIND_BURIED, r8ui) uniform readonly uimage3D buried;
@@ -29,6 +30,19 @@ ivec3 dims;
 
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/splats/classified_value.glsl"
+
+// Whether matter of the voxel's material ends on one of its six sides, or the volume does.
+bool may_show_surface(ivec3 p, uint material) {
+    ivec3 at = p + params.scene.block_origin;
+    bool ends = any(equal(at, ivec3(0))) || any(equal(at, params.scene.volume_dims - 1));
+    for (int i = 0; i < 6 && !ends; ++i) {
+        ivec3 o = ivec3(0);
+        o[i >> 1] = (i & 1) * 2 - 1;
+        float beside = voxel(p + o);
+        ends = !has_data(beside) || material_of(beside) != material;
+    }
+    return ends;
+}
 
 void main() {
     dims = params.scene.dims;
@@ -54,6 +68,7 @@ void main() {
         uvec2 code = uvec2(0u);
         IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.translucent_mask != 0u)) code = imageLoad(edges, p).xy;
         Beside beside = unpack_beside(code.y);
+        if (SURFACES == 1u) there = there && may_show_surface(p, own);
         for (uint material = 0u; material <= ISO_COUNT; ++material) {
             bool carried = material + beside.below >= own && material <= own + beside.above;
             bool visible = there && (material == own ? has_data(sample_here) && in_mask(params.scene.visible_mask, own)

@@ -12,6 +12,7 @@ layout(local_size_x = 64) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_FACES) const uint FACES = 0u;
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
 layout(binding = BIND_EDGES, rg32ui) uniform readonly uimage3D edges;
@@ -29,6 +30,13 @@ vec3 field_gradient(ivec3 p) {
     return voxel_gradient(p);
 }
 #include "shaders/splats/fit_face.glsl"
+// After what it uses.
+#include "shaders/splats/fit_surface.glsl"
+
+uvec2 packed_traits(Face face) {
+    if (face.creased) return pack_crease(face.crease, face.corner);
+    return uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u), pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
+}
 
 void main() {
     uint i = invocation_number();
@@ -45,7 +53,14 @@ void main() {
         Edge e = unpack_edge(code.x, code.y);
         e.d2 = 1e9;
         uint normal = code.x;
-        if (FACES == 1u) {
+        if (SURFACES == 1u) {
+            Face face = fit_surface(p, material);
+            e = face.edge;
+            normal = pack_normal(e.n);
+            BendingsRef(params.scene.traits).at[i] = packed_traits(face);
+            with_crease = face.creased;
+            traced = face.traced;
+        } else if (FACES == 1u) {
             // The voxel's own surfel is one point of the surface; the fitted face uses all surfels around and cuts the
             // kernel.
             Face face = fit_face(p, material);
@@ -62,9 +77,7 @@ void main() {
             if (material_at(p) != material) plain = Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER);
             e = cut ? face.edge : plain;
             normal = e.state == EDGE_NONE ? 0u : pack_normal(e.n);
-            uvec2 bent = uvec2(pack_bending(face.h.diagonal) | (face.mixed ? FACE_MIXED : 0u),
-                               pack_bending(face.h.mixed) | (face.traced ? FACE_TRACED : 0u));
-            BendingsRef(params.scene.traits).at[i] = cut ? face.creased ? pack_crease(face.crease, face.corner) : bent : uvec2(0u);
+            BendingsRef(params.scene.traits).at[i] = cut ? packed_traits(face) : uvec2(0u);
             with_crease = cut && face.creased;
             traced = cut && face.traced;
         }

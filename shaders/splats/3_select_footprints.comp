@@ -47,6 +47,14 @@ void note(uint i, uint first, uint last, ivec4 box) {
     }
 }
 
+// Whether no ray of the picture can meet the front of the splat's face within its reach, nor pass it closely.
+bool looks_away(uint i, Edge e, uint material, Projection p) {
+    FaceTraits t = traits_of(i, e, material);
+    vec3 to = p.position + p.centre - params.frame.eye;
+    float away = length(to), turns = SURFACE_REACH * (bending_norm(t.h) + 1.0 / max(away - SURFACE_REACH, 1e-3));
+    return !is_traced_at(i, e, p.view.z) && t.crease.w >= CREASE_REACH && dot(to, e.n) > away * turns;
+}
+
 void main() {
     uint slot = invocation_number();
     if (slot >= params.frame.slot_count) return;
@@ -66,6 +74,10 @@ void main() {
     // kernel contains none of the matter.
     float beside = WARP == FACE && e.state >= EDGE_LOWER ? min(e.d, 0.0) : 0.0;
     bool drawn = there && beside > -params.frame.support && p.visible && box.x < box.z && box.y < box.w;
+    if (SURFACES == 1u) {
+        beside = 0.0;
+        drawn = drawn && !looks_away(i, e, splat.edge >> 28, p);
+    }
     if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
     if (FOOTPRINTS == TABLE && drawn)
         PairsRef(params.frame.footprints).at[i] =
@@ -84,7 +96,7 @@ void main() {
         // to: no splat of another material may come between, and the occluder behind may not be in the same sheet.
         bool before = FACES && e.state >= EDGE_LOWER && (params.frame.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
         float apart = before ? params.frame.sheet_thickness / length(params.frame.view_z) : 0.0;
-        float depth = p.view.z + (beside - apart) * dot(params.frame.view_z, e.n);
+        float depth = (SURFACES == 1u ? p.depth : p.view.z) + (beside - apart) * dot(params.frame.view_z, e.n);
         int sheet = max(int(floor(depth / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;

@@ -6,6 +6,7 @@
 #include "shaders/footprints/selected_footprint.glsl"
 #include "shaders/footprints/kernel.glsl"
 
+// With surface splats, the first three numbers of FaceForm::cut are the foot point.
 layout(constant_id = SPEC_LABELS) const uint LABELS = 0u;
 
 struct SplatInputs {
@@ -72,7 +73,8 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
                           CREASE_NONE, CORNER_NONE);
         IF_ANY(is_cut) {
             FaceTraits traits = traits_of(number, e, splat.edge >> 28);
-            FaceCut cut = cut_of(e, traits);
+            FaceCut cut = FaceCut(e.d * e.n.x, e.d * e.n.y, e.d * e.n.z, 0.0, 0.0);
+            if (SURFACES == 0u) cut = cut_of(e, traits);
             h = traits.h;
             vec3 a = abs(e.n);
             uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
@@ -81,7 +83,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
             vec3 at_foot = bent(h, e.d * e.n);
             s.face = FaceForm(-e.d + 0.5 * e.d * dot(e.n, at_foot), e.n - at_foot, h, cut, traits.crease, traits.corner);
         }
-        if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced(number) ? IS_TRACED : 0u;
+        if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced_at(number, e, p.view.z) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
     }
     if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.table_depth);

@@ -43,6 +43,20 @@ bool is_traced(uint number) {
     return (code.x & FACE_CREASED) == 0u && (code.y & FACE_TRACED) != 0u;
 }
 
+// Pixels that a voxel covers at a depth (mm), at most.
+float pixels_per_voxel(float depth) {
+    mat3 m = params.frame.index_to_world;
+    float longest2 = max(dot(m[0], m[0]), max(dot(m[1], m[1]), dot(m[2], m[2])));
+    return sqrt(longest2) * float(params.frame.size.x) / (2.0 * params.frame.tan_half_x * max(depth, params.frame.near_depth));
+}
+
+// Whether rays find the splat's face in this picture. `depth`: of the voxel, mm. With surface splats only where the
+// error of the fitted face, stored as e.d2, shows.
+bool is_traced_at(uint number, Edge e, float depth) {
+    bool shows = SURFACES == 0u || e.d2 * pixels_per_voxel(depth) > SURFACE_SHOWS;
+    return is_traced(number) && shows;
+}
+
 // Voxels on both sides of a face carry translucent matter. So its kernels are not moved: the depth is 0.
 FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
@@ -132,10 +146,15 @@ Projection place_splat(uint number, Splat splat, Edge e) {
     vec2 support = vec2(0.0, cut_or_warped ? params.frame.footprint.paper_reach : params.frame.support);
     IF_ANY(FACES && cut_or_warped) {
         FaceTraits traits = traits_of(number, e, splat.edge >> 28);
-        FaceCut cut = cut_of(e, traits);
-        support = vec2(cut.shift, cut.radius);
+        if (SURFACES == 1u) {
+            bool creased = traits.crease.w < CREASE_REACH;
+            support = vec2(creased ? 0.0 : e.d, SURFACE_REACH + (creased ? SURFACE_CREASE : 0.0));
+        } else {
+            FaceCut cut = cut_of(e, traits);
+            support = vec2(cut.shift, cut.radius);
+        }
         // Only the ray will find where the surface cuts the kernel.
-        if (TRACED == 1u) support = is_traced(number) ? vec2(0.0, TRACE_REACH) : support;
+        if (TRACED == 1u) support = is_traced_at(number, e, p.view.z) ? vec2(0.0, trace_reach()) : support;
     }
     p.centre = support.x * e.n;
     p.radius = support.y;

@@ -35,7 +35,7 @@ const Stretch NO_STRETCH = Stretch(TRACE_NOWHERE, -TRACE_NOWHERE);
 // The part of a ray that a kernel may cover. p: the ray's point nearest to the voxel; `ahead`: its distance along u
 // from the eye.
 Stretch kernel_stretch(vec3 p, float ahead) {
-    float half_chord = sqrt(max(TRACE_REACH * TRACE_REACH - dot(p, p), 0.0));
+    float half_chord = sqrt(max(trace_reach() * trace_reach() - dot(p, p), 0.0));
     Stretch s = Stretch(max(ahead - half_chord, 0.0), ahead + half_chord);
     if (!(half_chord > 0.0 && s.last > 0.0)) s = NO_STRETCH;
     return s;
@@ -75,7 +75,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         float newton = z - (field.w - level) / (abs(slope) > 1e-9 ? slope : 1e-9);
         float next = newton >= a && newton <= b ? newton : 0.5 * (a + b);
         guess = in_search ? next : guess;
-        searching = in_search ? (abs(next - z) < TRACE_NEAR ? 0 : searching - 1) : searching;
+        searching = in_search ? (abs(next - z) < (SURFACES == 1u ? SURFACE_NEAR : TRACE_NEAR) ? 0 : searching - 1) : searching;
         bool found = in_search && searching == 0, second = pieces == 2u, enters = found && matter, leaves = found && !matter;
         bool upper = level == interval.y;
         uint code = pack_end(normalize((upper ? field.xyz : -field.xyz) + vec3(0.0, 0.0, 1e-12)), upper);
@@ -111,7 +111,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         value_before = takes ? field.w : value_before;
         slope_before = takes ? slope : slope_before;
         begun = begun || takes;
-        bool deep = takes && !crosses && matter && z - entered > TRACE_DEEP, at_end = takes && !crosses && k > end;
+        bool deep = takes && !crosses && matter && z - entered > (SURFACES == 1u ? SURFACE_DEEP : TRACE_DEEP), at_end = takes && !crosses && k > end;
         t.last = at_end ? max(z, until) : takes ? z : t.last;
         looks = !(leaves && second) && !at_end && pieces < 3u && !deep;
     }

@@ -93,6 +93,7 @@ inline void look_at(PassScene& s, const glm::dvec3& eye, const glm::dvec3& targe
     s.camera.fov_y = fov;
 }
 
+/// Drawn by kernels, also where surface splats would draw them; tests/passes/surfaces_test.cpp draws those.
 /// An opaque torus; an orbital with two materials, one translucent, on an oblique left-handed anisotropic grid; a wall.
 inline std::vector<PassScene> pass_scenes() {
     std::vector<PassScene> scenes(3);
@@ -122,6 +123,8 @@ inline std::vector<PassScene> pass_scenes() {
     wall.scene.iso_values = {0.5};
     wall.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, 2}};
     look_at(wall, {11, 8, 11}, {13, 13, 12}, 70);
+    for (PassScene& scene : scenes)
+        scene.settings.opaque = OpaqueMatter::Kernels;
     return scenes;
 }
 

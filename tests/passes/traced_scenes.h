@@ -35,6 +35,8 @@ inline std::vector<PassScene> traced_scenes() {
     cut.scene.iso_values = {0.5};
     cut.scene.materials = plate.scene.materials;
     look_at(cut, {16, -9, 14}, {13, 4, 11.5}, 50);
+    for (PassScene& scene : scenes)
+        scene.settings.opaque = OpaqueMatter::Kernels;
     return scenes;
 }
 

@@ -39,6 +39,7 @@ TEST(DrawCounts, ExistOnRequestAndChangeNoPixel) {
 
 TEST(DrawCounts, ExcludeSaturatedPixels) {
     test::Shot shot = sphere();
+    shot.settings.opaque = OpaqueMatter::Kernels;  // a surface closes a pixel whatever the saturation
     const auto shaded = [&] {
         test::test_renderer().count_fragments(true);
         const RenderResult result = test::render(shot);

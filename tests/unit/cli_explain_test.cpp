@@ -18,7 +18,7 @@ class CliExplain : public CliTest {};
 TEST_F(CliExplain, PlansOnlyWithoutOutput) {
     const ProgramRun plan = run("render builtin:sphere:24 --size 40x30 --explain");
     ASSERT_EQ(plan.status, 0) << plan.err;
-    for (const char* text : {"5_draw_tiles", "edge field", "light: lights[0] is a headlight", "peak",
+    for (const char* text : {"5_draw_surfaces", "edge field", "light: lights[0] is a headlight", "peak",
                              "splat record, 20 bytes", "left out", "sliced sheets", "--sheets sliced"})
         EXPECT_THAT(plan.out, HasSubstr(text));
     EXPECT_THAT(plan.out, Not(HasSubstr("ms measured")));

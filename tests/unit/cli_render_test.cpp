@@ -112,7 +112,7 @@ TEST_F(CliRender, StatisticsAreComplete) {
     EXPECT_GT(frame["sheets"], 0);
     EXPECT_GT(frame["device_bytes"], 0);
     EXPECT_EQ(frame["validation_messages"], 0);
-    EXPECT_TRUE(frame["passes_ms"].contains("5_draw_tiles")) << frame["passes_ms"].dump();
+    EXPECT_TRUE(frame["passes_ms"].contains("5_draw_surfaces")) << frame["passes_ms"].dump();
 }
 
 TEST_F(CliRender, VoxelCoordinatesAndWorldCoordinatesAgree) {

@@ -260,6 +260,30 @@ TEST(AnalyticVolumes, ParseNamesAndDims) {
     EXPECT_THROW(torus_scene(glm::ivec3(8), {4, 4, 4}, 2, 3), Error);
 }
 
+TEST(FinishVolume, EstimatesNoiseAndNoticesMasks) {
+    for (const double sigma : {0.0, 0.02, 5.0}) {
+        Volume volume;
+        volume.geometry.dims = {40, 38, 36};
+        std::mt19937 random(4);
+        std::normal_distribution<double> noise(0, sigma > 0 ? sigma : 1);
+        for (int z = 0; z < 36; ++z)
+            for (int y = 0; y < 38; ++y)
+                for (int x = 0; x < 40; ++x) {
+                    // A ramp with a step in it: neither is noise.
+                    const double smooth = 0.01 * x + (y > 19 ? 1 : 0);
+                    volume.values.push_back(static_cast<float>(smooth + (sigma > 0 ? noise(random) : 0)));
+                }
+        finish_volume(volume);
+        EXPECT_NEAR(volume.noise, sigma, 0.1 * sigma + 1e-6) << sigma;
+        EXPECT_FALSE(volume.two_values);
+    }
+    Volume mask = sample(builtin_scene("builtin:binary-ball:24"));
+    EXPECT_TRUE(mask.two_values);
+    mask.values[5] = 0.5F;
+    finish_volume(mask);
+    EXPECT_FALSE(mask.two_values);
+}
+
 TEST(FinishVolume, ReplacesAndCountsNonFiniteSamples) {
     Volume volume;
     volume.name = "test";

@@ -1,0 +1,111 @@
+// The face of a surface splat: one quadric fitted to the surfels around, kept if it agrees with the field. Else the planes
+// of a crease; else rays search the field wherever the face's error, which is kept in place of the second distance, shows
+// (5_trace_faces). docs/method.md, Surface splats. Include after
+// shaders/splats/fit_face.glsl.
+layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
+
+#define Real float
+#define INOUT(type) inout type
+#include "engine/geometry/surface_votes.glsl"
+#include "engine/geometry/surface_check.glsl"
+
+struct FieldAt {
+    vec3 slope;
+    float value;
+};
+
+FieldAt field_at(ivec3 p, vec3 r) {
+    vec4 field = bspline_slope(p, r);
+    return FieldAt(field.xyz, field.w);
+}
+
+bool is_matter_at(ivec3 q, uint material) {
+    return all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims)) && material_at(clamp(q, ivec3(0), dims - 1)) == material;
+}
+
+Face no_surface() {
+    return Face(Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE,
+                CORNER_NONE, false, 0.0);
+}
+
+// The six voxels that share a side with a voxel.
+ivec3 neighbour(int i) {
+    ivec3 o = ivec3(0);
+    o[i >> 1] = (i & 1) * 2 - 1;
+    return o;
+}
+
+// The face of voxel p of the material; its distance is CARRIES_NOTHING if the voxel needs no splat.
+Face fit_surface(ivec3 p, uint material) {
+    Face face = no_surface();
+    // Rays find the volume's border.
+    bool outermost = any(equal(p, ivec3(0))) || any(equal(p, dims - 1)), beside = outermost;
+    for (int i = 0; i < 6; ++i) beside = beside || !is_matter_at(p + neighbour(i), material);
+    vec3 middle = vec3(0.0), n = vec3(0.0, 0.0, 1.0);
+    float nearest = KERNEL_RADIUS;
+    uint state = EDGE_LOWER;
+    bool found = false;
+    for (int i = 0; i < 125; ++i) {
+        Surfel s = surfel_at(p, p + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+        bool nearer = s.there && !s.border && length(s.at) < nearest - 1e-4;
+        found = found || nearer;
+        nearest = nearer ? length(s.at) : nearest;
+        middle = nearer ? s.at : middle;
+        n = nearer ? s.n : n;
+        state = nearer ? s.state : state;
+    }
+    bool kept = false;
+    const bool two_values = TWO_VALUES == 1u;
+    Quadric q = Quadric(0.0, vec3(0.0), Bending(vec3(0.0), vec3(0.0)));
+    IF_ANY(found && beside) {
+        Moments sums = no_moments();
+        ivec3 around = p + ivec3(round(middle));
+        for (int i = 0; i < 125; ++i) {
+            Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
+            vec3 r = s.at - middle;
+            float w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) / (SURFACE_FIT * SURFACE_FIT), 0.0) : 0.0;
+            add_surfel(sums, r, s.n, w * w);
+        }
+        q = quadric_of(sums);
+        Foot foot = foot_of(q, -middle, vec3(0.0));
+        bool real_foot = length(foot.slope) >= 0.3 && abs(quadric_at(q, foot.at)) < 0.05 && length(foot.at) < SURFACE_FIT;
+        float scale = 1.0 / max(length(foot.slope), 0.3);
+        vec3 up = foot.slope / max(length(foot.slope), 1e-6);
+        SurfaceSplat own = SurfaceSplat(scale * quadric_at(q, -middle), scale * quadric_slope(q, -middle),
+                                        Bending(scale * q.h.diagonal, scale * q.h.mixed), middle + foot.at, SURFACE_REACH);
+        bool upper = state == EDGE_UPPER;
+        float iso = params.scene.iso[upper ? material : max(material, 1u) - 1u];
+        SurfaceCheck check = no_check();
+        IF_ANY(real_foot) {
+            for (int k = 0; k < SURFACE_CHECKS; ++k) {
+                vec3 at = checked_point(own, up, k);
+                FieldAt field = field_at(p, at);
+                check_point(check, own, at, field.value - iso, upper ? -field.slope : field.slope);
+            }
+        }
+        float wrong = 0.0;
+        for (int i = 0; i < 27; ++i) {
+            ivec3 o = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+            wrong = max(wrong, contradiction(own, vec3(o), is_matter_at(p + o, material)));
+        }
+        // Between samples of only two values the field says nothing.
+        float moved = two_values ? 0.0 : moved_by_noise(check.steep, params.scene.noise);
+        kept = (two_values || is_verified(check, params.scene.noise)) && wrong <= SURFACE_SIDE + moved && dot(own.foot, up) > -0.05;
+        kept = kept && real_foot && !outermost;
+        if (real_foot) {
+            face.edge = Edge(up, dot(own.foot, up), outermost ? 1e9 : max(error_of(check), wrong), state);
+            face.h = own.h;
+        } else {
+            face.edge = Edge(n, dot(middle, n), 1e9, state);
+        }
+        // Planes go further than the field, which rounds sharp edges.
+        if (two_values) {
+            Face planes = fit_face(p, material);
+            if (planes.creased) face = planes;
+        }
+    }
+    if (!beside) return no_surface();
+    if (!found) face.edge = Edge(n, 0.0, 1e9, EDGE_LOWER);
+    face.traced = !face.creased && !kept;
+    return face;
+}

@@ -1,0 +1,166 @@
+// Draws a chunk of surface splats, tile by tile: each pixel counts its splats' votes about the first surfaces on its ray,
+// front to back, and stops once the first is decided. 5_shade_surfaces shades it. docs/method.md, 5_draw_surfaces.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/drivers/if_any.glsl"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x_id = SPEC_GROUP) in;
+#include "shaders/common/groups.glsl"
+const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, PAYLOAD = PAYLOAD_NORMAL, SLICED = 0u, TRANSFER = 0u, LIT_EDGES = 0u, ANTIALIAS = 0u;
+const uint CLIP_KEEP = 0u, CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
+layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
+layout(constant_id = SPEC_NODES) const uint NODES = 6u;
+layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
+layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
+layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
+layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
+#include "shaders/drivers/texels.glsl"
+STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
+TEXEL_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark)
+TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
+TEXEL_PAIRS(BIND_TILE_RANGES, ranges, tile_ranges, load_range)
+TEXEL_WORDS(BIND_TILE_ORDER, order, tile_order, load_order)
+TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
+layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
+#include "shaders/splats/splat_projection.glsl"
+#include "shaders/light/shading.glsl"
+#include "shaders/common/transfer.glsl"
+#include "shaders/splats/splat_inputs.glsl"
+#include "shaders/footprints/footprint.glsl"
+#include "shaders/splats/prepared_splat.glsl"
+#include "shaders/common/volume_ends.glsl"
+#include "shaders/tiles/tile_marks.glsl"
+#include "shaders/tiles/tile_places.glsl"
+#include "shaders/splats/traced_ray.glsl"
+#include "shaders/tiles/traced_pixel.glsl"
+#include "shaders/tiles/surface_pixel.glsl"
+
+vec3 corner_normal(FaceForm face) { return sign(face.corner) * normalize(cross(face.slope, face.crease.xyz)); }
+
+SurfaceVote vote_of_crease(FaceForm face, vec3 p, vec3 u) {
+    bool corner = abs(face.corner) < FACE_NO_WALL;
+    SurfacePlane third = SurfacePlane(corner ? corner_normal(face) : vec3(0.0), corner ? abs(face.corner) : CORNER_NONE);
+    return vote_of_planes(SurfacePlane(face.slope, -face.value), SurfacePlane(face.crease.xyz, face.crease.w), third, SURFACE_REACH, p, u);
+}
+
+// The vote of a splat that no quadric fits. `ahead`: distance along u from the eye to p.
+SurfaceVote vote_of_field(SeenRay ray, vec3 p, vec3 u, float ahead) {
+    float half_chord = sqrt(max(SURFACE_REACH * SURFACE_REACH - dot(p, p), 0.0));
+    float low = max(ahead - half_chord, 0.0), high = ahead + half_chord;
+    bool first = ray.one.x > low && ray.one.x < high;
+    bool matter = min(ray.one.y, high) > max(ray.one.x, low) || min(ray.two.y, high) > max(ray.two.x, low);
+    // Beyond what was traced nothing is known.
+    matter = matter || ray.last < high - 1e-3;
+    vec3 n = first ? ray.first_normal : ray.second_normal;
+    n = (first ? ray.upper.x : ray.upper.y) ? -n : n;
+    return vote_of_traced(low, high, first ? ray.one.x : ray.two.x, matter, n, SURFACE_REACH, p, u, ahead);
+}
+
+void main() {
+    uint draw_round = what & 0xfffffu;
+    uint item = group_number();
+    uint groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
+    if (item >= tile_count() * groups) return;
+    if (ROUNDS == 1u) item = load_order(tile_count() + item);
+    uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (tile >= tile_count()) return;
+    uvec2 range = load_range(tile);
+    if (ROUNDS == 1u) range = uvec2(range.x + round_begin(draw_round), min(range.x + round_begin(draw_round + 1u), range.y));
+    if (range.x >= range.y) return;
+    ivec2 size = params.frame.size;
+    uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
+    ivec2 pixel = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) +
+                  place_of(tile, min(place, max(count, 1u) - 1u));
+    bool inside = pixel.x < size.x && pixel.y < size.y && place < count;
+    ivec2 held = min(pixel, size - 1);
+    bool was_open = inside && load_pixel(held.y * size.x + held.x).a < params.frame.saturation;
+    bool open = was_open;
+    uint evaluated = 0u;
+    IF_ANY(open) {
+        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+        vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
+        vec3 way = params.frame.ray_z + across;
+        float way_length = length(way);
+        vec3 u = way / way_length;
+        VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, divisible(u), params.frame.dims);
+        float begins = max(ends.near.x, max(ends.near.y, ends.near.z)) - 1e-3, stops = min(ends.far.x, min(ends.far.y, ends.far.z));
+        SheetWays ways = sheet_ways(u);
+        SeenRay traced;
+        if (TRACED == 1u) traced = load_seen_ray(held);
+        int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
+        SurfacePair pair = load_votes(held);
+        uint length = range.y - range.x;
+        for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
+            uvec4 words;
+            for (uint i = 0u; i < 4u; ++i) {
+                uint begin = base + i * MARKED_AT_ONCE, left = length - min(begin, length);
+                words[i] = load_mark(marks_at + int(begin / MARKED_AT_ONCE * CELLS));
+                words[i] = left == 0u ? 0u : words[i] & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
+            }
+            while ((words.x | words.y | words.z | words.w) != 0u && open) {
+                bvec3 done = equal(words.xyz, uvec3(0u));
+                uint first = !done.x ? 0u : !done.y ? 1u : !done.z ? 2u : 3u;
+                uint bits = !done.x ? words.x : !done.y ? words.y : !done.z ? words.z : words.w;
+                uint rest = bits & bits - 1u;
+                words = uvec4(first == 0u ? rest : words.x, first == 1u ? rest : words.y, first == 2u ? rest : words.z,
+                              first == 3u ? rest : words.w);
+                uvec2 entry = load_entry(at + int(base + first * MARKED_AT_ONCE) + findLSB(bits));
+                // No later vote is about the first surface.
+                bool decided = is_decided(pair, ways, entry.y);
+                bool refused = decided && !wins(pair.front);
+                open = !decided || refused;
+                if (refused) refuse_front(pair);
+                PreparedSplat h;
+                if (PREPARED == 1u) load_kernel(entry.x, h);
+                else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
+                FaceForm face = h.inputs.face;
+                uvec2 number_material = h.inputs.number_material;
+                vec3 offset = h.start + h.plane * across;
+                float beyond = dot(offset, u);
+                vec3 p = offset - beyond * u;
+                float ahead = h.plane * way_length - beyond;
+                if (COUNT == 1u) evaluated += open ? 1u : 0u;
+                SurfaceVote vote = vote_of(SurfaceSplat(face.value, face.slope, face.h, vec3(face.cut.depth, face.cut.thickness, face.cut.reach2),
+                                                        SURFACE_REACH), p, u);
+                if (CREASES == 1u) {
+                    IF_ANY(face.crease.w < CREASE_REACH) {
+                        if (face.crease.w < CREASE_REACH) vote = vote_of_crease(face, p, u);
+                    }
+                }
+                if (TRACED == 1u) {
+                    if ((number_material.y & IS_TRACED) != 0u) vote = vote_of_field(traced, p, u, ahead);
+                }
+                // Normals point to the lower values.
+                if ((number_material.y & (FACES_UPWARD | IS_TRACED)) == FACES_UPWARD) vote.n = -vote.n;
+                float where = ahead + vote.z;
+                vote.weight = open && where >= begins && where <= stops ? vote.weight : 0.0;
+                // Matter at the volume's border begins there, whatever the faces around say.
+                if (TRACED == 1u) vote.weight *= vote.enters && where < begins + 4e-3 ? SURFACE_CERTAIN : 1.0;
+                count_vote(pair, vote, where, number_material.x);
+            }
+        }
+        IF_ANY(was_open) {
+            store_votes(held, pair);
+            if (!open) store_pixel(held.y * size.x + held.x, vec4(0.0, 0.0, 0.0, 1.0));
+        }
+    }
+    uint closing = subgroupAdd(was_open && !open ? 1u : 0u);
+    if (COUNT == 1u) {
+        uint all = subgroupAdd(evaluated);
+        if (subgroupElect()) {
+            atomicAdd(UintsRef(params.frame.drawn).at[1], all);
+            atomicAdd(UintsRef(params.frame.drawn).at[2], all);
+        }
+    }
+    if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);
+}

@@ -1,0 +1,75 @@
+// Decides the surface that each pixel's ray enters, and shades it there, once a pixel. After a part of a picture: only
+// marks the pixels that are decided. docs/method.md, 5_shade_surfaces.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_KHR_shader_subgroup_basic : require
+#extension GL_KHR_shader_subgroup_arithmetic : require
+#include "shaders/drivers/if_any.glsl"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x_id = SPEC_GROUP) in;
+#include "shaders/common/groups.glsl"
+layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
+layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
+layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
+const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, ANTIALIAS = 0u, NARROW = 1u, TRACED = 0u, NODES = 6u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+#include "shaders/drivers/texels.glsl"
+STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
+TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
+layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles; round 1: only marks
+#include "shaders/splats/splat_projection.glsl"
+#include "shaders/light/shading.glsl"
+#include "shaders/tiles/tile_places.glsl"
+#include "shaders/tiles/surface_pixel.glsl"
+
+vec3 payload_of(SurfaceVotes votes, vec3 u) {
+    float way = max(way_to(votes), 1e-4), depth = way * dot(params.frame.view_z, u);
+    Splat splat = SplatsRef(params.frame.splats).at[votes.number];
+    vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
+    if (PAYLOAD == PAYLOAD_NORMAL) return normal;
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, -unpack_edge(splat.normal, splat.edge).d, 0.0);
+    vec3 along = params.frame.index_to_world * u;
+    uint material = splat.edge >> 28;
+    return shade(Surface(params.frame.materials[material].rgb, material, votes.number, dot(normal, normal) > 0.0, normal, false, way * along,
+                         -normalize(along), depth));
+}
+
+void main() {
+    uint item = group_number(), groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
+    uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
+    if (tile >= tile_count()) return;
+    ivec2 size = params.frame.size;
+    uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
+    if (item % groups * gl_WorkGroupSize.x >= count) return;
+    ivec2 at = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) + place_of(tile, min(place, max(count, 1u) - 1u));
+    bool inside = at.x < size.x && at.y < size.y && place < count;
+    ivec2 pixel = min(at, size - 1);
+    bool some = inside && hits_of(pixel) > 0.0;
+    bool marks = (what & 0xfffffu) == 1u, closes = false;
+    IF_ANY(some && marks) {
+        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+        SurfacePair pair = load_votes(pixel);
+        bool open = load_pixel(pixel.y * size.x + pixel.x).a == 0.0;
+        SheetWays ways = sheet_ways(normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y));
+        closes = some && marks && open && wins(pair.front) && is_decided(pair, ways, params.frame.sheets_drawn);
+        if (closes) store_pixel(pixel.y * size.x + pixel.x, vec4(0.0, 0.0, 0.0, 1.0));
+    }
+    uint closing = subgroupAdd(closes ? 1u : 0u);
+    if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);
+    IF_ANY(some && !marks) {
+        SurfacePair pair = load_votes(pixel);
+        // Also surfaces that no later splat decided.
+        for (int k = 0; k < 2; ++k)
+            if (!wins(pair.front)) refuse_front(pair);
+        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+        vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+        bool there = pair.front.hits > 0.0;
+        vec4 seen = vec4(0.0);
+        IF_ANY(there) seen = there ? vec4(payload_of(pair.front, u), 1.0) : vec4(0.0);
+        if (some) store_pixel(pixel.y * size.x + pixel.x, seen);
+        if (some) forget_votes(pixel);
+    }
+}

@@ -1,0 +1,292 @@
+// Votes about surfaces: closed forms, order, and the same source in float and in double.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include "engine/geometry/in_double.h"
+
+#define EDGESPLAT_IN_FLOAT
+#undef EDGESPLAT_SURFACE_VOTES_GLSL
+namespace edgesplat::in_float {
+
+using Real = float;
+using uint = std::uint32_t;
+using vec3 = glm::vec3;
+using Bending = glm::mat3;
+using glm::abs;
+using glm::clamp;
+using glm::dot;
+using glm::length;
+using glm::max;
+using glm::min;
+using glm::sqrt;
+using shader::SURFACE_WINDOW;
+
+inline vec3 bent(const Bending& h, const vec3& v) {
+    return h * v;
+}
+
+// GLSL literals are float, C++ literals double: glm's functions take two arguments of one type.
+inline float max(float a, double b) {
+    return glm::max(a, static_cast<float>(b));
+}
+inline float clamp(float v, double low, double high) {
+    return glm::clamp(v, static_cast<float>(low), static_cast<float>(high));
+}
+inline vec3 operator*(double factor, const vec3& v) {
+    return static_cast<float>(factor) * v;
+}
+
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wdouble-promotion"
+#define INOUT(type) type&
+#include "engine/geometry/surface_votes.glsl"
+#undef INOUT
+#pragma GCC diagnostic pop
+
+}  // namespace edgesplat::in_float
+
+namespace edgesplat::geometry {
+namespace {
+
+/// phi = (|x - c|^2 - r^2) / (2 r) about the origin; the foot lies towards the origin.
+SurfaceSplat ball(const vec3& center, double radius, double reach) {
+    SurfaceSplat splat;
+    splat.value = (glm::dot(center, center) - radius * radius) / (2 * radius);
+    splat.slope = -center / radius;
+    splat.h = glm::dmat3(1 / radius);
+    splat.foot = center - radius * glm::normalize(center);
+    splat.reach = reach;
+    return splat;
+}
+
+class Random {
+  public:
+    double operator()(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
+    vec3 direction() {
+        vec3 v(0);
+        while (!(glm::length(v) > 0.1 && glm::length(v) < 1))
+            v = {(*this)(-1, 1), (*this)(-1, 1), (*this)(-1, 1)};
+        return glm::normalize(v);
+    }
+    /// A point across u, as rays are described.
+    vec3 across(const vec3& u, double most) {
+        const vec3 v = most * direction();
+        return v - glm::dot(v, u) * u;
+    }
+
+  private:
+    std::mt19937 engine_{20};
+};
+
+TEST(SurfaceVotes, OnABallAreWhereTheRayEntersIt) {
+    Random random;
+    int hits = 0, misses = 0;
+    for (int k = 0; k < 20000; ++k) {
+        const double radius = random(0.6, 12);
+        const vec3 center = (radius + random(-0.9, 0.4)) * random.direction(), u = random.direction();
+        const vec3 p = random.across(u, 1.3);
+        const SurfaceVote vote = vote_of(ball(center, radius, 1.3), p, u);
+        const vec3 from = p - center;
+        const double b = glm::dot(from, u), root2 = b * b - glm::dot(from, from) + radius * radius;
+        if (vote.weight <= 0) continue;
+        EXPECT_EQ(vote.enters, root2 >= 0);
+        if (vote.enters) {
+            EXPECT_NEAR(vote.z, -b - std::sqrt(root2), 1e-9 * radius);
+            EXPECT_NEAR(glm::dot(glm::normalize(vote.n), glm::normalize(from + vote.z * u)), 1, 1e-9);
+            EXPECT_LT(glm::dot(vote.n, u), 1e-9);
+            ++hits;
+        } else {
+            ++misses;
+        }
+    }
+    EXPECT_GT(hits, 2000);
+    EXPECT_GT(misses, 200);
+}
+
+/// A ray inside of matter all along passes no surface by.
+TEST(SurfaceVotes, InsideAHollowSayNothing) {
+    SurfaceSplat hollow = ball({0, 0, 3}, 2.5, 1.3);
+    hollow.value = -hollow.value;
+    hollow.slope = -hollow.slope;
+    hollow.h = -hollow.h;
+    const SurfaceVote vote = vote_of(hollow, {0, 0.1, 0.2}, {1, 0, 0});
+    EXPECT_EQ(vote.weight, 0);
+}
+
+TEST(SurfaceVotes, OfPlanesAreWhereTheRayIsInsideAllOfThem) {
+    Random random;
+    int hits = 0;
+    for (int k = 0; k < 20000; ++k) {
+        const SurfacePlane one{random.direction(), random(0, 1)}, two{random.direction(), random(0, 1.4)};
+        const SurfacePlane three{random.direction(), k % 2 == 0 ? 1e9 : random(0, 1.4)};
+        const vec3 u = random.direction(), p = random.across(u, 1.2);
+        const SurfaceVote vote = vote_of_planes(one, two, three, 1.3, p, u);
+        if (!(vote.weight > 0)) continue;
+        const auto outside = [&](double z) {
+            double most = -1e9;
+            for (const SurfacePlane& plane : {one, two, three})
+                most = std::max(most, glm::dot(plane.n, p + z * u) - plane.away);
+            return most;
+        };
+        if (vote.enters) {
+            EXPECT_NEAR(outside(vote.z), 0, 1e-9);
+            EXPECT_GT(outside(vote.z - 1e-3), 0);
+            ++hits;
+        } else {
+            for (int step = -40; step <= 40; ++step)
+                EXPECT_GT(outside(vote.z + 0.1 * step), 0);
+        }
+    }
+    EXPECT_GT(hits, 2000);
+}
+
+struct Ballot {
+    SurfaceVote vote;
+    double way = 0;
+    uint number = 0;
+};
+
+/// Votes about two surfaces on one ray, as they may lie.
+std::vector<Ballot> two_surfaces(Random& random) {
+    std::vector<Ballot> ballots;
+    for (uint k = 0; k < 12; ++k) {
+        Ballot b;
+        b.way = (k < 6 ? 10 : 13) + random(-0.3, 0.3);
+        b.vote.weight = random(0.1, 1);
+        b.vote.enters = k % 3 != 2;
+        b.vote.n = random.direction();
+        b.number = k;
+        ballots.push_back(b);
+    }
+    return ballots;
+}
+
+/// Sums do not depend on the order in which splats of the same depth come.
+TEST(SurfaceVotes, CountTheSameInAnyOrder) {
+    Random random;
+    std::mt19937 order(3);
+    for (int k = 0; k < 500; ++k) {
+        std::vector<Ballot> ballots = two_surfaces(random);
+        const auto counted = [&] {
+            SurfacePair pair = no_surfaces();
+            for (const Ballot& b : ballots)
+                count_vote(pair, b.vote, b.way, b.number);
+            return pair;
+        };
+        const SurfacePair first = counted();
+        // Within each of the surfaces: a list has them by depth.
+        std::shuffle(ballots.begin(), ballots.begin() + 6, order);
+        std::shuffle(ballots.begin() + 6, ballots.end(), order);
+        const SurfacePair again = counted();
+        for (const auto& [a, b] : {std::pair(first.front, again.front), std::pair(first.behind, again.behind)}) {
+            EXPECT_NEAR(a.hits, b.hits, 1e-12);
+            EXPECT_NEAR(a.misses, b.misses, 1e-12);
+            EXPECT_NEAR(way_to(a), way_to(b), 1e-12);
+            EXPECT_NEAR(glm::distance(a.normal, b.normal), 0, 1e-12);
+            EXPECT_EQ(a.number, b.number);
+        }
+    }
+}
+
+/// Rays that graze a ridge collect votes against it; the surface behind them must not get lost.
+TEST(SurfaceVotes, AgainstSurfacesLeaveRoomForTheNext) {
+    SurfacePair pair = no_surfaces();
+    SurfaceVote miss, hit;
+    miss.weight = hit.weight = 1;
+    miss.enters = false;
+    hit.enters = true;
+    hit.n = {0, 0, -1};
+    for (int k = 0; k < 20; ++k)
+        count_vote(pair, miss, 10 + 0.4 * k, 1);
+    count_vote(pair, hit, 20, 7);
+    count_vote(pair, hit, 20.1, 7);
+    EXPECT_TRUE(wins(pair.front));
+    EXPECT_NEAR(way_to(pair.front), 20.05, 1e-12);
+    count_vote(pair, miss, 20, 1);
+    count_vote(pair, miss, 20, 1);
+    EXPECT_FALSE(wins(pair.front));
+}
+
+TEST(SurfaceVotes, OfMissesBeforeTheHitCountAgainstIt) {
+    SurfacePair pair = no_surfaces();
+    SurfaceVote miss, hit;
+    miss.weight = 2;
+    hit.weight = 1;
+    miss.enters = false;
+    hit.enters = true;
+    hit.n = {0, 0, -1};
+    count_vote(pair, miss, 9.8, 1);
+    count_vote(pair, hit, 10, 2);
+    EXPECT_EQ(pair.front.misses, 2);
+    EXPECT_FALSE(wins(pair.front));
+}
+
+TEST(SurfaceVotes, InFloatEqualThoseInDouble) {
+    Random random;
+    for (int k = 0; k < 5000; ++k) {
+        const double radius = random(1, 8);
+        const vec3 center = (radius + random(-0.8, 0.2)) * random.direction(), u = random.direction();
+        const vec3 p = random.across(u, 1);
+        const SurfaceSplat splat = ball(center, radius, 1.3);
+        const SurfaceVote exact = vote_of(splat, p, u);
+        in_float::SurfaceSplat rounded;
+        rounded.value = static_cast<float>(splat.value);
+        rounded.slope = splat.slope;
+        rounded.h = splat.h;
+        rounded.foot = splat.foot;
+        rounded.reach = 1.3F;
+        const in_float::SurfaceVote vote = in_float::vote_of(rounded, p, u);
+        // A ray that touches the ball may meet it or not; there its place is a root of rounding errors.
+        if (exact.enters != vote.enters || std::abs(glm::dot(glm::normalize(exact.n), u)) < 0.05) continue;
+        EXPECT_NEAR(static_cast<double>(vote.weight), exact.weight, 2e-4);
+        if (exact.weight > 0) {
+            EXPECT_NEAR(static_cast<double>(vote.z), exact.z, 2e-4);
+        }
+    }
+}
+
+/// The field of a ball, whose surface is a step of width 1.
+SurfaceCheck check_of(const SurfaceSplat& face, const vec3& center, double radius, double shift) {
+    SurfaceCheck check = no_check();
+    const vec3 n = glm::normalize(face.slope + bent(face.h, face.foot));
+    for (int k = 0; k < SURFACE_CHECKS; ++k) {
+        const vec3 at = checked_point(face, n, k), from = at - center;
+        check_point(check, face, at, radius + shift - glm::length(from), -glm::normalize(from));
+    }
+    return check;
+}
+
+TEST(SurfaceChecks, AcceptTheFieldsOwnSurfaceAndNoOther) {
+    Random random;
+    for (int k = 0; k < 200; ++k) {
+        const double radius = random(2, 12);
+        const vec3 center = (radius + random(-0.8, 0.2)) * random.direction();
+        const SurfaceSplat face = ball(center, radius, 1.3);
+        const SurfaceCheck own = check_of(face, center, radius, 0);
+        EXPECT_LT(own.away, 1e-3);
+        EXPECT_LT(own.turned, 1e-3);
+        EXPECT_TRUE(is_verified(own, 0));
+        const SurfaceCheck shifted = check_of(face, center, radius, 0.1);
+        EXPECT_NEAR(shifted.away, 0.1, 1e-3);
+        EXPECT_FALSE(is_verified(shifted, 0));
+        EXPECT_NEAR(error_of(shifted), 0.1, 1e-3);
+        // Noise of that size explains it.
+        EXPECT_TRUE(is_verified(shifted, 0.05));
+    }
+}
+
+TEST(SurfaceChecks, SeeSamplesOnTheWrongSide) {
+    const SurfaceSplat face = ball({0, 0, -4.6}, 5, 1.3);  // the surface lies .4 above the voxel
+    EXPECT_EQ(contradiction(face, {0, 0, 0}, true), 0);
+    EXPECT_EQ(contradiction(face, {0, 0, 1}, false), 0);
+    EXPECT_NEAR(contradiction(face, {0, 0, 1}, true), 0.6, 0.05);
+    EXPECT_NEAR(contradiction(face, {0, 0, 0}, false), 0.4, 0.05);
+    EXPECT_EQ(contradiction(face, {0, 0, 3}, true), 0) << "too far away to say anything";
+}
+
+}  // namespace
+}  // namespace edgesplat::geometry
