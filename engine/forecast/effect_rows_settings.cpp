@@ -72,7 +72,6 @@ std::vector<Effect> settings_effects() {
                         [](FrameRequest& r) {
                             cut_at_faces(r);
                             r.settings.edges = EdgeEstimator::Cubic;
-                            r.settings.opaque = OpaqueMatter::Kernels;
                             const glm::dvec3 spacing = r.volume->geometry.spacing();
                             for (Material& material : r.scene.materials)
                                 material.extinction = 0;

@@ -44,6 +44,7 @@ FrameRequest plain_request(FrameRequest request) {
     plain.edges = EdgeEstimator::Off;
     plain.footprints = FootprintMode::Isotropic;
     plain.cull_buried = false;
+    plain.opaque = OpaqueMatter::Kernels;
     plain.pixels = PixelChoice::Every;
     plain.sheet_spacing = request.settings.sheet_spacing;
     plain.saturation = request.settings.saturation;

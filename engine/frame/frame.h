@@ -58,12 +58,12 @@ class TilePasses {
     void draw(std::uint32_t chunk, std::uint32_t step, std::uint64_t tiles, std::uint64_t groups, std::uint32_t round);
     /// Copies the count of saturated pixels of each tile to the host.
     void copy_saturated_to_host();
-    /// Records what follows a step: refinement after steps above 1, pass 7 after the last.
-    /// Shades the surfaces that the step's pixels show; only with surface splats.
-    void shade(std::uint32_t step);
+    /// Records what follows a step: shading of surface splats, refinement after steps above 1, pass 7 after the last.
     void finish(std::uint32_t step);
 
   private:
+    /// Shades the surfaces that the step's pixels show; only with surface splats.
+    void shade(std::uint32_t step);
     /// Upper bound of a chunk's entries of the order.
     std::uint32_t entries(std::uint32_t chunk) const {
         return how_.planned ? plan_.params.prepared_mask + 1 : parts_[chunk].y - parts_[chunk].x;

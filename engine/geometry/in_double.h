@@ -1,5 +1,4 @@
-// Compiles a file of this folder in double precision. Include once per file and namespace, after declaring what the
-// file's comment asks for.
+// The files of this folder in double precision.
 #pragma once
 
 #include <cstdint>

@@ -188,10 +188,6 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     face.has_edge = face.has_normal = true;
     face.n = {0, 0, 1};
     face.D2 = kNowhere;
-    if (!ends_beside(field, scene, i, m)) {
-        face.D = static_cast<double>(shader::CARRIES_NOTHING);
-        return face;
-    }
     const VoxelEdge::Interval interval{scene.lower(m), scene.upper(m)};
     const auto around = [&](const ivec3& center, const auto& take) {
         for (int k = 0; k < 125; ++k) {

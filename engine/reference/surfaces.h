@@ -9,10 +9,9 @@
 
 namespace edgesplat::reference {
 
-/// The face of a surface splat at voxel i of material m; `noise`: standard deviation of the samples' noise, scaled;
-/// `two_values`: Volume::two_values.
-/// `traced` is set if the field must be searched instead, wherever the face's error, in D2, shows. Without a splat, D
-/// is CARRIES_NOTHING.
+/// The face of a surface splat at voxel i of material m, which ends beside it. `noise`: standard deviation of the
+/// samples' noise, scaled; `two_values`: Volume::two_values. `traced` is set if the field must be searched instead,
+/// wherever the face's error, in D2, shows.
 VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                       const glm::ivec3& i, int m, double noise, bool two_values);
 

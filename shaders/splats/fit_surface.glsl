@@ -1,7 +1,6 @@
 // The face of a surface splat: one quadric fitted to the surfels around, kept if it agrees with the field. Else the planes
 // of a crease; else rays search the field wherever the face's error, which is kept in place of the second distance, shows
-// (5_trace_faces). docs/method.md, Surface splats. Include after
-// shaders/splats/fit_face.glsl.
+// (5_trace_faces). docs/method.md, Surface splats. Include after shaders/splats/fit_face.glsl.
 layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
 
 #define Real float
@@ -9,38 +8,16 @@ layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
 #include "engine/geometry/surface_votes.glsl"
 #include "engine/geometry/surface_check.glsl"
 
-struct FieldAt {
-    vec3 slope;
-    float value;
-};
-
-FieldAt field_at(ivec3 p, vec3 r) {
-    vec4 field = bspline_slope(p, r);
-    return FieldAt(field.xyz, field.w);
-}
-
 bool is_matter_at(ivec3 q, uint material) {
     return all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims)) && material_at(clamp(q, ivec3(0), dims - 1)) == material;
 }
 
-Face no_surface() {
-    return Face(Edge(vec3(0.0, 0.0, 1.0), CARRIES_NOTHING, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE,
-                CORNER_NONE, false, 0.0);
-}
-
-// The six voxels that share a side with a voxel.
-ivec3 neighbour(int i) {
-    ivec3 o = ivec3(0);
-    o[i >> 1] = (i & 1) * 2 - 1;
-    return o;
-}
-
-// The face of voxel p of the material; its distance is CARRIES_NOTHING if the voxel needs no splat.
+// The face of voxel p of the material, beside which matter ends (2_collect_splats).
 Face fit_surface(ivec3 p, uint material) {
-    Face face = no_surface();
+    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 0.0, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE,
+                     false, 0.0);
     // Rays find the volume's border.
-    bool outermost = any(equal(p, ivec3(0))) || any(equal(p, dims - 1)), beside = outermost;
-    for (int i = 0; i < 6; ++i) beside = beside || !is_matter_at(p + neighbour(i), material);
+    bool outermost = any(equal(p, ivec3(0))) || any(equal(p, dims - 1));
     vec3 middle = vec3(0.0), n = vec3(0.0, 0.0, 1.0);
     float nearest = KERNEL_RADIUS;
     uint state = EDGE_LOWER;
@@ -56,8 +33,7 @@ Face fit_surface(ivec3 p, uint material) {
     }
     bool kept = false;
     const bool two_values = TWO_VALUES == 1u;
-    Quadric q = Quadric(0.0, vec3(0.0), Bending(vec3(0.0), vec3(0.0)));
-    IF_ANY(found && beside) {
+    IF_ANY(found) {
         Moments sums = no_moments();
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
@@ -66,7 +42,7 @@ Face fit_surface(ivec3 p, uint material) {
             float w = s.there && !s.border && dot(s.n, n) > 0.0 ? max(1.0 - dot(r, r) / (SURFACE_FIT * SURFACE_FIT), 0.0) : 0.0;
             add_surfel(sums, r, s.n, w * w);
         }
-        q = quadric_of(sums);
+        Quadric q = quadric_of(sums);
         Foot foot = foot_of(q, -middle, vec3(0.0));
         bool real_foot = length(foot.slope) >= 0.3 && abs(quadric_at(q, foot.at)) < 0.05 && length(foot.at) < SURFACE_FIT;
         float scale = 1.0 / max(length(foot.slope), 0.3);
@@ -79,8 +55,8 @@ Face fit_surface(ivec3 p, uint material) {
         IF_ANY(real_foot) {
             for (int k = 0; k < SURFACE_CHECKS; ++k) {
                 vec3 at = checked_point(own, up, k);
-                FieldAt field = field_at(p, at);
-                check_point(check, own, at, field.value - iso, upper ? -field.slope : field.slope);
+                vec4 field = bspline_slope(p, at);
+                check_point(check, own, at, field.w - iso, upper ? -field.xyz : field.xyz);
             }
         }
         float wrong = 0.0;
@@ -104,8 +80,6 @@ Face fit_surface(ivec3 p, uint material) {
             if (planes.creased) face = planes;
         }
     }
-    if (!beside) return no_surface();
-    if (!found) face.edge = Edge(n, 0.0, 1e9, EDGE_LOWER);
     face.traced = !face.creased && !kept;
     return face;
 }

@@ -40,6 +40,7 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/splats/prepared_splat.glsl"
 #include "shaders/common/volume_ends.glsl"
 #include "shaders/tiles/tile_marks.glsl"
+#include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/splats/traced_ray.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
@@ -79,15 +80,14 @@ void main() {
     if (range.x >= range.y) return;
     ivec2 size = params.frame.size;
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
-    ivec2 pixel = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) +
-                  place_of(tile, min(place, max(count, 1u) - 1u));
+    ivec2 pixel = pixel_of(tile, place, count);
     bool inside = pixel.x < size.x && pixel.y < size.y && place < count;
     ivec2 held = min(pixel, size - 1);
     bool was_open = inside && load_pixel(held.y * size.x + held.x).a < params.frame.saturation;
     bool open = was_open;
     uint evaluated = 0u;
     IF_ANY(open) {
-        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+        vec2 slope = slopes_of(pixel);
         vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
         vec3 way = params.frame.ray_z + across;
         float way_length = length(way);
@@ -101,20 +101,9 @@ void main() {
         SurfacePair pair = load_votes(held);
         uint length = range.y - range.x;
         for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
-            uvec4 words;
-            for (uint i = 0u; i < 4u; ++i) {
-                uint begin = base + i * MARKED_AT_ONCE, left = length - min(begin, length);
-                words[i] = load_mark(marks_at + int(begin / MARKED_AT_ONCE * CELLS));
-                words[i] = left == 0u ? 0u : words[i] & ~(left < MARKED_AT_ONCE ? ~0u << left : 0u);
-            }
-            while ((words.x | words.y | words.z | words.w) != 0u && open) {
-                bvec3 done = equal(words.xyz, uvec3(0u));
-                uint first = !done.x ? 0u : !done.y ? 1u : !done.z ? 2u : 3u;
-                uint bits = !done.x ? words.x : !done.y ? words.y : !done.z ? words.z : words.w;
-                uint rest = bits & bits - 1u;
-                words = uvec4(first == 0u ? rest : words.x, first == 1u ? rest : words.y, first == 2u ? rest : words.z,
-                              first == 3u ? rest : words.w);
-                uvec2 entry = load_entry(at + int(base + first * MARKED_AT_ONCE) + findLSB(bits));
+            uvec4 words = marks_from(marks_at, base, length);
+            while (has_marks(words) && open) {
+                uvec2 entry = load_entry(at + int(base + take_mark(words)));
                 // No later vote is about the first surface.
                 bool decided = is_decided(pair, ways, entry.y);
                 bool refused = decided && !wins(pair.front);

@@ -44,32 +44,30 @@ void main() {
     ivec2 size = params.frame.size;
     uint count = REFINED == 1u ? pixels_of(tile) : TILE * TILE;
     if (item % groups * gl_WorkGroupSize.x >= count) return;
-    ivec2 at = ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x)) * int(TILE) + place_of(tile, min(place, max(count, 1u) - 1u));
-    bool inside = at.x < size.x && at.y < size.y && place < count;
-    ivec2 pixel = min(at, size - 1);
-    bool some = inside && hits_of(pixel) > 0.0;
-    bool marks = (what & 0xfffffu) == 1u, closes = false;
-    IF_ANY(some && marks) {
-        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+    ivec2 at = pixel_of(tile, place, count), pixel = min(at, size - 1);
+    bool inside = at.x < size.x && at.y < size.y && place < count, marks = (what & 0xfffffu) == 1u, closes = false;
+    IF_ANY(inside && hits_of(pixel) > 0.0) {
+        bool some = inside && hits_of(pixel) > 0.0;
+        uint number = uint(pixel.y * size.x + pixel.x);
+        vec2 slope = slopes_of(pixel);
+        vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
         SurfacePair pair = load_votes(pixel);
-        bool open = load_pixel(pixel.y * size.x + pixel.x).a == 0.0;
-        SheetWays ways = sheet_ways(normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y));
-        closes = some && marks && open && wins(pair.front) && is_decided(pair, ways, params.frame.sheets_drawn);
-        if (closes) store_pixel(pixel.y * size.x + pixel.x, vec4(0.0, 0.0, 0.0, 1.0));
+        IF_ANY(some && marks) {
+            bool open = load_pixel(number).a == 0.0;
+            closes = some && marks && open && wins(pair.front) && is_decided(pair, sheet_ways(u), params.frame.sheets_drawn);
+            if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
+        }
+        IF_ANY(some && !marks) {
+            // Also surfaces that no later splat decided.
+            for (int k = 0; k < 2; ++k)
+                if (!wins(pair.front)) refuse_front(pair);
+            bool there = pair.front.hits > 0.0;
+            vec4 seen = vec4(0.0);
+            IF_ANY(there) seen = there ? vec4(payload_of(pair.front, u), 1.0) : vec4(0.0);
+            if (some) store_pixel(number, seen);
+            if (some) forget_votes(pixel);
+        }
     }
     uint closing = subgroupAdd(closes ? 1u : 0u);
     if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);
-    IF_ANY(some && !marks) {
-        SurfacePair pair = load_votes(pixel);
-        // Also surfaces that no later splat decided.
-        for (int k = 0; k < 2; ++k)
-            if (!wins(pair.front)) refuse_front(pair);
-        vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
-        vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
-        bool there = pair.front.hits > 0.0;
-        vec4 seen = vec4(0.0);
-        IF_ANY(there) seen = there ? vec4(payload_of(pair.front, u), 1.0) : vec4(0.0);
-        if (some) store_pixel(pixel.y * size.x + pixel.x, seen);
-        if (some) forget_votes(pixel);
-    }
 }

@@ -99,7 +99,7 @@ void main() {
         bool inside = all(lessThan(pixel, size));
         bool open = inside && load_pixel(held.y * size.x + held.x).a < params.frame.saturation;
         IF_ANY(open) {
-            vec2 slope = ((vec2(pixel) + 0.5) * 2.0 / vec2(size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
+            vec2 slope = slopes_of(pixel);
             vec3 across = slope.x * params.frame.ray_x + slope.y * params.frame.ray_y;
             vec3 way = params.frame.ray_z + across;
             float way_length = length(way);

@@ -10,8 +10,20 @@ const uint FIRST_PIXELS = (TILE / REFINE_STEP) * (TILE / REFINE_STEP);
 // Selected without a branch: lavapipe recompiles a branch on a push constant at every bind.
 uint pixels_of(uint tile) { return mix(load_todo(tile), FIRST_PIXELS, what >> 31 == 1u); }
 
+// Position of a place in its tile.
 ivec2 place_of(uint tile, uint place) {
     if (REFINED == 0u) return pixel_in_tile(place);
     uint listed = load_listed(tile * TILE * TILE + place);
     return mix(ivec2(listed & 0xffu, listed >> 8), int(REFINE_STEP) * pixel_in_tile(place), bvec2(what >> 31 == 1u));
+}
+
+// The pixel at a place of a tile; places from `count` on repeat the last one.
+ivec2 pixel_of(uint tile, uint place, uint count) {
+    ivec2 corner = int(TILE) * ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x));
+    return corner + place_of(tile, min(place, max(count, 1u) - 1u));
+}
+
+// Slopes of a pixel's ray: right and down per depth.
+vec2 slopes_of(ivec2 pixel) {
+    return ((vec2(pixel) + 0.5) * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
 }
