@@ -8,7 +8,6 @@
 
 #include "engine/geometry/in_double.h"
 
-#define EDGESPLAT_IN_FLOAT
 #undef EDGESPLAT_SURFACE_VOTES_GLSL
 namespace edgesplat::in_float {
 
