@@ -150,7 +150,7 @@ RenderResult Renderer::render_once(const Scene& scene, const Camera& camera, con
     const gpu::PipelineCreation made = pipelines.creation();
     // Optical depth needs all voxels; surface splats are some. So it is drawn from a list of its own.
     AovRequest outputs = aovs;
-    const bool tau_apart = aovs.tau && draws_surfaces(settings, scene, self.splats.original()->geometry);
+    const bool tau_apart = aovs.tau && draws_surfaces(settings, scene, *self.splats.original());
     outputs.tau = outputs.tau && !tau_apart;
     self.splats.provide({self.splats.original(), scene, camera, wanted, size, outputs}, stats);
     const LevelStore& level = self.splats.level();

@@ -112,6 +112,7 @@ class Passes {
                          passes::occlude_constants({.iso_count = f.collection.params.iso_count,
                                                     .clip = {static_cast<std::uint32_t>(clip.keep.size()),
                                                              static_cast<std::uint32_t>(clip.remove.size())},
+                                                    .surfaces = f.collection.surfaces,
                                                     .transfer = !request.scene.transfer.empty()}))});
         }
         if (f.light_frames.empty()) return;
@@ -149,6 +150,9 @@ class Passes {
         const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
         const double drawing = kRates.draw_entry * entries +
                                (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan);
+        if (plan.variant.surfaces)
+            add(name, "5_begin_surfaces", kRates.resolve_pixel * pixels,
+                {variant("5_begin_surfaces.comp", passes::begin_constants(plan.variant))});
         add(name, "3_select_footprints", kRates.select_splat * splats,
             {variant("3_select_footprints.comp", passes::select_constants(plan.variant))});
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,

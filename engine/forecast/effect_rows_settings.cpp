@@ -64,8 +64,8 @@ std::vector<Effect> settings_effects() {
                     .help = "opaque matter is a surface: splats vote where a ray enters it, and a pixel is shaded once",
                     .call = "settings.opaque = \"surfaces\"; --opaque surfaces (on by default)",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        const bool surfaces = draws_surfaces(r.settings, r.scene, r.volume->geometry);
-                        return surfaces && !keeps_buried(r) ? "the matter is one opaque material in plain light" : "";
+                        const bool surfaces = draws_surfaces(r.settings, r.scene, *r.volume);
+                        return surfaces && !keeps_buried(r) ? "all matter is opaque" : "";
                     },
                     .turn_on = [](FrameRequest& r) { r.settings.opaque = OpaqueMatter::Surfaces; },
                     .base =
@@ -77,12 +77,12 @@ std::vector<Effect> settings_effects() {
                                 material.extinction = 0;
                             r.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
                         },
-                    .passes = {"5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
+                    .passes = {"5_begin_surfaces", "5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
                     .resources = {"traced rays", "traced entries"},
                     .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
                                 "splat traits", "tiles of splats", "unfinished sheets"},
                     .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
-                    .frame_fields = {"sheets_drawn"},
+                    .frame_fields = {"body_lower", "body_upper", "iso", "sheets_drawn", "visible_mask"},
                     .scene_fields = {"noise"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",

@@ -89,21 +89,35 @@ SplatCount most_splats(const CollectionPlan& plan) {
 
 namespace {
 
-/// Whether matter of the voxel's material ends on one of its six sides, or the volume does (2_collect_splats).
-bool ends_beside(const std::vector<std::uint8_t>& materials, const glm::ivec3& dims, const glm::ivec3& at) {
-    const auto of = [&](const glm::ivec3& i) {
+/// Number of a material, scaled sample -> material.
+std::uint8_t material_of(const shader::SceneParams& params, float scaled) {
+    std::uint8_t material = 0;
+    for (std::uint32_t j = 0; j < params.iso_count; ++j)
+        material += params.iso[j] <= scaled ? 1U : 0U;
+    return material;
+}
+
+/// Whether matter of the voxel's material ends on one of its six sides (2_collect_splats).
+bool ends_beside(const Volume& volume, const shader::SceneParams& params, const std::vector<std::uint8_t>& materials,
+                 const glm::ivec3& at) {
+    const glm::ivec3 dims = volume.geometry.dims;
+    const auto index = [&](const glm::ivec3& i) {
         const auto row =
             static_cast<std::size_t>(i.y) + static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(i.z);
-        return materials[static_cast<std::size_t>(i.x) + static_cast<std::size_t>(dims.x) * row];
+        return static_cast<std::size_t>(i.x) + static_cast<std::size_t>(dims.x) * row;
     };
-    for (int axis = 0; axis < 3; ++axis) {
-        if (at[axis] == 0 || at[axis] == dims[axis] - 1) return true;
+    const auto value = [&](const glm::ivec3& i) { return scaled_sample(volume, volume.values[index(i)]); };
+    for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
-            glm::ivec3 beside = at;
+            glm::ivec3 beside = at, before = at;
             beside[axis] += step;
-            if (of(beside) != of(at)) return true;
+            before[axis] = std::clamp(at[axis] - step, 0, dims[axis] - 1);
+            const bool outermost = beside[axis] < 0 || beside[axis] == dims[axis];
+            const std::uint8_t there =
+                outermost ? material_of(params, std::max(1.5F * value(at) - 0.5F * value(before), 0.0F))
+                          : materials[index(beside)];
+            if (there != materials[index(at)]) return true;
         }
-    }
     return false;
 }
 
@@ -116,9 +130,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
     std::vector<std::uint8_t> materials(voxels), splats(voxels), opaque(plan.buried ? voxels : 0);
     for (std::uint64_t i = 0; i < voxels; ++i) {
-        const float scaled = scaled_sample(volume, volume.values[i]);
-        for (std::uint32_t j = 0; j < params.iso_count; ++j)
-            materials[i] += params.iso[j] <= scaled ? 1U : 0U;
+        materials[i] = material_of(params, scaled_sample(volume, volume.values[i]));
         if (!volume.has_data(i)) materials[i] |= kMissing;
     }
     for (std::uint64_t i = 0; i < voxels; ++i) {
@@ -128,7 +140,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
         const std::uint32_t here = 1U << (materials[i] & ~kMissing), own = volume.has_data(i) ? here : 0U;
         splats[i] = static_cast<std::uint8_t>(std::popcount((carried & ~here) | (params.visible_mask & own)));
         if (plan.buried) opaque[i] = (params.opaque_mask & own) != 0 ? 1U : 0U;
-        if (plan.surfaces && !ends_beside(materials, dims, at)) splats[i] = 0;
+        if (plan.surfaces && !ends_beside(volume, params, materials, at)) splats[i] = 0;
         if (!plan.clip.any()) continue;
         if (is_cut_away(params, plan.clip, at, 0)) opaque[i] = 0;
         if (is_cut_away(params, plan.clip, at, params.reach)) splats[i] = 0;

@@ -25,6 +25,7 @@ using glm::normalize;
 using glm::sin;
 using glm::sqrt;
 
+constexpr Real SURFACE_CERTAIN = static_cast<Real>(shader::SURFACE_CERTAIN);
 constexpr Real SURFACE_ERROR = static_cast<Real>(shader::SURFACE_ERROR);
 constexpr Real SURFACE_NOISE = static_cast<Real>(shader::SURFACE_NOISE);
 constexpr Real SURFACE_RING = static_cast<Real>(shader::SURFACE_RING);

@@ -96,14 +96,23 @@ SurfaceVote vote_of_traced(Real low, Real high, Real enters, bool matter, vec3 n
     return vote;
 }
 
+// What a surface shows where a splat votes that the ray enters it.
+struct Shown {
+    uint number;   // of the splat
+    uint kind;     // its label
+    Real arrives;  // share of ambient light
+};
+
 // Votes about one surface on a ray.
 struct SurfaceVotes {
     Real hits;    // weight of the votes that the ray enters
     Real misses;  // weight of those that it passes by
     Real way;     // of the hits, sum of weight * distance from the eye along the ray
     vec3 normal;  // likewise, of unit normals
-    uint number;  // the splat with the largest weight of a hit
-    Real largest;
+    Real arrives; // likewise, of the share of ambient light that arrives
+    uint number;  // the splat with the largest weight of a hit; with labels, the first of the seen label
+    uint kind;
+    Real largest;  // that weight; with labels, how far theirs exceeds all others'
 };
 
 SurfaceVotes no_votes() {
@@ -112,7 +121,9 @@ SurfaceVotes no_votes() {
     votes.misses = 0.0;
     votes.way = 0.0;
     votes.normal = vec3(0.0);
+    votes.arrives = 0.0;
     votes.number = 0u;
+    votes.kind = 0u;
     votes.largest = 0.0;
     return votes;
 }
@@ -121,6 +132,9 @@ const Real NO_SURFACE = 1e9;
 
 // Where the ray enters the surface: mean distance of the hits; NO_SURFACE without any.
 Real way_to(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.way / votes.hits : NO_SURFACE; }
+
+// Mean share of ambient light that arrives where the ray enters.
+Real arrives_at(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.arrives / votes.hits : 1.0; }
 
 bool wins(SurfaceVotes votes) { return votes.hits > votes.misses; }
 
@@ -141,9 +155,19 @@ SurfacePair no_surfaces() {
     return pair;
 }
 
+// A certain vote, before all others: matter that a ray does not enter through a surface begins there. n: unit.
+void begin_matter(INOUT(SurfaceVotes) votes, Real way, vec3 n, uint number) {
+    votes.hits = SURFACE_CERTAIN;
+    votes.way = SURFACE_CERTAIN * way;
+    votes.normal = SURFACE_CERTAIN * n;
+    votes.arrives = SURFACE_CERTAIN;
+    votes.number = number;
+    votes.largest = SURFACE_CERTAIN;
+}
+
 // Counts a vote at the distance `way` from the eye. Votes are about one surface if they lie within SURFACE_WINDOW of
-// its hits' mean.
-void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, uint number) {
+// its hits' mean. `labelled`: the label of most weight is seen (Boyer and Moore 1991, "MJRTY"), not the nearest splat's.
+void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown, bool labelled) {
     bool votes = vote.weight > 0.0 && way > 0.0;
     bool hit = votes && vote.enters;
     bool miss = votes && !vote.enters;
@@ -175,9 +199,14 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, uint number
     Real weight = hit ? w : 0.0;
     to.hits += weight;
     to.way += weight * way;
+    to.arrives += weight * shown.arrives;
     if (hit) to.normal += w / max(length(vote.n), 1e-12) * vote.n;
-    if (weight > to.largest) to.number = number;
-    to.largest = max(to.largest, weight);
+    bool agrees = labelled && shown.kind == to.kind;
+    bool takes = !agrees && weight > to.largest;
+    if (takes) to.number = shown.number;
+    if (takes) to.kind = shown.kind;
+    if (labelled) to.largest = abs(agrees ? to.largest + weight : to.largest - weight);
+    if (takes && !labelled) to.largest = weight;
     if (of_front) pair.front = to;
     if (of_behind) pair.behind = to;
 }

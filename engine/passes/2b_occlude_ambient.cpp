@@ -6,6 +6,7 @@ gpu::Specialization occlude_constants(const OccludeAmbient& in) {
     return {{shader::SPEC_ISO_COUNT, in.iso_count},
             {shader::SPEC_CLIP_KEEP, in.clip.keep},
             {shader::SPEC_CLIP_REMOVE, in.clip.remove},
+            {shader::SPEC_SURFACES, in.surfaces ? 1U : 0U},
             {shader::SPEC_TRANSFER, in.transfer ? 1U : 0U}};
 }
 

@@ -11,6 +11,7 @@ struct OccludeAmbient {
     std::uint64_t splat_count = 0;
     std::uint32_t iso_count = 1;
     ClipCount clip{};
+    bool surfaces = false;  ///< surface splats
     bool transfer = false;  ///< extinction is from SceneParams::transfer
 };
 

@@ -34,6 +34,7 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
             {shader::SPEC_CREASES, variant.creases ? 1U : 0U},
             {shader::SPEC_TRACED, variant.traced ? 1U : 0U},
             {shader::SPEC_SURFACES, variant.surfaces ? 1U : 0U},
+            {shader::SPEC_ISO_COUNT, variant.iso_count},
             {shader::SPEC_PIECES, variant.opaque ? 1U : 2U}};
 }
 

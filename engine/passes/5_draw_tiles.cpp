@@ -41,6 +41,18 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
     commands.barrier();
 }
 
+gpu::Specialization begin_constants(const DrawVariant& variant) {
+    return {{shader::SPEC_ISO_COUNT, variant.iso_count},
+            {shader::SPEC_CLIP_KEEP, variant.clip.keep},
+            {shader::SPEC_CLIP_REMOVE, variant.clip.remove}};
+}
+
+void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size) {
+    const std::uint64_t pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
+    commands.dispatch("5_begin_surfaces.comp", begin_constants(variant), 0, commands.groups_for(pixels, 64));
+    commands.barrier();
+}
+
 void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round) {
     commands.dispatch("5_draw_surfaces.comp", tile_constants(variant, how), pushed(round),
                       commands.groups_for(round.groups, 1));

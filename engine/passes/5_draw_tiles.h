@@ -43,10 +43,15 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
 /// `tile_closed`. `tile_sheets` has the sums of a sheet that a round leaves unfinished.
 void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
-/// The same for surface splats: counts their votes in `surface_votes`, and marks decided pixels as opaque.
+/// FrameParams: clears the pixels' votes, or stores that matter begins where their rays enter the volume or what clip
+/// planes keep. Reads the volume and the field's coefficients.
+void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size);
+gpu::Specialization begin_constants(const DrawVariant& variant);
+
+/// The same for surface splats: counts their votes in `tile_sheets`, and marks decided pixels as opaque.
 void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);
 
-/// Writes the colour, or other payload, of the surfaces that the pixels' votes decide, and clears the votes; or, as
+/// Writes the colour, or other payload, of the surfaces that the pixels' votes decide; or, as
 /// round 1, only marks the pixels as opaque that are decided up to FrameParams::sheets_drawn. `round`: all pixels of a
 /// step.
 void shade_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);

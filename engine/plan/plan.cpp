@@ -248,8 +248,11 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     return !stale.lists && !stale.transfer;
 }
 
-CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried) {
+CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const Settings& settings, bool keep_buried) {
     CollectionPlan plan;
+    // Optical depth, and the view from inside matter, need all voxels.
+    plan.surfaces = !keep_buried && draws_surfaces(settings, whole, volume);
+    const Scene& scene = plan.surfaces ? scene_of_bodies(whole) : whole;
     plan.dims = volume.geometry.dims;
     plan.estimator = draws_warped(settings) ? settings.edges : EdgeEstimator::Off;
     plan.edge_field = plan.estimator != EdgeEstimator::Off || needs_normals(scene);
@@ -275,13 +278,12 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const S
     plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
-    if (plan.buried)
+    // Planes cut rays, not surface splats.
+    if (plan.buried && !plan.surfaces)
         plan.clip =
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
-    // Optical depth, and the view from inside matter, need all voxels.
-    plan.surfaces = !keep_buried && draws_surfaces(settings, scene, volume.geometry);
     plan.two_values = plan.surfaces && volume.two_values;
     const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
     if (plan.surfaces && range > 0) params.noise = static_cast<float>(volume.noise / range);
@@ -313,6 +315,23 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 }
 
 namespace {
+
+/// Which values of the field are matter, and of which material.
+void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
+    auto& p = plan.params;
+    plan.variant.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
+    std::fill(std::begin(p.iso), std::end(p.iso), 3e38F);
+    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
+        p.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+    for (std::size_t m = 0; m < scene.materials.size(); ++m)
+        if (scene.materials[m].extinction > 0) p.visible_mask |= 1U << m;
+    const std::vector<Body> bodies = bodies_of(scene);
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+        const int word = b < 8 ? 0 : 1, bit = 4 * static_cast<int>(b % 8);
+        p.body_lower[word] |= static_cast<std::uint32_t>(bodies[b].first) << bit;
+        p.body_upper[word] |= static_cast<std::uint32_t>(bodies[b].last) << bit;
+    }
+}
 
 /// A material's value interval, half open, scaled like the device's samples.
 glm::vec2 scaled_interval(const Volume& volume, const Scene& scene, std::size_t material) {
@@ -365,8 +384,10 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     auto& p = plan.params;
     plan.variant.clip = place_clip(scene.effects.clip, geometry, anchor, p.clip_keep, p.clip_remove);
     p.anchor = to_float(anchor);
+    plan.variant.surfaces = payload != shader::PAYLOAD_TAU && splats.surfaces;
     plan.variant.narrow = draws_opaque_faces(settings, scene, geometry);
     p.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
+    if (plan.variant.surfaces) plan_matter(volume, scene, plan);
     const PaperShape paper;
     p.footprint = {.paper_inset = static_cast<float>(paper.inset),
                    .paper_rise = static_cast<float>(paper.rise),
@@ -403,9 +424,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && has_single_piece(settings, scene, geometry);
     const auto traced = traced_material(settings, scene, geometry);
-    plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && traced;
-    plan.variant.surfaces = payload != shader::PAYLOAD_TAU && splats.surfaces;
-    if (plan.variant.traced) p.traced_interval = scaled_interval(volume, scene, *traced);
+    plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && (traced || plan.variant.surfaces);
+    if (plan.variant.traced && traced) p.traced_interval = scaled_interval(volume, scene, *traced);
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;

@@ -23,10 +23,17 @@ glm::dmat3 frame_of(const glm::dvec3& n) {
 
 double ambient_reach(const SplatRecord& record, const Field& field, const ScaledScene& scaled, const Scene& scene,
                      const VolumeGeometry& geometry, double band, double radius, bool turned, int rays) {
-    const glm::ivec3 voxel = field.voxel(record.voxel);
+    const glm::dvec3 voxel(field.voxel(record.voxel));
     const IndexClip clip = index_clip(scene.effects.clip, geometry);
     const SurfacePoint s =
-        at_cut(surface_point(record.edge, band, turned, geometry), record.edge, glm::dvec3(voxel), clip, geometry);
+        at_cut(surface_point(record.edge, band, turned, geometry), record.edge, voxel, clip, geometry);
+    return ambient_reach_at(s, record.voxel, field, scaled, scene, geometry, radius, rays);
+}
+
+double ambient_reach_at(const SurfacePoint& s, std::uint32_t splat_voxel, const Field& field, const ScaledScene& scaled,
+                        const Scene& scene, const VolumeGeometry& geometry, double radius, int rays) {
+    const glm::ivec3 voxel = field.voxel(splat_voxel);
+    const IndexClip clip = index_clip(scene.effects.clip, geometry);
     const glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
     const bool sphere = s.normal == glm::dvec3(0);

@@ -13,4 +13,8 @@ double ambient_reach(const SplatRecord& record, const Field& field, const Scaled
                      const VolumeGeometry& geometry, double band, double radius, bool turned = false,
                      int rays = kOcclusionRays);
 
+/// The same at a point beside the voxel's face.
+double ambient_reach_at(const SurfacePoint& point, std::uint32_t voxel, const Field& field, const ScaledScene& scaled,
+                        const Scene& scene, const VolumeGeometry& geometry, double radius, int rays = kOcclusionRays);
+
 }  // namespace edgesplat::reference

@@ -68,11 +68,14 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     if (draws_faces(settings_)) estimated.drawn.assign(estimated.drawn.size(), true);
     const std::vector<VoxelEdge> edges = estimate_edges(field(), estimated, settings_, quantised);
     if (!scaled_.transfer.empty()) classified_ = classified_values(field(), scaled_, edges);
-    draws_surfaces_ = draws_surfaces(settings_, scene_, volume.geometry);
-    const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
-    if (draws_surfaces_)
+    if (draws_surfaces(settings_, scene_, volume)) {
+        const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
+        ScaledScene bodies = surface_scene_.emplace(scene_, volume).bodies;
+        bodies.drawn.assign(bodies.drawn.size(), true);
         surfaces_ =
-            surface_splats(field(), scaled_, edges, range > 0 ? volume.noise / range : 0, volume.two_values, quantised);
+            surface_splats(field(), *surface_scene_, scene_, estimate_edges(field(), bodies, settings_, quantised),
+                           range > 0 ? volume.noise / range : 0, volume.two_values, quantised);
+    }
     edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (draws_faces(settings_)) {
         carried_ = voxels_beside(field(), scaled_);
@@ -113,11 +116,11 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
     // Optical depth, and the view from inside matter, need all voxels.
-    const bool surfaces = draws_surfaces_ && output != Output::Tau && !starts_in_opaque(camera.eye);
+    const bool surfaces = surface_scene_ && output != Output::Tau && !starts_in_opaque(camera.eye);
     const auto drawn = [&] {
         if (!surfaces) return draw(records, view, output);
-        const std::vector<glm::dvec4> frame =
-            draw_surfaces(surfaces_, field(), scene_, view, settings_, payload_for(output));
+        const std::vector<glm::dvec4> frame = draw_surfaces(lit_surfaces(output), field(), *surface_scene_, scene_, view,
+                                                            settings_, payload_for(output));
         return resolve(frame, width, height, scene_, output);
     };
     if (samples == 1) return drawn();
@@ -132,6 +135,25 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
 void PreparedVolume::replace_surface(std::size_t voxel, const VoxelEdge& edge) {
     const auto at = std::ranges::lower_bound(surfaces_, voxel, {}, &SplatRecord::voxel);
     if (at != surfaces_.end() && at->voxel == voxel) at->edge = edge;
+}
+
+std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
+    std::vector<SplatRecord> lit = surfaces_;
+    if (output != Output::Color || !occludes_ambient(scene_)) return lit;
+    const AmbientOcclusion& occlusion = *scene_.effects.occlusion;
+    parallel_for(static_cast<int>(lit.size()), [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
+            SplatRecord& record = lit[static_cast<std::size_t>(i)];
+            // Their second distance is an error, and planes cut rays, not splats.
+            VoxelEdge face = record.edge;
+            face.D2 = std::numeric_limits<double>::infinity();
+            const SurfacePoint point = surface_point(face, edge_reach(settings_), false, volume_->geometry);
+            const double reach = ambient_reach_at(point, record.voxel, field(), surface_scene_->bodies,
+                                                  surface_scene_->scene, volume_->geometry, occlusion.radius);
+            record.reach.ambient = 1 - occlusion.strength * (1 - reach);
+        }
+    });
+    return lit;
 }
 
 bool PreparedVolume::starts_in_opaque(const glm::dvec3& eye) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "engine/image/image.h"
+#include "engine/reference/surfaces.h"
 #include "engine/reference/4_sort_sheets.h"
 #include "engine/reference/5_draw_splats.h"
 
@@ -48,6 +49,8 @@ class PreparedVolume {
   private:
     /// Whether the voxel nearest to the eye is of opaque matter.
     bool starts_in_opaque(const glm::dvec3& eye) const;
+    /// The surface splats, with the light that reaches them if `output` shows it.
+    std::vector<SplatRecord> lit_surfaces(Output output) const;
     /// Finds the light that reaches each splat: ambient occlusion and shadows.
     void find_light(std::span<SplatRecord> records) const;
     /// One picture with one ray per pixel, of the scene's splats.
@@ -60,8 +63,8 @@ class PreparedVolume {
     std::vector<float> values_, coefficients_;
     std::vector<VoxelEdge> edges_;
     std::vector<CarriedEdge> carried_;
+    std::optional<SurfaceScene> surface_scene_;  ///< only if surface splats draw the scene
     std::vector<SplatRecord> surfaces_;
-    bool draws_surfaces_ = false;
     std::vector<double> classified_;
     Footprints footprints_;
 };

@@ -9,6 +9,7 @@
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
 #include "engine/reference/volume_piece.h"
+#include "engine/volume/labels.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
@@ -28,17 +29,17 @@ bool is_matter(const Field& field, const ScaledScene& scene, const ivec3& i, int
     return i == field.clamped(i) && field.has_data(field.offset(i)) && scene.material(field.at(i)) == m;
 }
 
-bool is_outermost(const Field& field, const ivec3& i) {
-    return glm::any(glm::equal(i, ivec3(0))) || glm::any(glm::equal(i, field.dims - 1));
-}
-
-/// Whether matter of voxel i ends on one of its six sides, or the volume does.
+/// Whether matter of voxel i ends on one of its six sides. Beyond the outermost samples the field continues linearly,
+/// for half a voxel.
 bool ends_beside(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
     for (int axis = 0; axis < 3; ++axis)
         for (const int step : {-1, 1}) {
             ivec3 j = i;
             j[axis] += step;
-            if (!is_matter(field, scene, j, m)) return true;
+            const bool outermost = field.clamped(j) != j;
+            if (!outermost && !is_matter(field, scene, j, m)) return true;
+            const double beyond = std::max(1.5 * field.at(i) - 0.5 * field.at(field.clamped(2 * i - j)), 0.0);
+            if (outermost && scene.material(beyond) != m) return true;
         }
     return false;
 }
@@ -54,39 +55,60 @@ geometry::SurfaceCheck checked(const Field& field, const ivec3& i, const geometr
     return check;
 }
 
-/// A ray's pieces in matter, searched in small steps.
-struct Pieces {
-    struct Piece {
-        double begin = 0, end = kNowhere;
-        dvec3 n{0};  ///< to the lower values
-    };
-    std::vector<Piece> pieces;
+/// A part of a ray in the volume that clip planes keep. Distances from the eye, voxels.
+struct RayPart {
+    double first = 0, last = 0;
+    dvec3 n{0};  ///< normal where the part begins, away from it; 0: at the eye
 };
 
-Pieces pieces_of(const Field& field, const dvec3& eye, const dvec3& u, const VoxelEdge::Interval& interval) {
+std::vector<RayPart> ray_parts(const Field& field, const IndexClip& clip, const dvec3& eye, const dvec3& u) {
     const VolumePiece whole = piece_in_volume(field.dims, eye, u);
-    const double from = std::max(whole.low, 0.0);
-    Pieces found;
-    if (!(from < whole.high)) return found;
-    const auto value = [&](double z) { return sample(field, eye + z * u, true); };
+    const double first = std::max(whole.low, 0.0);
+    std::vector<RayPart> parts;
+    for (const KeptPiece& piece : clip.kept_along(eye, u)) {
+        const bool cut = piece.first > first;
+        const dvec3 border = whole.low > 0 ? whole.normal : dvec3(0);
+        const RayPart part{std::max(first, piece.first), std::min(whole.high, piece.last),
+                           cut ? piece.face.value_or(dvec3(0)) : border};
+        if (part.first < part.last) parts.push_back(part);
+    }
+    return parts;
+}
+
+/// A piece of a ray in matter.
+struct Piece {
+    double begin = 0, end = kNowhere;
+    bool entered = false;  ///< through a surface
+    dvec3 n{0};            ///< to the lower values
+};
+
+/// A ray's pieces in matter, searched in small steps.
+std::vector<Piece> pieces_of(const Field& field, const ScaledScene& bodies, std::span<const RayPart> parts,
+                             const dvec3& eye, const dvec3& u) {
+    const auto matter = [&](double z) {
+        return bodies.drawn[static_cast<std::size_t>(bodies.material(sample(field, eye + z * u, true)))];
+    };
     const auto root = [&](double a, double b) {
-        const bool inside = interval.holds(value(a));
+        const bool inside = matter(a);
         for (int step = 0; step < 40; ++step) {
             const double middle = 0.5 * (a + b);
-            (interval.holds(value(middle)) == inside ? a : b) = middle;
+            (matter(middle) == inside ? a : b) = middle;
         }
         return b;
     };
-    bool inside = interval.holds(value(from));
-    if (inside) found.pieces.push_back({from, kNowhere, whole.low > 0 ? whole.normal : dvec3(0)});
-    constexpr double kStep = 0.1;
-    for (double a = from; a < whole.high; a += kStep) {
-        const double b = std::min(a + kStep, whole.high);
-        if (interval.holds(value(b)) == inside) continue;
-        const double z = root(a, b);
-        if (inside) found.pieces.back().end = z;
-        if (!inside) found.pieces.push_back({z, kNowhere, -spline_gradient(field, eye + z * u)});
-        inside = !inside;
+    std::vector<Piece> found;
+    for (const RayPart& part : parts) {
+        bool inside = matter(part.first);
+        if (inside) found.push_back({part.first, part.last, false, {}});
+        constexpr double kStep = 0.1;
+        for (double a = part.first; a < part.last; a += kStep) {
+            const double b = std::min(a + kStep, part.last);
+            if (matter(b) == inside) continue;
+            const double z = root(a, b);
+            if (inside) found.back().end = z;
+            if (!inside) found.push_back({z, part.last, true, -spline_gradient(field, eye + z * u)});
+            inside = !inside;
+        }
     }
     return found;
 }
@@ -130,7 +152,7 @@ DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View
 
 /// The vote of a splat on the ray with direction u; `ahead`: distance from the eye to its point p, nearest to the
 /// voxel.
-geometry::SurfaceVote vote_on(const DrawnSplat& s, const Pieces& ray, const dvec3& p, const dvec3& u, double ahead) {
+geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, const dvec3& p, const dvec3& u, double ahead) {
     const VoxelEdge& edge = s.record->edge;
     if (!s.traced) {
         geometry::SurfaceVote vote =
@@ -145,18 +167,25 @@ geometry::SurfaceVote vote_on(const DrawnSplat& s, const Pieces& ray, const dvec
     double enters = kNowhere;
     dvec3 n(0);
     bool matter = false;
-    for (const Pieces::Piece& piece : ray.pieces) {
+    for (const Piece& piece : ray) {
         matter = matter || std::min(piece.end, high) > std::max(piece.begin, low);
-        if (!(piece.begin > low && piece.begin < enters)) continue;
+        if (!(piece.entered && piece.begin > low && piece.begin < enters)) continue;
         enters = piece.begin;
         n = piece.n;
     }
     return geometry::vote_of_traced(low, high, enters, matter, n, kReach, p, u, ahead);
 }
 
-dvec3 payload_at(const geometry::SurfaceVotes& votes, std::span<const SplatRecord> records, const Scene& scene,
-                 const View& view, const dvec3& u, Payload payload) {
-    const SplatRecord& record = records[votes.number];
+/// Material and light of what a ray sees.
+struct Seen {
+    dvec3 color{0};
+    std::size_t material = 0;
+    double distance = 0;  ///< of the splat's voxel from its face, negative in matter
+    Reach reach{};
+};
+
+dvec3 payload_at(const geometry::SurfaceVotes& votes, const Seen& seen, const Scene& scene, const View& view,
+                 const dvec3& u, Payload payload) {
     const dvec3 at = view.eye_index + std::max(geometry::way_to(votes), 1e-4) * u;
     const dvec3 outward = glm::transpose(glm::inverse(view.geometry.index_to_world_axes)) * votes.normal;
     const double length = glm::length(outward);
@@ -164,23 +193,45 @@ dvec3 payload_at(const geometry::SurfaceVotes& votes, std::span<const SplatRecor
     switch (payload) {
         case Payload::Color:
             return shade(scene,
-                         {.color = record.color(scene),
-                          .response = scene.materials[record.material].response,
+                         {.color = seen.color,
+                          .response = scene.materials[seen.material].response,
                           .normal = normal,
                           .position = view.geometry.to_world(at),
                           .depth = view.depth(at)},
-                         view.frame.eye, record.reach);
+                         view.frame.eye, seen.reach);
         case Payload::Depth:
             return {view.depth(at), 0, 0};
         case Payload::Distance:
-            return {-record.edge.D, 0, 0};
+            return {seen.distance, 0, 0};
         case Payload::Normal:
             break;
     }
     return normal;
 }
 
+/// Matter that begins where the ray enters a part, certainly.
+geometry::SurfacePair begun(const Field& field, const ScaledScene& materials, std::span<const RayPart> parts,
+                            const dvec3& eye, const dvec3& u) {
+    geometry::SurfacePair pair = geometry::no_surfaces();
+    for (const RayPart& part : parts) {
+        const dvec3 at = eye + part.first * u;
+        const int material = materials.material(sample(field, at, true));
+        const bool matter = materials.drawn[static_cast<std::size_t>(material)] &&
+                            field.has_data(field.offset(field.clamped(ivec3(glm::round(at)))));
+        if (pair.front.hits > 0 || part.n == dvec3(0) || !matter) continue;
+        geometry::begin_matter(pair.front, part.first, glm::normalize(part.n),
+                               shader::BEGUN_MATTER + static_cast<std::uint32_t>(material));
+    }
+    return pair;
+}
+
 }  // namespace
+
+SurfaceScene::SurfaceScene(const Scene& whole, const Volume& volume)
+    : scene(scene_of_bodies(whole)),
+      bodies(scale_scene(scene, volume)),
+      materials(scale_scene(whole, volume)),
+      ends(bodies_of(whole)) {}
 
 VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                       const ivec3& i, int m, double noise, bool two_values) {
@@ -235,9 +286,8 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
             wrong = std::max(wrong, geometry::contradiction(own, dvec3(o), is_matter(field, scene, i + o, m)));
         }
         const double moved = two_values ? 0 : geometry::moved_by_noise(check.steep, noise);
-        kept = (two_values || geometry::is_verified(check, noise)) && wrong <= kSide + moved && face.D > -0.05 &&
-               !is_outermost(field, i);
-        if (!is_outermost(field, i)) face.D2 = std::max(geometry::error_of(check), wrong);
+        kept = (two_values || geometry::is_verified(check, noise)) && wrong <= kSide + moved && face.D > -0.05;
+        face.D2 = std::max(geometry::error_of(check), wrong);
     }
     if (two_values) {
         VoxelEdge planes = fit_face(field, scene, surfels, i, m);
@@ -248,29 +298,36 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     return face;
 }
 
-std::vector<SplatRecord> surface_splats(const Field& field, const ScaledScene& scene,
+std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool two_values,
                                         bool quantised) {
+    const ScaledScene& bodies = surfaces.bodies;
     std::vector<SplatRecord> records;
     for (std::size_t at = 0; at < field.values.size(); ++at) {
-        const int m = scene.material(field.at(field.voxel(at)));
-        if (field.has_data(at) && scene.drawn[static_cast<std::size_t>(m)] &&
-            ends_beside(field, scene, field.voxel(at), m))
+        const int m = bodies.material(field.at(field.voxel(at)));
+        if (field.has_data(at) && bodies.drawn[static_cast<std::size_t>(m)] &&
+            ends_beside(field, bodies, field.voxel(at), m))
             records.push_back({static_cast<std::uint32_t>(at), static_cast<std::uint32_t>(m), {}});
     }
     parallel_for(static_cast<int>(records.size()), [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
             SplatRecord& record = records[static_cast<std::size_t>(k)];
-            record.edge = fit_surface(field, scene, surfels, field.voxel(record.voxel),
+            record.edge = fit_surface(field, bodies, surfels, field.voxel(record.voxel),
                                       static_cast<int>(record.material), noise, two_values);
             if (quantised) record.edge = quantise(record.edge);
+            const Body& body = surfaces.ends[record.material];
+            record.material = static_cast<std::uint32_t>(record.edge.upper ? body.last : body.first);
+            record.classified =
+                labelled(field, surfaces.materials, scene, record.voxel, static_cast<int>(record.material));
         }
     });
     return records;
 }
 
-std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field, const Scene& scene,
-                                      const View& view, const Settings& settings, Payload payload) {
+std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field,
+                                      const SurfaceScene& surfaces, const Scene& scene, const View& view,
+                                      const Settings& settings, Payload payload) {
+    const IndexClip clip = index_clip(scene.effects.clip, view.geometry);
     const double thickness = sheet_thickness(view, settings);
     std::vector<DrawnSplat> splats;
     splats.reserve(records.size());
@@ -279,21 +336,49 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
         splats.push_back(drawn_splat(record, field, view, thickness));
         creases = creases || record.edge.crease.D < kCreaseReach;
     }
+    std::vector<std::uint32_t> labels(records.size(), 0);
+    if (surfaces.materials.labels)
+        std::ranges::transform(records, labels.begin(), [&](const SplatRecord& record) {
+            return label_near(surfaces.materials.labels->at, field.dims, field.voxel(record.voxel));
+        });
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return splats[i].sheet; });
     const dvec3 view_z = glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward;
     const double reach = (kReach + (creases ? static_cast<double>(shader::SURFACE_CREASE) : 0)) * glm::length(view_z);
+    const auto seen_by = [&](const geometry::SurfaceVotes& votes, const dvec3& at) {
+        Seen seen;
+        if (votes.number < shader::BEGUN_MATTER) {
+            const SplatRecord& record = records[votes.number];
+            seen = {record.color(scene), record.material, -record.edge.D, {}};
+        } else {
+            seen.material = votes.number - shader::BEGUN_MATTER;
+            const std::size_t voxel = field.offset(field.clamped(ivec3(glm::round(at))));
+            const auto label = labelled(field, surfaces.materials, scene, voxel, static_cast<int>(seen.material));
+            seen.color = label ? label->color : scene.materials[seen.material].color;
+        }
+        seen.reach.ambient = geometry::arrives_at(votes);
+        return seen;
+    };
     std::vector<glm::dvec4> frame(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height),
                                   glm::dvec4(0));
     parallel_for(view.height, [&](int begin, int end) {
         struct Pixel {
             geometry::SurfacePair pair = geometry::no_surfaces();
+            std::vector<RayPart> parts;
             bool closed = false;
-            std::optional<Pieces> pieces;
+            std::optional<std::vector<Piece>> pieces;
         };
         const auto width = static_cast<std::size_t>(view.width);
         std::vector<Pixel> pixels(width * static_cast<std::size_t>(end - begin));
+        for (int y = begin; y < end; ++y)
+            for (int x = 0; x < view.width; ++x) {
+                Pixel& pixel = pixels[static_cast<std::size_t>(y - begin) * width + static_cast<std::size_t>(x)];
+                const dvec3 u = view.ray(x, y);
+                pixel.parts = ray_parts(field, clip, view.eye_index, u);
+                pixel.pair = begun(field, surfaces.materials, pixel.parts, view.eye_index, u);
+                pixel.closed = pixel.pair.front.hits > 0 && geometry::way_to(pixel.pair.front) <= pixel.parts[0].first;
+            }
         for (const std::uint32_t number : order) {
             const DrawnSplat& s = splats[number];
             for (int y = std::max(s.box.y0, begin); y < std::min(s.box.y1, end); ++y)
@@ -309,16 +394,15 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                         geometry::refuse_front(pixel.pair);
                     }
                     if (s.traced && !pixel.pieces)
-                        pixel.pieces = pieces_of(field, view.eye_index, u, *s.record->edge.traced);
+                        pixel.pieces = pieces_of(field, surfaces.bodies, pixel.parts, view.eye_index, u);
                     const double ahead = glm::dot(from_eye, u);
                     geometry::SurfaceVote vote =
-                        vote_on(s, pixel.pieces.value_or(Pieces{}), ahead * u - from_eye, u, ahead);
-                    const VolumePiece whole = piece_in_volume(field.dims, view.eye_index, u);
+                        vote_on(s, pixel.pieces.value_or(std::vector<Piece>{}), ahead * u - from_eye, u, ahead);
                     const double way = ahead + vote.z;
-                    if (!(way >= whole.low - 1e-3 && way <= whole.high)) vote.weight = 0;
-                    if (vote.enters && way < whole.low + 3e-3)
-                        vote.weight *= static_cast<double>(shader::SURFACE_CERTAIN);
-                    geometry::count_vote(pixel.pair, vote, way, number);
+                    const auto holds = [&](const RayPart& part) { return way >= part.first - 1e-3 && way <= part.last; };
+                    if (std::ranges::none_of(pixel.parts, holds)) vote.weight = 0;
+                    geometry::count_vote(pixel.pair, vote, way, {number, labels[number], s.record->reach.ambient},
+                                         surfaces.materials.labels != nullptr);
                 }
         }
         for (int y = begin; y < end; ++y)
@@ -327,7 +411,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                 for (int k = 0; k < 2; ++k)
                     if (!geometry::wins(pixel.pair.front)) geometry::refuse_front(pixel.pair);
                 if (!(pixel.pair.front.hits > 0)) continue;
-                const dvec3 value = payload_at(pixel.pair.front, records, scene, view, view.ray(x, y), payload);
+                const dvec3 u = view.ray(x, y);
+                const Seen seen = seen_by(pixel.pair.front, view.eye_index + geometry::way_to(pixel.pair.front) * u);
+                const dvec3 value = payload_at(pixel.pair.front, seen, scene, view, u, payload);
                 frame[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = glm::dvec4(value, 1);
             }
     });

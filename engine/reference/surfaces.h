@@ -6,22 +6,34 @@
 #include <vector>
 
 #include "engine/reference/5_draw_splats.h"
+#include "engine/scene/transfer_function.h"
 
 namespace edgesplat::reference {
 
-/// The face of a surface splat at voxel i of material m, which ends beside it. `noise`: standard deviation of the
+/// The bodies of matter that surface splats show (bodies_of), in scaled units.
+struct SurfaceScene {
+    SurfaceScene(const Scene& whole, const Volume& volume);
+    Scene scene;            ///< scene_of_bodies
+    ScaledScene bodies;     ///< of `scene`
+    ScaledScene materials;  ///< of the whole scene
+    std::vector<Body> ends; ///< materials at the ends of each body
+};
+
+/// The face of a surface splat at voxel i of body m, which ends beside it. `noise`: standard deviation of the
 /// samples' noise, scaled; `two_values`: Volume::two_values. `traced` is set if the field must be searched instead,
 /// wherever the face's error, in D2, shows.
-VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
+VoxelEdge fit_surface(const Field& field, const ScaledScene& bodies, const std::vector<VoxelEdge>& surfels,
                       const glm::ivec3& i, int m, double noise, bool two_values);
 
-/// The splats of the voxels that matter ends beside, ascending by voxel.
-std::vector<SplatRecord> surface_splats(const Field& field, const ScaledScene& scene,
+/// The splats of the voxels that matter ends beside, ascending by voxel. Their materials are those of the whole scene.
+/// `surfels` are edges of the bodies.
+std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
                                         const std::vector<VoxelEdge>& surfels, double noise, bool two_values,
                                         bool quantised);
 
 /// One picture with one ray per pixel: premultiplied payload and opacity, row by row.
-std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field, const Scene& scene,
-                                      const View& view, const Settings& settings, Payload payload);
+std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field,
+                                      const SurfaceScene& surfaces, const Scene& scene, const View& view,
+                                      const Settings& settings, Payload payload);
 
 }  // namespace edgesplat::reference

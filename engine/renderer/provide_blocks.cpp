@@ -17,16 +17,22 @@ bool needs_everything(const Scene& scene) {
     return !shadow_lights(scene).empty();
 }
 
+/// Rays may have to search the whole volume for surface splats.
+Settings settings_in_blocks(const FrameRequest& request) {
+    Settings settings = drawn_settings(request);
+    settings.opaque = OpaqueMatter::Kernels;
+    return settings;
+}
+
 }  // namespace
 
 std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameRequest& request) const {
-    const Settings drawn = drawn_settings(request);
+    const Settings drawn = settings_in_blocks(request);
     const double reach = kernel_reach(drawn);
     CollectionPlan wanted = plan_collection(*request.volume, request.scene, drawn, true);
     // Assume that a mask of buried voxels is needed unless the settings exclude it.
     wanted.buried = drawn.cull_buried;
     wanted.blocks = true;
-    wanted.surfaces = false;
     const auto fits = [&](std::uint64_t splats) {
         const SplatCount count{SplatCount::From::Voxels, {splats, glm::ivec3(0), request.volume->geometry.dims - 1}};
         return memory_need(session_->device(), forecast_frame(request, wanted, count, reach, session_->profile()),
@@ -51,11 +57,10 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
     const auto start = Clock::now();
     const auto most = most_splats_in_blocks(request);
     if (!most) return Gathered::TooMany;
-    const Settings settings = drawn_settings(request);
+    const Settings settings = settings_in_blocks(request);
     const bool keep_buried = request.outputs.tau || eye_in_opaque(original, request.scene, request.camera);
     CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
     wanted.blocks = true;
-    wanted.surfaces = false;
     const Gathered gathered = collect_blocks(request, wanted, *most, patience);
     if (gathered == Gathered::All) drawer_->provide_shadows(shown_, request.scene, settings, cost_);
     if (!cost_.times.empty()) milliseconds += milliseconds_since(start);

@@ -99,12 +99,36 @@ std::optional<std::size_t> traced_material(const Settings& settings, const Scene
     return only;
 }
 
-bool draws_surfaces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry) {
+bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume) {
     const Effects& effects = scene.effects;
-    const bool plain = !effects.antialias && !smooths_outlines(settings, scene) && !occludes_ambient(scene) &&
-                       shadow_lights(scene).empty() && scene.label_colors.empty() && scene.transfer.empty();
-    return plain && settings.opaque == OpaqueMatter::Surfaces && allows_surfaces(canonical_settings(settings, scene)) &&
-           traced_material(settings, scene, geometry).has_value();
+    // Light that arrives at splats is unknown where planes cut out a piece: no splat lies there.
+    const bool lit = shadow_lights(scene).empty() && !(occludes_ambient(scene) && !effects.clip.remove.empty());
+    const bool plain = !effects.antialias && !smooths_outlines(settings, scene) && scene.transfer.empty();
+    if (!lit || !plain || settings.opaque != OpaqueMatter::Surfaces) return false;
+    const auto matter = std::ranges::any_of(scene.materials, [](const Material& m) { return m.extinction > 0; });
+    return matter && !draws_missing_samples(scene, volume) && all_matter_is_opaque(scene, volume.geometry) &&
+           allows_surfaces(canonical_settings(settings, scene));
+}
+
+std::vector<Body> bodies_of(const Scene& scene) {
+    std::vector<Body> bodies;
+    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
+        const bool matter = scene.materials[m].extinction > 0;
+        if (bodies.empty() || bodies.back().matter != matter) bodies.push_back({m, m, matter});
+        bodies.back().last = m;
+    }
+    return bodies;
+}
+
+Scene scene_of_bodies(const Scene& scene) {
+    Scene of_bodies = scene;
+    of_bodies.iso_values.clear();
+    of_bodies.materials.clear();
+    for (const Body& body : bodies_of(scene)) {
+        if (body.first > 0) of_bodies.iso_values.push_back(scene.iso_values[body.first - 1]);
+        of_bodies.materials.push_back(scene.materials[body.first]);
+    }
+    return of_bodies;
 }
 
 bool draws_missing_samples(const Scene& scene, const Volume& volume) {

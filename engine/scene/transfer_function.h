@@ -51,9 +51,22 @@ bool has_single_piece(const Settings& settings, const Scene& scene, const Volume
 std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
                                            const VolumeGeometry& geometry);
 
-/// Whether surface splats draw the scene: one unclipped opaque material in plain light (traced_material), with settings
-/// that allow it.
-bool draws_surfaces(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
+/// Whether surface splats draw the scene: all matter is opaque and no sample without data lies in its values, with
+/// settings and effects that allow it.
+bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume);
+
+/// A run of materials with matter, or of materials without.
+struct Body {
+    std::size_t first = 0, last = 0;
+    bool matter = false;
+};
+
+/// The materials of a scene without a transfer function, ascending. Only where matter and no matter meet, opaque matter
+/// has a surface that is seen.
+std::vector<Body> bodies_of(const Scene& scene);
+
+/// The same scene with a body for each material; its materials have no colours of their own.
+Scene scene_of_bodies(const Scene& scene);
 
 /// Whether matter would be drawn where samples contain no data, if they counted as the smallest value: with a transfer
 /// function, because values between them and others are drawn, too.

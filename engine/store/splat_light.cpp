@@ -3,6 +3,7 @@
 
 #include "engine/passes/2b_occlude_ambient.h"
 #include "engine/plan/resource_table.h"
+#include "engine/scene/transfer_function.h"
 #include "engine/store/splat_store.h"
 #include "shaders/shared/occlusion_params.h"
 
@@ -21,7 +22,7 @@ bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCos
         occluded_.reset();
         return false;
     }
-    const OcclusionPlan plan = plan_occlusion(scene);
+    const OcclusionPlan plan = plan_occlusion(lists_.surfaces ? scene_of_bodies(scene) : scene);
     if (occluded_ == plan) return false;
     occluded_.reset();
     lists_.occlusion = {};
@@ -47,6 +48,7 @@ bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCos
             passes::occlude_ambient(commands, {.splat_count = lists_.splat_count,
                                                .iso_count = lists_.scene.mapped<shader::SceneParams>(1)[0].iso_count,
                                                .clip = clip,
+                                               .surfaces = lists_.surfaces,
                                                .transfer = !plan.matter.transfer.empty()});
         });
     });

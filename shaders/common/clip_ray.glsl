@@ -1,4 +1,5 @@
-// The pieces of a ray that clip planes keep. Include after shaders/common/clip.glsl and footprint.glsl (Slice).
+// The pieces of a ray that clip planes keep. Include after the declarations that
+// shaders/common/clip.glsl names, and after shaders/footprints/slice.glsl.
 #ifndef EDGESPLAT_CLIP_RAY_GLSL
 #define EDGESPLAT_CLIP_RAY_GLSL
 
@@ -46,12 +47,5 @@ Kept kept_pieces(vec3 place, vec3 u, float eye) {
         kept.before.high = some ? min(kept.before.high, gone.low) : kept.before.high;
     }
     return kept;
-}
-
-// Whether a point lies in a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2:
-// squared distance from the voxel; t: coordinate along n. A ray that enters at this point shows the cut.
-bool is_in_matter(float r2, float t, float D, bool plain, FootprintParams params) {
-    float reach = plain ? KERNEL_R : params.paper_reach;
-    return r2 < reach * reach && (plain || t < D);
 }
 #endif

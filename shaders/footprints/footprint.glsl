@@ -14,6 +14,7 @@
 // (tests/unit/footprints_shader_test.cpp runs it): scalars, no swizzles.
 #ifndef EDGESPLAT_FOOTPRINT_GLSL
 #define EDGESPLAT_FOOTPRINT_GLSL
+#include "shaders/footprints/slice.glsl"
 #include "shaders/footprints/kernel.glsl"
 #include "shaders/shared/footprint_params.h"
 
@@ -29,12 +30,6 @@ const float FOOTPRINT_WEIGHT[20] = {
     0.2339569673, 0.1803807865, 0.0856622462};
 const int FOOTPRINT_NODES = int(NODES);
 const int FOOTPRINT_RULE = FOOTPRINT_NODES == 4 ? 0 : (FOOTPRINT_NODES == 10 ? 4 : 14);
-
-// A piece of the ray, z along u from p: a sheet's part of a footprint. The whole ray if footprints are not sliced.
-struct Slice {
-    float low;
-    float high;
-};
 
 // ---- plain footprints (footprints/kernel.h)
 

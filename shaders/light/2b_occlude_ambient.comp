@@ -10,6 +10,7 @@ layout(local_size_x = 64) in;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;      // number of planes
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
 layout(binding = BIND_OCCLUSION, scalar) uniform Occlusion { OcclusionParams at; } occlusion;
@@ -65,6 +66,8 @@ void main() {
     if (i >= occlusion.at.splat_count) return;
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
+    // Their second distance is an error, and planes cut rays, not splats.
+    if (SURFACES == 1u) e.d2 = 1e9;
     uint nx = uint(params.scene.dims.x), ny = uint(params.scene.dims.y);
     uvec3 voxel = uvec3(splat.voxel % nx, splat.voxel / nx % ny, splat.voxel / nx / ny);
     // Neighbouring voxels use rotated directions that fill each other's gaps: the 3-D additive sequence of the plastic
@@ -77,7 +80,7 @@ void main() {
     int faces = is_wall(e, params.scene.band) ? 2 : 1;
     for (int face = 0; face < faces; ++face) {
         SurfacePoint s = surface_point(e, params.scene.band, face == 1, occlusion.at.normal_to_world);
-        if (CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), occlusion.at.normal_to_world);
+        if (SURFACES == 0u && CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), occlusion.at.normal_to_world);
         bool sphere = s.normal == vec3(0.0);
         vec3 start = vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step;
         mat3 frame = sphere ? mat3(1.0) : frame_of(s.normal);

@@ -18,7 +18,7 @@ struct Surface {
     uint number;      // of the splat
     bool has_normal;
     vec3 normal;      // world, unit
-    bool turned;      // `normal` is that of a wall's other face
+    float ambient;    // share of ambient light that arrives (ambient_reach)
     vec3 from_eye;    // world, mm
     vec3 to_eye;      // world, unit
     float depth;      // along the view axis, mm
@@ -32,7 +32,7 @@ vec3 unit_or_zero(vec3 v) { return dot(v, v) > 0.0 ? normalize(v) : vec3(0.0); }
 // Blinn 1977, "Models of light reflection for computer synthesized pictures".
 vec3 lit(Surface s) {
     vec4 response = RESPONSE == 1u ? params.frame.responses[s.material] : vec4(1.0, 1.0, 0.0, 1.0);
-    vec3 diffuse = vec3(params.frame.ambient * response.x * ambient_reach(s.number, s.turned));
+    vec3 diffuse = vec3(params.frame.ambient * response.x * s.ambient);
     vec3 specular = vec3(0.0);
     for (uint l = 0u; l < LIGHTS; ++l) {
         vec4 place = params.frame.light_at[l];

@@ -116,7 +116,12 @@ struct FrameParams {
     Address traced_rays;    // (size.y, size.x, 2) vec4: what each pixel's ray meets (traced_ray.glsl)
     Address traced_entries; // uint: a bit for each of MARKED_AT_ONCE entries: it is traced
     Address footprints;     // (splat_count) uvec2: layer and rotation of each drawn splat (selected_footprint.glsl); only with a table
-    uint sheets_drawn;      // after this part of the picture, all splats in front of this sheet are drawn; only with surface splats
+    // Only with surface splats, from here on.
+    float iso[16];          // the scene's iso-values, scaled, ascending; beyond them: +3e38
+    uint visible_mask;      // bit m: material m is matter
+    uvec2 body_lower;       // 4 bits for each body: the material at its lower end
+    uvec2 body_upper;       // at its upper end
+    uint sheets_drawn;      // after this part of the picture, all splats in front of this sheet are drawn
 };
 
 EDGESPLAT_SHARED_END
@@ -127,7 +132,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1584);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1668);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -62,7 +62,7 @@ bool meets_traced(vec3 p, vec3 u, float ahead) {
     bool some = true;
     dims = params.frame.dims;
     IF_ANY((number_material.y & IS_TRACED) != 0u && along.first < along.last) {
-        TracedRay t = trace_ray(params.frame.anchor + params.frame.eye, u, along, params.frame.traced_interval);
+        TracedRay t = trace_ray(params.frame.anchor + params.frame.eye, u, along, WHOLE_RAY, params.frame.traced_interval);
         some = use_traced(seen_ray(pieces_texel(t), ends_texel(t)), p, u, ahead);
     }
     return some;

@@ -31,14 +31,16 @@ ivec3 dims;
 uint material_at(ivec3 p) { return material_of(voxel(p)); }
 #include "shaders/splats/classified_value.glsl"
 
-// Whether matter of the voxel's material ends on one of its six sides, or the volume does.
-bool may_show_surface(ivec3 p, uint material) {
-    ivec3 at = p + params.scene.block_origin;
-    bool ends = any(equal(at, ivec3(0))) || any(equal(at, params.scene.volume_dims - 1));
+// Whether matter of the voxel's material ends on one of its six sides. Beyond the outermost samples the field continues
+// linearly, for half a voxel.
+bool may_show_surface(ivec3 p, float value, uint material) {
+    bool ends = false;
     for (int i = 0; i < 6 && !ends; ++i) {
         ivec3 o = ivec3(0);
         o[i >> 1] = (i & 1) * 2 - 1;
-        float beside = voxel(p + o);
+        ivec3 at = clamp(p + o, ivec3(0), dims - 1);
+        float beside = voxel(at);
+        if (at == p) beside = max(1.5 * value - 0.5 * voxel(clamp(p - o, ivec3(0), dims - 1)), 0.0);
         ends = !has_data(beside) || material_of(beside) != material;
     }
     return ends;
@@ -68,7 +70,7 @@ void main() {
         uvec2 code = uvec2(0u);
         IF_ANY(EDGES == 1u && there && (TRANSFER == 1u || params.scene.translucent_mask != 0u)) code = imageLoad(edges, p).xy;
         Beside beside = unpack_beside(code.y);
-        if (SURFACES == 1u) there = there && may_show_surface(p, own);
+        if (SURFACES == 1u) there = there && may_show_surface(p, sample_here, own);
         for (uint material = 0u; material <= ISO_COUNT; ++material) {
             bool carried = material + beside.below >= own && material <= own + beside.above;
             bool visible = there && (material == own ? has_data(sample_here) && in_mask(params.scene.visible_mask, own)

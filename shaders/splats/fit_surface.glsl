@@ -16,8 +16,6 @@ bool is_matter_at(ivec3 q, uint material) {
 Face fit_surface(ivec3 p, uint material) {
     Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 0.0, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE,
                      false, 0.0);
-    // Rays find the volume's border.
-    bool outermost = any(equal(p, ivec3(0))) || any(equal(p, dims - 1));
     vec3 middle = vec3(0.0), n = vec3(0.0, 0.0, 1.0);
     float nearest = KERNEL_RADIUS;
     uint state = EDGE_LOWER;
@@ -67,9 +65,9 @@ Face fit_surface(ivec3 p, uint material) {
         // Between samples of only two values the field says nothing.
         float moved = two_values ? 0.0 : moved_by_noise(check.steep, params.scene.noise);
         kept = (two_values || is_verified(check, params.scene.noise)) && wrong <= SURFACE_SIDE + moved && dot(own.foot, up) > -0.05;
-        kept = kept && real_foot && !outermost;
+        kept = kept && real_foot;
         if (real_foot) {
-            face.edge = Edge(up, dot(own.foot, up), outermost ? 1e9 : max(error_of(check), wrong), state);
+            face.edge = Edge(up, dot(own.foot, up), max(error_of(check), wrong), state);
             face.h = own.h;
         } else {
             face.edge = Edge(n, dot(middle, n), 1e9, state);

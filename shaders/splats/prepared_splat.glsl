@@ -39,12 +39,14 @@ PreparedSplat prepared_splat(uint number, uint sheet) {
     return s;
 }
 
+// Planes cut rays, not surface splats.
+const bool PREPARES_CUTS = CLIP_KEEP + CLIP_REMOVE > 0u && SURFACES == 0u;
 const uint PREPARED_KERNEL = 2u;
 const uint PREPARED_CREASE = 6u;
 const uint PREPARED_START = FACES ? 6u + CREASES : FOOTPRINTS != ISOTROPIC ? 4u : 2u;
 const uint PREPARED_CUT = PREPARED_START + 2u;
 const uint PREPARED_MATTER = PREPARED_CUT + SLICED;
-const uint PREPARED_FILTER = PREPARED_MATTER + (CLIP_KEEP + CLIP_REMOVE > 0u ? 2u : 0u);
+const uint PREPARED_FILTER = PREPARED_MATTER + (PREPARES_CUTS ? 2u : 0u);
 const uint PREPARED_TABLE = PREPARED_FILTER + (ANTIALIAS == 1u ? 2u : 0u);
 const uint PREPARED_STRIDE = PREPARED_TABLE + (FOOTPRINTS == TABLE ? 2u : 0u);
 
@@ -74,7 +76,7 @@ void keep_prepared(uint entry, PreparedSplat s) {
     imageStore(prepared, prepared_texel(at + PREPARED_START), vec4(s.start, s.plane));
     imageStore(prepared, prepared_texel(at + PREPARED_START + 1u), s.inputs.color_sigma);
     if (SLICED == 1u) imageStore(prepared, prepared_texel(at + PREPARED_CUT), vec4(s.inputs.shape.yz, 0.0, 0.0));
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+    if (PREPARES_CUTS) {
         imageStore(prepared, prepared_texel(at + PREPARED_MATTER), vec4(s.inputs.from_eye, uintBitsToFloat(s.inputs.number_material.y)));
         imageStore(prepared, prepared_texel(at + PREPARED_MATTER + 1u), vec4(s.inputs.matter, uintBitsToFloat(s.inputs.number_material.x)));
     }
@@ -117,7 +119,7 @@ void load_kernel(uint entry, inout PreparedSplat s) {
     s.plane = v.w;
     s.inputs.color_sigma = imageLoad(prepared, prepared_texel(at + PREPARED_START + 1u));
     if (SLICED == 1u) s.inputs.shape.yz = imageLoad(prepared, prepared_texel(at + PREPARED_CUT)).xy;
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+    if (PREPARES_CUTS) {
         vec4 place = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER)), matter = imageLoad(prepared, prepared_texel(at + PREPARED_MATTER + 1u));
         s.inputs.from_eye = place.xyz;
         s.inputs.matter = matter.xyz;

@@ -14,6 +14,13 @@
 #include "shaders/common/volume_ends.glsl"
 #include "shaders/light/shading.glsl"
 
+// Whether a point lies in a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2:
+// squared distance from the voxel; t: coordinate along n. A ray that enters at this point shows the cut.
+bool is_in_matter(float r2, float t, float D, bool plain, FootprintParams params) {
+    float reach = plain ? KERNEL_R : params.paper_reach;
+    return r2 < reach * reach && (plain || t < D);
+}
+
 float footprint(float rho2, float pn, float un, Slice slice) {
     if (FOOTPRINTS == ISOTROPIC) return footprint_isotropic(rho2, slice);
     float d = normal_distance.w;
@@ -46,7 +53,7 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
     vec3 to_eye = -normalize(params.frame.index_to_world * u);
-    return shade(Surface(matter, number_material.y & MATERIAL_BITS, number_material.x, true, world_normal, false, entry, to_eye, depth));
+    return shade(Surface(matter, number_material.y & MATERIAL_BITS, number_material.x, true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
 }
 
 // The splat's face along a ray. z is measured from p, the ray's point nearest to the voxel.
@@ -128,7 +135,7 @@ vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead
     float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal,
-                         end.side < 0.0, away * way, -normalize(way), depth));
+                         ambient_reach(number_material.x, end.side < 0.0), away * way, -normalize(way), depth));
 }
 
 // The visible part of the kernel on the ray: within `slice` for a plain kernel, within `inside` for a cut one.

@@ -7,6 +7,7 @@
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/traced_ray.glsl"
+#include "shaders/common/matter.glsl"
 
 // Packs the normal out of the matter; the last bit says whether the values outside are higher.
 uint pack_end(vec3 n, bool upper) { return (pack_normal(n) & ~1u) | (upper ? 1u : 0u); }
@@ -23,7 +24,19 @@ Turn turn_of(float f0, float d0, float f1, float d1) {
     return Turn(d0 * d1 < 0.0, at, value);
 }
 
-bool is_matter(float f, vec2 interval) { return f >= interval.x && f < interval.y; }
+// Where the same cubic has the value `level`, which lies between those at 0 and 1.
+float root_of(float f0, float d0, float f1, float d1, float level) {
+    float rise = f1 - f0, square = 3.0 * rise - 2.0 * d0 - d1, cube = d0 + d1 - 2.0 * rise;
+    float t = (level - f0) / rise;
+    for (int i = 0; i < 2; ++i) {
+        float slope = d0 + t * (2.0 * square + t * 3.0 * cube), off = f0 + t * (d0 + t * (square + t * cube)) - level;
+        t = clamp(t - off / (abs(slope) > 1e-9 ? slope : 1e-9), 0.0, 1.0);
+    }
+    return t;
+}
+
+// With surface splats, values of any drawn material are matter; otherwise those of the interval.
+bool is_matter(float f, vec2 interval) { return SURFACES == 1u ? is_drawn(material_of(f)) : f >= interval.x && f < interval.y; }
 
 // A part of a ray, voxels from the eye; empty if first >= last.
 struct Stretch {
@@ -31,6 +44,7 @@ struct Stretch {
     float last;
 };
 const Stretch NO_STRETCH = Stretch(TRACE_NOWHERE, -TRACE_NOWHERE);
+const Stretch WHOLE_RAY = Stretch(-TRACE_NOWHERE, TRACE_NOWHERE);
 
 // The part of a ray that a kernel may cover. p: the ray's point nearest to the voxel; `ahead`: its distance along u
 // from the eye.
@@ -41,17 +55,18 @@ Stretch kernel_stretch(vec3 p, float ahead) {
     return s;
 }
 
-// Traces the ray along u from `from`; matter is where the field lies in `interval`. Samples lie TRACE_STEP apart, at
+// Traces the ray along u from `from`, within `kept`; matter is where the field lies in `interval`. Samples lie TRACE_STEP apart, at
 // positions independent of the beginning. An extra sample lies where the field may have an extremum beyond the
 // interval's end. Ends are refined by Newton's method. Stops after the second piece, TRACE_DEEP inside a piece, or at
 // the end of the volume.
-TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
+TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interval) {
     VolumeEnds ends = volume_ends(from, divisible(u), dims);
     Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
     float until = along.last;
     // Matter at the volume's border begins there, with the border's normal.
-    bool at_border = whole.first > 0.0 && along.first <= whole.first;
+    bool at_border = SURFACES == 0u && whole.first > 0.0 && along.first <= whole.first;
     uint border = pack_end(out_of_entry(ends, whole.first, u), false);
+    whole = Stretch(max(whole.first, kept.first), min(whole.last, kept.last));
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
     TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
@@ -59,7 +74,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
     bool begun = false, matter = false, turned = false, probes = false, looks = along.first < along.last;
     float entered = along.first, probe = 0.0, before = 0.0, value_before = 0.0, slope_before = 0.0;  // the previous sample
     float a = 0.0, b = 0.0, guess = 0.0, level = 0.0;  // bracket of an end
-    bool rises = false;
+    bool rises = false, upper = false;
     int searching = 0;
     // One sample per iteration, of the ray or of the search for an end, so that lavapipe has a single loop.
     while (looks) {
@@ -77,7 +92,6 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         guess = in_search ? next : guess;
         searching = in_search ? (abs(next - z) < (SURFACES == 1u ? SURFACE_NEAR : TRACE_NEAR) ? 0 : searching - 1) : searching;
         bool found = in_search && searching == 0, second = pieces == 2u, enters = found && matter, leaves = found && !matter;
-        bool upper = level == interval.y;
         uint code = pack_end(normalize((upper ? field.xyz : -field.xyz) + vec3(0.0, 0.0, 1e-12)), upper);
         entered = enters ? guess : entered;
         t.one.x = enters && !second ? guess : t.one.x;
@@ -89,13 +103,16 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, vec2 interval) {
         // A sample of the ray.
         float step = z - before;
         Turn turn = turn_of(value_before, slope_before * step, field.w, slope * step);
-        bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(turn.value, interval) != matter;
+        float beyond = turn.value + 0.5 * (turn.value - 0.5 * (value_before + field.w));
+        bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(SURFACES == 1u ? beyond : turn.value, interval) != matter;
         bool takes = walks && !turns, crosses = takes && begun && inside != matter;
         float outer = inside ? value_before : field.w;
-        level = crosses ? (outer < interval.x ? interval.x : interval.y) : level;
+        vec2 body = SURFACES == 1u ? body_around(inside ? field.w : value_before) : interval;
+        upper = crosses ? outer >= body.x : upper;
+        level = crosses ? (upper ? body.y : body.x) : level;
         a = crosses ? before : a;
         b = crosses ? z : b;
-        guess = crosses ? mix(a, b, (level - value_before) / (field.w - value_before)) : guess;
+        guess = crosses ? mix(a, b, root_of(value_before, slope_before * step, field.w, slope * step, level)) : guess;
         rises = crosses ? field.w > value_before : rises;
         searching = crosses ? TRACE_ROOT_STEPS : searching;
         bool starts = takes && !begun && inside;

@@ -11,7 +11,8 @@
 layout(local_size_x_id = SPEC_GROUP) in;
 #include "shaders/common/groups.glsl"
 const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, PAYLOAD = PAYLOAD_NORMAL, SLICED = 0u, TRANSFER = 0u, LIT_EDGES = 0u, ANTIALIAS = 0u;
-const uint CLIP_KEEP = 0u, CLIP_REMOVE = 0u;
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
@@ -38,7 +39,10 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/splats/splat_inputs.glsl"
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/splats/prepared_splat.glsl"
+#define CLIP_PARAMS params.frame
+#include "shaders/common/clip_ray.glsl"
 #include "shaders/common/volume_ends.glsl"
+#include "shaders/tiles/ray_parts.glsl"
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
@@ -92,8 +96,7 @@ void main() {
         vec3 way = params.frame.ray_z + across;
         float way_length = length(way);
         vec3 u = way / way_length;
-        VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, divisible(u), params.frame.dims);
-        float begins = max(ends.near.x, max(ends.near.y, ends.near.z)) - 1e-3, stops = min(ends.far.x, min(ends.far.y, ends.far.z));
+        RayParts parts = ray_parts(u);
         SheetWays ways = sheet_ways(u);
         SeenRay traced;
         if (TRACED == 1u) traced = load_seen_ray(held);
@@ -105,7 +108,7 @@ void main() {
             while (has_marks(words) && open) {
                 uvec2 entry = load_entry(at + int(base + take_mark(words)));
                 // No later vote is about the first surface.
-                bool decided = is_decided(pair, ways, entry.y);
+                bool decided = way_to(pair.front) <= parts.before.first || is_decided(pair, ways, entry.y);
                 bool refused = decided && !wins(pair.front);
                 open = !decided || refused;
                 if (refused) refuse_front(pair);
@@ -132,10 +135,11 @@ void main() {
                 // Normals point to the lower values.
                 if ((number_material.y & (FACES_UPWARD | IS_TRACED)) == FACES_UPWARD) vote.n = -vote.n;
                 float where = ahead + vote.z;
-                vote.weight = open && where >= begins && where <= stops ? vote.weight : 0.0;
-                // Matter at the volume's border begins there, whatever the faces around say.
-                if (TRACED == 1u) vote.weight *= vote.enters && where < begins + 4e-3 ? SURFACE_CERTAIN : 1.0;
-                count_vote(pair, vote, where, number_material.x);
+                bool counts = is_in_part(parts.before, where);
+                if (CLIP_REMOVE > 0u) counts = counts || is_in_part(parts.behind, where);
+                vote.weight = open && counts ? vote.weight : 0.0;
+                Shown shown = Shown(number_material.x, kind_of(number_material.x), ambient_reach(number_material.x, false));
+                count_vote(pair, vote, where, shown, LABELS == 1u);
             }
         }
         IF_ANY(was_open) {

@@ -20,24 +20,39 @@ STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
 TEXEL_WORDS(BIND_TILE_PIXELS, listed_pixels, tile_pixels, load_listed)
 layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles; round 1: only marks
+ivec3 dims;
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
+#include "shaders/common/labels.glsl"
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
+// The material that a body shows where it ends.
+uint shown_material(uint body, bool upper) {
+    uvec2 ends = upper ? params.frame.body_upper : params.frame.body_lower;
+    return (body < 8u ? ends.x : ends.y) >> 4u * (body & 7u) & 15u;
+}
+
 vec3 payload_of(SurfaceVotes votes, vec3 u) {
     float way = max(way_to(votes), 1e-4), depth = way * dot(params.frame.view_z, u);
-    Splat splat = SplatsRef(params.frame.splats).at[votes.number];
+    bool begun = votes.number >= BEGUN_MATTER;
+    Splat splat = SplatsRef(params.frame.splats).at[begun ? 0u : votes.number];
     vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
     if (PAYLOAD == PAYLOAD_NORMAL) return normal;
-    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, -unpack_edge(splat.normal, splat.edge).d, 0.0);
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0);
     vec3 along = params.frame.index_to_world * u;
-    uint material = splat.edge >> 28;
-    return shade(Surface(params.frame.materials[material].rgb, material, votes.number, dot(normal, normal) > 0.0, normal, false, way * along,
-                         -normalize(along), depth));
+    uint material = begun ? votes.number - BEGUN_MATTER : shown_material(splat.edge >> 28, (splat.edge >> 26 & 3u) == EDGE_UPPER);
+    vec3 color = params.frame.materials[material].rgb;
+    if (LABELS == 1u) {
+        uint label = begun ? label_near(clamp(ivec3(round(params.frame.anchor + params.frame.eye + way * u)), ivec3(0), dims - 1))
+                           : votes.kind;
+        color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];
+    }
+    return shade(Surface(color, material, votes.number, dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));
 }
 
 void main() {
+    dims = params.frame.dims;
     uint item = group_number(), groups = REFINED == 1u ? what >> 20 & 0xfu : TILE * TILE / gl_WorkGroupSize.x;
     uint tile = item / groups, place = item % groups * gl_WorkGroupSize.x + gl_LocalInvocationIndex;
     if (tile >= tile_count()) return;
@@ -65,7 +80,6 @@ void main() {
             vec4 seen = vec4(0.0);
             IF_ANY(there) seen = there ? vec4(payload_of(pair.front, u), 1.0) : vec4(0.0);
             if (some) store_pixel(number, seen);
-            if (some) forget_votes(pixel);
         }
     }
     uint closing = subgroupAdd(closes ? 1u : 0u);

@@ -50,6 +50,9 @@ ivec3 dims;
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
+#define CLIP_PARAMS params.frame
+#include "shaders/common/clip_ray.glsl"
+#include "shaders/tiles/ray_parts.glsl"
 
 // The part of a pixel's ray from the first to the last kernel of the traced entries.
 Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_length) {
@@ -81,6 +84,23 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
     return found;
 }
 
+// The ray's first pieces in the matter that clip planes keep.
+TracedRay trace_kept(vec3 u, Stretch along) {
+    vec3 from = params.frame.anchor + params.frame.eye;
+    vec2 interval = params.frame.traced_interval;
+    if (SURFACES == 0u) return trace_ray(from, u, along, WHOLE_RAY, interval);
+    RayParts parts = ray_parts(u);
+    TracedRay ray = trace_ray(from, u, along, Stretch(parts.before.first, parts.before.last), interval);
+    bool goes_on = ray.one.x >= TRACE_NOWHERE && along.last > parts.behind.first;
+    if (CLIP_REMOVE > 0u) {
+        IF_ANY(goes_on) {
+            TracedRay rest = trace_ray(from, u, along, Stretch(parts.behind.first, parts.behind.last), interval);
+            if (goes_on) ray = rest;
+        }
+    }
+    return ray;
+}
+
 void main() {
     uint draw_round = what & 0xfffffu, tile = group_number();
     if (tile >= tile_count()) return;
@@ -106,7 +126,7 @@ void main() {
             vec3 u = way / way_length;
             Stretch along = traced_stretch(range, pixel, across, u, way_length);
             IF_ANY(along.first < along.last) {
-                TracedRay ray = trace_ray(params.frame.anchor + params.frame.eye, u, along, params.frame.traced_interval);
+                TracedRay ray = trace_kept(u, along);
                 PixelsRef(params.frame.traced_rays).at[traced_at(held)] = pieces_texel(ray);
                 PixelsRef(params.frame.traced_rays).at[traced_at(held) + 1u] = ends_texel(ray);
             }

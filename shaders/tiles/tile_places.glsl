@@ -1,6 +1,7 @@
 // Selects which pixels of a tile are drawn. Include after the declaration of `what` and of the functions that load the
 // tiles' lists of pixels.
 #include "shaders/tiles/pixel_in_tile.glsl"
+#include "shaders/tiles/pixel_slopes.glsl"
 
 uint tile_count() { return uint(params.frame.tiles.x * params.frame.tiles.y); }
 
@@ -21,9 +22,4 @@ ivec2 place_of(uint tile, uint place) {
 ivec2 pixel_of(uint tile, uint place, uint count) {
     ivec2 corner = int(TILE) * ivec2(tile % uint(params.frame.tiles.x), tile / uint(params.frame.tiles.x));
     return corner + place_of(tile, min(place, max(count, 1u) - 1u));
-}
-
-// Slopes of a pixel's ray: right and down per depth.
-vec2 slopes_of(ivec2 pixel) {
-    return ((vec2(pixel) + 0.5) * 2.0 / vec2(params.frame.size) - 1.0) * vec2(params.frame.tan_half_x, params.frame.tan_half_y);
 }

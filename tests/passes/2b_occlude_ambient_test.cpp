@@ -87,7 +87,7 @@ TEST(OccludeAmbient, LeavesAFlatPlaneUnoccluded) {
             // The 16-bit maximum is exactly 1.
             EXPECT_GT(got.first[i], 0.99999);
         }
-        EXPECT_GT(surface, 600U);
+        EXPECT_GT(surface, 300U);
     }
 }
 
@@ -121,7 +121,7 @@ TEST(OccludeAmbient, MatchesTheFormFactorInAnInnerCorner) {
         sum += got.first[i] - want;
         ++count;
     }
-    ASSERT_GT(count, 100);
+    ASSERT_GT(count, 60);
     EXPECT_LE(worst, 0.05) << "bound of method.md for this number of rays";
     EXPECT_LE(std::abs(sum / count), 0.02);
 }
@@ -161,7 +161,7 @@ TEST(OccludeAmbient, PassesOnlyGrazingRaysBetweenTwoPlanes) {
         sum += got.first[i];
         ++count;
     }
-    ASSERT_GT(count, 100);
+    ASSERT_GT(count, 60);
     // From a little above the surface the other plane is nearer: with 16 - 1.25 as distance, cos^2 is .19 to .25.
     EXPECT_NEAR(sum / count, 0.21, 0.04);
 }

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "engine/reference/reference_renderer.h"
+#include "engine/volume/labels.h"
 #include "tests/passes/traced_scenes.h"
 
 namespace edgesplat::test {
@@ -25,7 +26,50 @@ PassScene of_volume(const std::string& builtin, const glm::dvec3& eye, const glm
     return s;
 }
 
-/// Smooth, noisy, thin, cut by the border, of two values only; and a torus on an oblique left-handed grid.
+/// Planes cut a gyroid in its middle; they cut a corner out of a torus.
+std::vector<PassScene> cut_scenes() {
+    std::vector<PassScene> scenes;
+    scenes.push_back(of_volume("gyroid", {90, -60, 80}, {19, 19, 19}, 30));
+    scenes.back().name = "cut gyroid";
+    scenes.back().scene.effects.clip.keep = {{{19, 18, 21}, {0.3, -1, 0.2}}};
+    scenes.push_back(of_volume("torus:28", {13, -34, 30}, {13, 13, 13}, 40));
+    scenes.back().name = "torus without a corner";
+    scenes.back().scene.effects.clip.remove = {{{13, 0, 0}, {1, 0, 0}}, {{0, 13, 0}, {0.1, 1, 0}}};
+    return scenes;
+}
+
+/// Two nested opaque materials, cut; the inner one shows in the cut alone. The lowest values are matter, too.
+PassScene nested() {
+    PassScene s = of_volume("ellipsoid:26", {40, -30, 36}, {12, 12, 12}, 30);
+    s.name = "nested";
+    s.scene.iso_values = {0.05, 0.4, 0.7};
+    s.scene.materials = {{{0.2, 1, 0.3}, 6}, {{0, 0, 0}, 0}, {{1, 0.3, 0.2}, 6}, {{0.3, 0.4, 1}, 8}};
+    s.scene.effects.clip.keep = {{{12, 12, 12}, {0.2, -1, 0.6}}};
+    return s;
+}
+
+/// A ball of two labels.
+PassScene labelled_ball() {
+    PassScene s;
+    s.name = "labels";
+    Volume ball;
+    ball.geometry.dims = glm::ivec3(18);
+    for (int z = 0; z < 18; ++z)
+        for (int y = 0; y < 18; ++y)
+            for (int x = 0; x < 18; ++x)
+                ball.values.push_back(glm::length(glm::dvec3(x, y, z) - 8.5) > 6 ? 0.0F : x + z < 17 ? 1.0F : 2.0F);
+    finish_volume(ball);
+    s.volume = drawn_labels(ball);
+    s.scene.iso_values = {0.5};
+    s.scene.materials = {{}, {.extinction = 8}};
+    s.scene.label_colors = {glm::dvec3(0), {1, 0.3, 0.1}, {0.1, 0.4, 1}};
+    s.scene.effects.clip.keep = {{{8, 8, 8}, {0.1, 1, 0.3}}};
+    look_at(s, {20, 40, 30}, {8, 8, 8}, 28);
+    return s;
+}
+
+/// Smooth, noisy, thin, cut by the border, of two values only; a torus on an oblique left-handed grid; cut by planes,
+/// of several materials or labels, and with occluded ambient light.
 std::vector<PassScene> surface_scenes() {
     std::vector<PassScene> scenes = traced_scenes();
     scenes.push_back(pass_scenes()[0]);
@@ -38,6 +82,14 @@ std::vector<PassScene> surface_scenes() {
     look_at(scenes.back(), {13, -14, 24}, {13, 12, 9}, 40);
     scenes.push_back(of_volume("torus:28:noise=0.04", {13, -14, 30}, {13, 13, 13}, 40));
     scenes.push_back(of_volume("cube-hole:24", {30, -18, 34}, {12, 12, 12}, 32));
+    for (const PassScene& s : cut_scenes())
+        scenes.push_back(s);
+    scenes.push_back(nested());
+    scenes.push_back(labelled_ball());
+    scenes.push_back(cut_scenes().front());
+    scenes.back().name = "occluded";
+    scenes.back().scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = 6};
+    scenes.back().scene.ambient = 0.8;
     for (PassScene& s : scenes)
         s.settings.opaque = OpaqueMatter::Surfaces;
     return scenes;
@@ -98,8 +150,9 @@ TEST(Surfaces, LookLikeTheReferences) {
         const double psnr = -10 * std::log10(squares / (4.0 * static_cast<double>(pixels.size())) + 1e-20);
         std::printf("%-22s %.1f dB\n", s.name.c_str(), psnr);
         // The device samples a searched ray once a voxel, the reference ten times: a gyroid of this size has pieces
-        // that are thinner.
-        EXPECT_GE(psnr, s.name == "gyroid" ? 32 : 43);
+        // that are thinner. One pixel of 7,680 is worth 39 dB.
+        const bool thin = s.volume.name.find("gyroid") != std::string::npos || s.name == "gyroid";
+        EXPECT_GE(psnr, thin ? 33 : 65);
         EXPECT_GT(alphas, 400);
     }
 }
@@ -146,14 +199,14 @@ TEST(Surfaces, DoNotDependOnTheSpacingOfSheets) {
     }
 }
 
-/// What one opaque material in plain light does not need is drawn by kernels.
+/// What opaque matter does not need is drawn by kernels.
 TEST(Surfaces, LeaveOtherScenesToKernels) {
     PassScene s = surface_scenes()[3];
-    EXPECT_TRUE(draws_surfaces(s.settings, s.scene, s.volume.geometry));
+    EXPECT_TRUE(draws_surfaces(s.settings, s.scene, s.volume));
     const auto draws = [&](const auto& change) {
         PassScene changed = s;
         change(changed);
-        return draws_surfaces(changed.settings, changed.scene, changed.volume.geometry);
+        return draws_surfaces(changed.settings, changed.scene, changed.volume);
     };
     EXPECT_FALSE(draws([](PassScene& c) { c.settings.opaque = OpaqueMatter::Kernels; }));
     EXPECT_FALSE(draws([](PassScene& c) { c.scene.materials[1].extinction = 0.5; }));
@@ -161,8 +214,15 @@ TEST(Surfaces, LeaveOtherScenesToKernels) {
     EXPECT_FALSE(draws([](PassScene& c) { c.settings.sheets = SheetCut::Sliced; }));
     EXPECT_FALSE(draws([](PassScene& c) { c.settings.footprints = FootprintMode::Table; }));
     EXPECT_FALSE(draws([](PassScene& c) { c.scene.effects.antialias = true; }));
-    EXPECT_FALSE(draws([](PassScene& c) { c.scene.effects.occlusion = AmbientOcclusion{}; }));
-    EXPECT_FALSE(draws([](PassScene& c) { c.scene.effects.clip.keep = {{{0, 0, 0}, {1, 0, 0}}}; }));
+    EXPECT_FALSE(draws([](PassScene& c) { c.scene.effects.smooth_outlines = true; }));
+    EXPECT_FALSE(draws([](PassScene& c) {
+        c.scene.effects.occlusion = AmbientOcclusion{};
+        c.scene.effects.clip.remove = {{{0, 0, 0}, {1, 0, 0}}};
+    }));
+    EXPECT_FALSE(draws([](PassScene& c) {
+        c.scene.lights = {directional_light({0, 0, 1})};
+        c.scene.lights[0].shadows = true;
+    }));
     DeviceUnderTest& state = prepared(s);
     EXPECT_TRUE(state.lists().surfaces);
     s.settings.opaque = OpaqueMatter::Kernels;

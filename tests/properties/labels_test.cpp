@@ -85,7 +85,6 @@ TEST(Labels, NoColourIsShownThatIsNotThere) {
 
 TEST(Labels, DoNotChangeTheSurface) {
     Shot labels = label_shot({false, true, true, true}, 8), mask = labels;
-    mask.settings.opaque = OpaqueMatter::Kernels;  // which draw labels
     mask.scene.label_colors.clear();
     const Image colored = render(labels).color, plain = render(mask).color;
     for (int y = 0; y < plain.height; ++y)

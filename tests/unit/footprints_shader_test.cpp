@@ -84,6 +84,7 @@ inline float table_texel(float x, float y, float layer) {
 #include "shaders/footprints/footprint_table.glsl"
 }  // namespace nodes4
 #undef EDGESPLAT_FOOTPRINT_GLSL
+#undef EDGESPLAT_SLICE_GLSL
 #undef EDGESPLAT_KERNEL_GLSL
 namespace nodes10 {
 const uint NODES = 10;

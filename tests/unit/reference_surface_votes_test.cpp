@@ -22,6 +22,7 @@ using glm::length;
 using glm::max;
 using glm::min;
 using glm::sqrt;
+using shader::SURFACE_CERTAIN;
 using shader::SURFACE_WINDOW;
 
 inline vec3 bent(const Bending& h, const vec3& v) {
@@ -173,7 +174,7 @@ TEST(SurfaceVotes, CountTheSameInAnyOrder) {
         const auto counted = [&] {
             SurfacePair pair = no_surfaces();
             for (const Ballot& b : ballots)
-                count_vote(pair, b.vote, b.way, b.number);
+                count_vote(pair, b.vote, b.way, {b.number, 0, 1}, false);
             return pair;
         };
         const SurfacePair first = counted();
@@ -200,13 +201,13 @@ TEST(SurfaceVotes, AgainstSurfacesLeaveRoomForTheNext) {
     hit.enters = true;
     hit.n = {0, 0, -1};
     for (int k = 0; k < 20; ++k)
-        count_vote(pair, miss, 10 + 0.4 * k, 1);
-    count_vote(pair, hit, 20, 7);
-    count_vote(pair, hit, 20.1, 7);
+        count_vote(pair, miss, 10 + 0.4 * k, {1, 0, 1}, false);
+    count_vote(pair, hit, 20, {7, 0, 1}, false);
+    count_vote(pair, hit, 20.1, {7, 0, 1}, false);
     EXPECT_TRUE(wins(pair.front));
     EXPECT_NEAR(way_to(pair.front), 20.05, 1e-12);
-    count_vote(pair, miss, 20, 1);
-    count_vote(pair, miss, 20, 1);
+    count_vote(pair, miss, 20, {1, 0, 1}, false);
+    count_vote(pair, miss, 20, {1, 0, 1}, false);
     EXPECT_FALSE(wins(pair.front));
 }
 
@@ -218,10 +219,50 @@ TEST(SurfaceVotes, OfMissesBeforeTheHitCountAgainstIt) {
     miss.enters = false;
     hit.enters = true;
     hit.n = {0, 0, -1};
-    count_vote(pair, miss, 9.8, 1);
-    count_vote(pair, hit, 10, 2);
+    count_vote(pair, miss, 9.8, {1, 0, 1}, false);
+    count_vote(pair, hit, 10, {2, 0, 1}, false);
     EXPECT_EQ(pair.front.misses, 2);
     EXPECT_FALSE(wins(pair.front));
+}
+
+TEST(SurfaceVotes, ShowTheLabelOfMostWeightAndTheMeanLight) {
+    std::vector<double> weights{0.5, 0.3, 0.45, 0.4, 0.2};
+    std::vector<uint> kinds{3, 8, 8, 3, 8};
+    std::vector<std::size_t> order{0, 1, 2, 3, 4};
+    SurfaceVote hit;
+    hit.enters = true;
+    hit.n = {0, 0, -1};
+    // 8 has .95 in three votes, 3 has .9 in two; whatever the order.
+    do {
+        SurfacePair labelled = no_surfaces(), plain = no_surfaces();
+        for (const std::size_t i : order) {
+            hit.weight = weights[i];
+            const Shown shown{static_cast<uint>(i), kinds[i], i == 0 ? 0.2 : 1.0};
+            count_vote(labelled, hit, 5, shown, true);
+            count_vote(plain, hit, 5, shown, false);
+        }
+        EXPECT_EQ(labelled.front.kind, 8U);
+        EXPECT_EQ(plain.front.number, 0U);
+        EXPECT_NEAR(arrives_at(plain.front), 1 - 0.8 * 0.5 / 1.85, 1e-12);
+    } while (std::ranges::next_permutation(order).found);
+}
+
+/// Nothing outvotes matter that begins at a plane; a surface in front of it is seen all the same.
+TEST(SurfaceVotes, BeginMatterCertainly) {
+    SurfacePair pair = no_surfaces();
+    begin_matter(pair.front, 7, {0, 1, 0}, 5);
+    SurfaceVote vote;
+    vote.weight = 1;
+    vote.n = {1, 0, 0};
+    vote.enters = false;
+    for (int k = 0; k < 30; ++k)
+        count_vote(pair, vote, 7.1, {1, 0, 0}, false);
+    EXPECT_TRUE(wins(pair.front));
+    EXPECT_NEAR(way_to(pair.front), 7, 1e-12);
+    vote.enters = true;
+    count_vote(pair, vote, 5, {2, 0, 1}, false);
+    EXPECT_EQ(pair.front.number, 2U);
+    EXPECT_EQ(pair.behind.number, 5U);
 }
 
 TEST(SurfaceVotes, InFloatEqualThoseInDouble) {

@@ -1,0 +1,67 @@
+// Before surface splats are drawn: clears each pixel's votes. Where the ray enters the volume, or what clip planes keep,
+// in the matter, it stores a certain vote instead. docs/method/surfaces.md.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#include "shaders/drivers/if_any.glsl"
+#include "shaders/shared/bindings.h"
+#include "shaders/shared/frame_params.h"
+
+layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
+layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
+layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
+const uint CREASES = 0u, LABELS = 0u;
+layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
+#include "shaders/drivers/texels.glsl"
+ivec3 dims;
+#define CLIP_PARAMS params.frame
+#include "shaders/footprints/slice.glsl"
+#include "shaders/common/clip_ray.glsl"
+#include "shaders/common/volume_ends.glsl"
+#include "shaders/common/volume_sampling.glsl"
+#include "shaders/common/matter.glsl"
+#include "shaders/tiles/pixel_slopes.glsl"
+#include "shaders/tiles/ray_parts.glsl"
+#include "shaders/footprints/face_record.glsl"
+#include "shaders/tiles/surface_pixel.glsl"
+
+// The material at p, index space. The field itself is evaluated only where the samples around leave a doubt.
+uint material_in_field(vec3 p) {
+    ivec3 cell = clamp(ivec3(floor(p)), ivec3(0), dims - 1);
+    float least = voxel(cell), most = least;
+    for (int i = 1; i < 8; ++i) {
+        float corner = voxel(min(cell + ivec3(i & 1, i >> 1 & 1, i >> 2), dims - 1));
+        least = min(least, corner);
+        most = max(most, corner);
+    }
+    float spread = most - least, value = least;
+    bool doubt = material_of(least - spread) != material_of(most + spread);
+    IF_ANY(doubt) value = doubt ? bspline(p) : least;
+    return material_of(value);
+}
+
+void begin_part(inout SurfaceVotes votes, RayPart part, vec3 from, vec3 u) {
+    bool enters = part.first < part.last && part.n != vec3(0.0);
+    IF_ANY(enters) {
+        vec3 at = from + part.first * u;
+        uint material = material_in_field(at);
+        enters = enters && is_drawn(material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
+        if (enters) begin_matter(votes, part.first, normalize(part.n), BEGUN_MATTER | material);
+    }
+}
+
+void main() {
+    uint number = invocation_number();
+    ivec2 size = params.frame.size, pixel = ivec2(number % uint(size.x), number / uint(size.x));
+    if (pixel.y >= size.y) return;
+    dims = params.frame.dims;
+    vec2 slope = slopes_of(pixel);
+    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y), from = params.frame.anchor + params.frame.eye;
+    RayParts parts = ray_parts(u);
+    SurfacePair pair = no_surfaces();
+    begin_part(pair.front, parts.before, from, u);
+    if (CLIP_REMOVE > 0u) begin_part(pair.front, pair.front.hits > 0.0 ? RayPart(0.0, 0.0, vec3(0.0)) : parts.behind, from, u);
+    store_votes(pixel, pair);
+}

@@ -1,0 +1,33 @@
+// The parts of a pixel's ray that lie in the volume and that clip planes keep. Matter may begin at their ends, where no
+// surface is. Include after shaders/common/clip_ray.glsl and volume_ends.glsl.
+
+// Distances from the eye, voxels; empty if first >= last. n: normal of the border or the plane where the part begins,
+// index space, away from the part; 0: it begins at the eye.
+struct RayPart {
+    float first, last;
+    vec3 n;
+};
+
+// `behind`: behind what the planes of `remove` cut out.
+struct RayParts {
+    RayPart before, behind;
+};
+
+RayPart kept_part(RayPart whole, Slice kept, vec3 face) {
+    return RayPart(max(whole.first, kept.low), min(whole.last, kept.high), kept.low > whole.first ? face : whole.n);
+}
+
+bool is_in_part(RayPart part, float way) { return way >= part.first - 1e-3 && way <= part.last; }
+
+RayParts ray_parts(vec3 u) {
+    VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, divisible(u), params.frame.dims);
+    float first = max(ends.near.x, max(ends.near.y, ends.near.z)), last = min(ends.far.x, min(ends.far.y, ends.far.z));
+    RayPart whole = RayPart(max(first, 0.0), last, first > 0.0 ? out_of_entry(ends, first, u) : vec3(0.0));
+    RayParts parts = RayParts(whole, RayPart(1e9, -1e9, vec3(0.0)));
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) {
+        Kept kept = kept_pieces(params.frame.eye, u, 0.0);
+        parts.before = kept_part(whole, kept.before, kept.before_face);
+        if (CLIP_REMOVE > 0u) parts.behind = kept_part(whole, kept.behind, kept.behind_face);
+    }
+    return parts;
+}
