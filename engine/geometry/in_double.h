@@ -26,6 +26,8 @@ using glm::sin;
 using glm::sqrt;
 
 constexpr Real SURFACE_CERTAIN = static_cast<Real>(shader::SURFACE_CERTAIN);
+using shader::BEGUN_MATTER;
+constexpr Real SURFACE_CHORD = static_cast<Real>(shader::SURFACE_CHORD);
 constexpr Real SURFACE_ERROR = static_cast<Real>(shader::SURFACE_ERROR);
 constexpr Real SURFACE_NOISE = static_cast<Real>(shader::SURFACE_NOISE);
 constexpr Real SURFACE_RING = static_cast<Real>(shader::SURFACE_RING);

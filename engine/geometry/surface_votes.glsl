@@ -19,6 +19,7 @@ struct SurfaceVote {
     Real weight;  // 0: nothing
     bool enters;  // false: the ray passes the surface by
     vec3 n;       // out of the matter, not unit; only if it enters
+    Real chord;   // length of the ray in the matter, at most SURFACE_CHORD; only if it enters
 };
 
 Real vote_weight(vec3 from_foot, Real reach) { return max(1.0 - dot(from_foot, from_foot) / (reach * reach), 0.0); }
@@ -43,6 +44,11 @@ SurfaceVote vote_of(SurfaceSplat splat, vec3 p, vec3 u) {
     vote.z = vote.enters ? enters : clamp(turn, -3.0, 3.0);
     vec3 at = p + vote.z * u;
     vote.n = splat.slope + bent(splat.h, at);
+    // It leaves the matter where the surface bends away from it. Across the surface the quadric says nothing.
+    Real inward = -dot(vote.n, u);
+    vec3 beside = u + inward / max(dot(vote.n, vote.n), 1e-12) * vote.n;
+    Real bend = 0.5 * dot(beside, bent(splat.h, beside));
+    vote.chord = bend * SURFACE_CHORD > inward ? inward / bend : SURFACE_CHORD;
     bool says = vote.enters ? falls || abs(a) > 1e-9 : passes;
     vote.weight = says ? vote_weight(at - splat.foot, splat.reach) : 0.0;
     return vote;
@@ -82,16 +88,18 @@ SurfaceVote vote_of_planes(SurfacePlane one, SurfacePlane two, SurfacePlane thre
     foot = three.away * three.n;
     weight = max(weight, three.away < 1e8 ? vote_weight(at - foot, reach) : 0.0);
     vote.weight = first > -1e8 && (vote.enters || last < 1e8) ? weight : 0.0;
+    vote.chord = min(max(last - first, 0.0), SURFACE_CHORD);
     return vote;
 }
 
 // The vote of a splat without a quadric about a ray that was traced through the field: it enters matter in the splat's
-// ball at `enters` (beyond `high`: it does not), or passes without matter there.
-SurfaceVote vote_of_traced(Real low, Real high, Real enters, bool matter, vec3 n, Real reach, vec3 p, vec3 u, Real ahead) {
+// ball at `enters` (beyond `high`: it does not) and stays in it for `chord`, or passes without matter there.
+SurfaceVote vote_of_traced(Real low, Real high, Real enters, Real chord, bool matter, vec3 n, Real reach, vec3 p, vec3 u, Real ahead) {
     SurfaceVote vote;
     vote.enters = enters > low && enters < high;
     vote.z = vote.enters ? enters - ahead : 0.0;
     vote.n = n;
+    vote.chord = min(chord, SURFACE_CHORD);
     vote.weight = vote.enters || !matter ? vote_weight(p + vote.z * u, reach) : 0.0;
     return vote;
 }
@@ -108,6 +116,7 @@ struct SurfaceVotes {
     Real hits;    // weight of the votes that the ray enters
     Real misses;  // weight of those that it passes by
     Real way;     // of the hits, sum of weight * distance from the eye along the ray
+    Real chord;   // likewise, of chords
     vec3 normal;  // likewise, of unit normals
     Real arrives; // likewise, of the share of ambient light that arrives
     uint number;  // the splat with the largest weight of a hit; with labels, the first of the seen label
@@ -120,6 +129,7 @@ SurfaceVotes no_votes() {
     votes.hits = 0.0;
     votes.misses = 0.0;
     votes.way = 0.0;
+    votes.chord = 0.0;
     votes.normal = vec3(0.0);
     votes.arrives = 0.0;
     votes.number = 0u;
@@ -135,6 +145,12 @@ Real way_to(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.way / votes.hi
 
 // Mean share of ambient light that arrives where the ray enters.
 Real arrives_at(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.arrives / votes.hits : 1.0; }
+
+// How near votes about the same surface are. Where matter begins is certain.
+Real window_of(SurfaceVotes votes) { return votes.number >= BEGUN_MATTER ? Real(0.0) : SURFACE_WINDOW; }
+
+// Mean length of the ray in the matter; it is 0 where it passes by.
+Real mean_chord(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.chord / (votes.hits + votes.misses) : 0.0; }
 
 bool wins(SurfaceVotes votes) { return votes.hits > votes.misses; }
 
@@ -156,13 +172,20 @@ SurfacePair no_surfaces() {
 }
 
 // A certain vote, before all others: matter that a ray does not enter through a surface begins there. n: unit.
-void begin_matter(INOUT(SurfaceVotes) votes, Real way, vec3 n, uint number) {
+void begin_matter(INOUT(SurfaceVotes) votes, Real way, Real chord, vec3 n, uint number) {
     votes.hits = SURFACE_CERTAIN;
     votes.way = SURFACE_CERTAIN * way;
+    votes.chord = SURFACE_CERTAIN * min(chord, SURFACE_CHORD);
     votes.normal = SURFACE_CERTAIN * n;
     votes.arrives = SURFACE_CERTAIN;
     votes.number = number;
     votes.largest = SURFACE_CERTAIN;
+}
+
+// How far a value that lies in a body's interval and changes by `slope` per voxel of a ray stays in it, about.
+Real chord_in_body(Real value, Real slope, Real lower, Real upper) {
+    Real room = slope < 0.0 ? value - lower : upper - value;
+    return min(room / max(abs(slope), 1e-6), SURFACE_CHORD);
 }
 
 // Counts a vote at the distance `way` from the eye. Votes are about one surface if they lie within SURFACE_WINDOW of
@@ -173,8 +196,9 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     bool miss = votes && !vote.enters;
     Real front = way_to(pair.front);
     Real behind = way_to(pair.behind);
-    bool before = hit && way < front - SURFACE_WINDOW;
-    bool between = hit && !before && way >= front + SURFACE_WINDOW && way < behind - SURFACE_WINDOW;
+    Real window = window_of(pair.front);
+    bool before = hit && way < front - window;
+    bool between = hit && !before && way >= front + window && way < behind - window_of(pair.behind);
     // A surface in front of another moves that back.
     if (before) pair.behind = pair.front;
     if (before) pair.front = no_votes();
@@ -182,8 +206,8 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     if (before) front = way;
     if (before) behind = way_to(pair.behind);
     if (between) behind = way;
-    bool of_front = votes && abs(way - front) < SURFACE_WINDOW;
-    bool of_behind = votes && !of_front && abs(way - behind) < SURFACE_WINDOW;
+    bool of_front = votes && abs(way - front) < window_of(pair.front);
+    bool of_behind = votes && !of_front && abs(way - behind) < window_of(pair.behind);
     // A new surface takes over the votes against it that came before.
     Real passed = pair.passed > 0.0 ? pair.passed_way / pair.passed : -NO_SURFACE;
     bool near = abs(way - passed) < SURFACE_WINDOW;
@@ -199,6 +223,7 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     Real weight = hit ? w : 0.0;
     to.hits += weight;
     to.way += weight * way;
+    to.chord += weight * vote.chord;
     to.arrives += weight * shown.arrives;
     if (hit) to.normal += w / max(length(vote.n), 1e-12) * vote.n;
     bool agrees = labelled && shown.kind == to.kind;
@@ -215,5 +240,17 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
 void refuse_front(INOUT(SurfacePair) pair) {
     pair.front = pair.behind;
     pair.behind = no_votes();
+}
+
+// Counts the votes of splats up to the distance `way` from the eye as all votes about surfaces before it: refuses those
+// that lost. Result: whether what the ray sees is known. `solid`: chord from which on nothing behind is seen.
+bool is_decided(INOUT(SurfacePair) pair, Real way, Real solid) {
+    bool front = way > way_to(pair.front) + SURFACE_WINDOW;
+    if (front && !wins(pair.front)) refuse_front(pair);
+    front = way > way_to(pair.front) + SURFACE_WINDOW && wins(pair.front);
+    bool thin = front && mean_chord(pair.front) < solid;
+    bool behind = way > way_to(pair.behind) + SURFACE_WINDOW;
+    if (thin && behind && !wins(pair.behind)) pair.behind = no_votes();
+    return front && (!thin || (behind && wins(pair.behind)));
 }
 #endif

@@ -325,6 +325,7 @@ void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
         p.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         if (scene.materials[m].extinction > 0) p.visible_mask |= 1U << m;
+    p.solid = static_cast<float>(solid_chord(scene, volume.geometry));
     const std::vector<Body> bodies = bodies_of(scene);
     for (std::size_t b = 0; b < bodies.size(); ++b) {
         const int word = b < 8 ? 0 : 1, bit = 4 * static_cast<int>(b % 8);

@@ -20,7 +20,6 @@ using glm::dvec3;
 using glm::ivec3;
 
 constexpr auto kReach = static_cast<double>(shader::SURFACE_REACH);
-constexpr auto kWindow = static_cast<double>(shader::SURFACE_WINDOW);
 constexpr auto kCreaseReach = static_cast<double>(shader::CREASE_REACH);
 constexpr auto kSide = static_cast<double>(shader::SURFACE_SIDE);
 constexpr double kNowhere = std::numeric_limits<double>::infinity();
@@ -42,6 +41,18 @@ bool ends_beside(const Field& field, const ScaledScene& scene, const ivec3& i, i
             if (outermost && scene.material(beyond) != m) return true;
         }
     return false;
+}
+
+/// Whether matter ends on both sides of voxel i along two axes: no foot point lies on the far side of such a speck or
+/// rod.
+bool is_lone(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
+    int axes = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        ivec3 o(0);
+        o[axis] = 1;
+        axes += is_matter(field, scene, i + o, m) || is_matter(field, scene, i - o, m) ? 0 : 1;
+    }
+    return axes >= 2;
 }
 
 geometry::SurfaceCheck checked(const Field& field, const ivec3& i, const geometry::SurfaceSplat& face, const dvec3& n,
@@ -122,6 +133,7 @@ struct DrawnSplat {
     const SplatRecord* record = nullptr;
     dvec3 x{0};
     bool traced = false, creased = false;
+    double reach = kReach;
     geometry::SurfaceSplat face;
     int sheet = 0;
     PixelBox box;
@@ -132,7 +144,14 @@ double longest_voxel(const VolumeGeometry& geometry) {
     return std::max({spacing.x, spacing.y, spacing.z});
 }
 
-DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View& view, double thickness) {
+/// Change of the depth, mm, with the position in index space.
+dvec3 depth_slope(const View& view) {
+    return glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward;
+}
+
+/// `before`: how far in front of their sheets splats vote, voxels.
+DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View& view, double thickness,
+                       double before) {
     const VoxelEdge& edge = record.edge;
     DrawnSplat s;
     s.record = &record;
@@ -145,8 +164,12 @@ DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View
     s.face = {-edge.D + 0.5 * glm::dot(foot, turned), edge.n - turned, edge.bending, foot, kReach};
     const dvec3 center = s.x + (s.traced || s.creased ? dvec3(0) : foot);
     const double crease = s.creased ? static_cast<double>(shader::SURFACE_CREASE) : 0;
-    s.box = screen_box(view, {center, kReach + crease});
-    s.sheet = static_cast<int>(std::max(std::floor(view.depth(center) / thickness), 0.0));
+    s.reach = s.traced && !(edge.D2 < static_cast<double>(shader::SURFACE_LOST))
+                  ? static_cast<double>(shader::SURFACE_AROUND)
+                  : kReach;
+    s.box = screen_box(view, {center, s.reach + crease});
+    const double further = std::max(s.reach + crease - before, 0.0) * glm::length(depth_slope(view));
+    s.sheet = static_cast<int>(std::max(std::floor((view.depth(center) - further) / thickness), 0.0));
     return s;
 }
 
@@ -162,9 +185,9 @@ geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, c
         if (edge.upper) vote.n = -vote.n;
         return vote;
     }
-    const double half_chord = std::sqrt(std::max(kReach * kReach - glm::dot(p, p), 0.0));
+    const double half_chord = std::sqrt(std::max(s.reach * s.reach - glm::dot(p, p), 0.0));
     const double low = std::max(ahead - half_chord, 0.0), high = ahead + half_chord;
-    double enters = kNowhere;
+    double enters = kNowhere, chord = 0;
     dvec3 n(0);
     bool matter = false;
     for (const Piece& piece : ray) {
@@ -173,7 +196,11 @@ geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, c
         enters = piece.begin;
         n = piece.n;
     }
-    return geometry::vote_of_traced(low, high, enters, matter, n, kReach, p, u, ahead);
+    // Matter soon behind counts, too.
+    for (const Piece& piece : ray)
+        if (piece.begin >= enters)
+            chord += std::max(std::min(piece.end, enters + static_cast<double>(shader::SURFACE_CHORD)) - piece.begin, 0.0);
+    return geometry::vote_of_traced(low, high, enters, chord, matter, n, s.reach, p, u, ahead);
 }
 
 /// Material and light of what a ray sees.
@@ -210,16 +237,31 @@ dvec3 payload_at(const geometry::SurfaceVotes& votes, const Seen& seen, const Sc
 }
 
 /// Matter that begins where the ray enters a part, certainly.
-geometry::SurfacePair begun(const Field& field, const ScaledScene& materials, std::span<const RayPart> parts,
+geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, std::span<const RayPart> parts,
                             const dvec3& eye, const dvec3& u) {
+    const ScaledScene& materials = surfaces.materials;
     geometry::SurfacePair pair = geometry::no_surfaces();
     for (const RayPart& part : parts) {
         const dvec3 at = eye + part.first * u;
-        const int material = materials.material(sample(field, at, true));
+        const double value = sample(field, at, true);
+        const int material = materials.material(value);
         const bool matter = materials.drawn[static_cast<std::size_t>(material)] &&
                             field.has_data(field.offset(field.clamped(ivec3(glm::round(at)))));
         if (pair.front.hits > 0 || part.n == dvec3(0) || !matter) continue;
-        geometry::begin_matter(pair.front, part.first, glm::normalize(part.n),
+        const ScaledScene& bodies = surfaces.bodies;
+        const int body = bodies.material(value);
+        double chord = geometry::chord_in_body(value, glm::dot(spline_gradient(field, at), u), bodies.lower(body),
+                                               bodies.upper(body));
+        if (chord < static_cast<double>(shader::SURFACE_CHORD)) {
+            // Matter soon behind counts, too.
+            constexpr auto kStep = static_cast<double>(shader::SURFACE_PROBE);
+            chord = std::min(chord, kStep);
+            for (int k = 1; k < shader::SURFACE_PROBES; ++k) {
+                const double further = sample(field, at + (k + 0.5) * kStep * u, true);
+                chord += bodies.drawn[static_cast<std::size_t>(bodies.material(further))] ? kStep : 0;
+            }
+        }
+        geometry::begin_matter(pair.front, part.first, std::min(chord, part.last - part.first), glm::normalize(part.n),
                                shader::BEGUN_MATTER + static_cast<std::uint32_t>(material));
     }
     return pair;
@@ -269,7 +311,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     const Foot foot = foot_of(q, -middle, dvec3(0));
     const double steep = glm::length(foot.slope);
     const bool real = steep >= 0.3 && std::abs(q.at(foot.at)) < 0.05 &&
-                      glm::length(foot.at) < static_cast<double>(shader::SURFACE_FIT);
+                      glm::length(foot.at) < static_cast<double>(shader::SURFACE_FIT) && !is_lone(field, scene, i, m);
     face.upper = nearest.upper;
     face.n = real ? foot.slope / steep : nearest.n;
     face.D = glm::dot(real ? middle + foot.at : middle, face.n);
@@ -331,11 +373,12 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
     const double thickness = sheet_thickness(view, settings);
     std::vector<DrawnSplat> splats;
     splats.reserve(records.size());
-    bool creases = false;
-    for (const SplatRecord& record : records) {
-        splats.push_back(drawn_splat(record, field, view, thickness));
-        creases = creases || record.edge.crease.D < kCreaseReach;
-    }
+    const bool creases =
+        std::ranges::any_of(records, [](const SplatRecord& record) { return record.edge.crease.D < kCreaseReach; });
+    const double before = kReach + (creases ? static_cast<double>(shader::SURFACE_CREASE) : 0);
+    for (const SplatRecord& record : records)
+        splats.push_back(drawn_splat(record, field, view, thickness, before));
+    const double solid = solid_chord(scene, view.geometry);
     std::vector<std::uint32_t> labels(records.size(), 0);
     if (surfaces.materials.labels)
         std::ranges::transform(records, labels.begin(), [&](const SplatRecord& record) {
@@ -344,8 +387,8 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0U);
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return splats[i].sheet; });
-    const dvec3 view_z = glm::transpose(view.geometry.index_to_world_axes) * view.frame.forward;
-    const double reach = (kReach + (creases ? static_cast<double>(shader::SURFACE_CREASE) : 0)) * glm::length(view_z);
+    const dvec3 view_z = depth_slope(view);
+    const double reach = before * glm::length(view_z);
     const auto seen_by = [&](const geometry::SurfaceVotes& votes, const dvec3& at) {
         Seen seen;
         if (votes.number < shader::BEGUN_MATTER) {
@@ -376,8 +419,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                 Pixel& pixel = pixels[static_cast<std::size_t>(y - begin) * width + static_cast<std::size_t>(x)];
                 const dvec3 u = view.ray(x, y);
                 pixel.parts = ray_parts(field, clip, view.eye_index, u);
-                pixel.pair = begun(field, surfaces.materials, pixel.parts, view.eye_index, u);
-                pixel.closed = pixel.pair.front.hits > 0 && geometry::way_to(pixel.pair.front) <= pixel.parts[0].first;
+                pixel.pair = begun(field, surfaces, pixel.parts, view.eye_index, u);
+                pixel.closed = geometry::mean_chord(pixel.pair.front) >= solid &&
+                               geometry::way_to(pixel.pair.front) <= pixel.parts[0].first;
             }
         for (const std::uint32_t number : order) {
             const DrawnSplat& s = splats[number];
@@ -386,13 +430,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                     Pixel& pixel = pixels[static_cast<std::size_t>(y - begin) * width + static_cast<std::size_t>(x)];
                     if (pixel.closed) continue;
                     const dvec3 u = view.ray(x, y), from_eye = s.x - view.eye_index;
-                    // No later vote is about the first surface.
                     const double sheet = (thickness * s.sheet - reach) / glm::dot(view_z, u);
-                    if (sheet > geometry::way_to(pixel.pair.front) + kWindow) {
-                        pixel.closed = geometry::wins(pixel.pair.front);
-                        if (pixel.closed) continue;
-                        geometry::refuse_front(pixel.pair);
-                    }
+                    pixel.closed = geometry::is_decided(pixel.pair, sheet, solid);
+                    if (pixel.closed) continue;
                     if (s.traced && !pixel.pieces)
                         pixel.pieces = pieces_of(field, surfaces.bodies, pixel.parts, view.eye_index, u);
                     const double ahead = glm::dot(from_eye, u);
@@ -400,7 +440,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                         vote_on(s, pixel.pieces.value_or(std::vector<Piece>{}), ahead * u - from_eye, u, ahead);
                     const double way = ahead + vote.z;
                     const auto holds = [&](const RayPart& part) { return way >= part.first - 1e-3 && way <= part.last; };
-                    if (std::ranges::none_of(pixel.parts, holds)) vote.weight = 0;
+                    const auto part = std::ranges::find_if(pixel.parts, holds);
+                    if (part == pixel.parts.end()) vote.weight = 0;
+                    else vote.chord = std::min(vote.chord, part->last - way);
                     geometry::count_vote(pixel.pair, vote, way, {number, labels[number], s.record->reach.ambient},
                                          surfaces.materials.labels != nullptr);
                 }
@@ -410,11 +452,20 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                 Pixel& pixel = pixels[static_cast<std::size_t>(y - begin) * width + static_cast<std::size_t>(x)];
                 for (int k = 0; k < 2; ++k)
                     if (!geometry::wins(pixel.pair.front)) geometry::refuse_front(pixel.pair);
-                if (!(pixel.pair.front.hits > 0)) continue;
                 const dvec3 u = view.ray(x, y);
-                const Seen seen = seen_by(pixel.pair.front, view.eye_index + geometry::way_to(pixel.pair.front) * u);
-                const dvec3 value = payload_at(pixel.pair.front, seen, scene, view, u, payload);
-                frame[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = glm::dvec4(value, 1);
+                glm::dvec4 sum(0);
+                for (const geometry::SurfaceVotes& votes : {pixel.pair.front, pixel.pair.behind}) {
+                    if (!geometry::wins(votes)) continue;
+                    const Seen seen = seen_by(votes, view.eye_index + geometry::way_to(votes) * u);
+                    const double chord = geometry::mean_chord(votes);
+                    const double depth = chord < 0.999 * static_cast<double>(shader::SURFACE_CHORD)
+                                             ? scene.materials[seen.material].extinction * chord *
+                                                   glm::length(view.geometry.index_to_world_axes * u)
+                                             : kNowhere;
+                    const double share = (1 - sum.w) * (1 - std::exp(-depth));
+                    sum += share * glm::dvec4(payload_at(votes, seen, scene, view, u, payload), 1);
+                }
+                frame[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = sum;
             }
     });
     return frame;

@@ -5,6 +5,7 @@
 
 #include "engine/volume/filters.h"
 #include "footprints/face.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat {
 
@@ -129,6 +130,14 @@ Scene scene_of_bodies(const Scene& scene) {
         of_bodies.materials.push_back(scene.materials[body.first]);
     }
     return of_bodies;
+}
+
+double solid_chord(const Scene& scene, const VolumeGeometry& geometry) {
+    double least = std::numeric_limits<double>::infinity();
+    for (const Material& material : scene.materials)
+        if (material.extinction > 0) least = std::min(least, material.extinction);
+    const glm::dvec3 spacing = geometry.spacing();
+    return static_cast<double>(shader::SURFACE_SOLID) / (least * std::min({spacing.x, spacing.y, spacing.z}));
 }
 
 bool draws_missing_samples(const Scene& scene, const Volume& volume) {

@@ -68,6 +68,9 @@ std::vector<Body> bodies_of(const Scene& scene);
 /// The same scene with a body for each material; its materials have no colours of their own.
 Scene scene_of_bodies(const Scene& scene);
 
+/// Voxels of a scene's opaque matter along a ray behind which surface splats show nothing.
+double solid_chord(const Scene& scene, const VolumeGeometry& geometry);
+
 /// Whether matter would be drawn where samples contain no data, if they counted as the smallest value: with a transfer
 /// function, because values between them and others are drawn, too.
 bool draws_missing_samples(const Scene& scene, const Volume& volume);

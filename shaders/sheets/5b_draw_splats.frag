@@ -58,7 +58,7 @@ SelectedFootprint selected_footprint;
 
 // Traces this splat's face on the pixel's ray. False if the ray meets no matter.
 bool meets_traced(vec3 p, vec3 u, float ahead) {
-    Stretch along = kernel_stretch(p, ahead);
+    Stretch along = kernel_stretch(p, TRACE_REACH, ahead);
     bool some = true;
     dims = params.frame.dims;
     IF_ANY((number_material.y & IS_TRACED) != 0u && along.first < along.last) {

@@ -96,7 +96,9 @@ void main() {
         // to: no splat of another material may come between, and the occluder behind may not be in the same sheet.
         bool before = FACES && e.state >= EDGE_LOWER && (params.frame.translucent_mask >> (splat.edge >> 28) & 1u) == 1u;
         float apart = before ? params.frame.sheet_thickness / length(params.frame.view_z) : 0.0;
-        float depth = (SURFACES == 1u ? p.depth : p.view.z) + (beside - apart) * dot(params.frame.view_z, e.n);
+        float depth = p.view.z + (beside - apart) * dot(params.frame.view_z, e.n);
+        // No vote lies further in front of its splat's sheet than sheet_ways() says.
+        if (SURFACES == 1u) depth = p.depth - max(p.radius - votes_before(), 0.0) * length(params.frame.view_z);
         int sheet = max(int(floor(depth / params.frame.sheet_thickness)), 0) - params.frame.sheet_base;
         sheet = clamp(sheet, 0, most);
         UintsRef(params.frame.sheets).at[slot] = drawn ? uint(sheet) : SHEET_NONE;

@@ -12,6 +12,16 @@ bool is_matter_at(ivec3 q, uint material) {
     return all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims)) && material_at(clamp(q, ivec3(0), dims - 1)) == material;
 }
 
+// Whether matter ends on both sides of the voxel along two axes: no foot point lies on the far side of such a speck or rod.
+bool is_lone(ivec3 p, uint material) {
+    int axes = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        ivec3 o = ivec3(axis == 0, axis == 1, axis == 2);
+        axes += is_matter_at(p + o, material) || is_matter_at(p - o, material) ? 0 : 1;
+    }
+    return axes >= 2;
+}
+
 // The face of voxel p of the material, beside which matter ends (2_collect_splats).
 Face fit_surface(ivec3 p, uint material) {
     Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 0.0, 1e9, EDGE_LOWER), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE,
@@ -65,8 +75,9 @@ Face fit_surface(ivec3 p, uint material) {
         // Between samples of only two values the field says nothing.
         float moved = two_values ? 0.0 : moved_by_noise(check.steep, params.scene.noise);
         kept = (two_values || is_verified(check, params.scene.noise)) && wrong <= SURFACE_SIDE + moved && dot(own.foot, up) > -0.05;
-        kept = kept && real_foot;
-        if (real_foot) {
+        bool near = real_foot && !is_lone(p, material);
+        kept = kept && near;
+        if (near) {
             face.edge = Edge(up, dot(own.foot, up), max(error_of(check), wrong), state);
             face.h = own.h;
         } else {

@@ -100,6 +100,9 @@ SplatConic load_conic(uint entry) {
 // Reference point of the rays through an entry's splat: rays_beside().
 vec4 load_start(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START)); }
 
+// Reach of a surface splat's votes.
+float load_reach(uint entry) { return imageLoad(prepared, prepared_texel(prepared_slot(entry) + PREPARED_START + 1u)).w; }
+
 // Loads the data that draws an entry.
 void load_kernel(uint entry, inout PreparedSplat s) {
     uint at = prepared_slot(entry);

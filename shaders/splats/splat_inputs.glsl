@@ -6,7 +6,7 @@
 #include "shaders/footprints/selected_footprint.glsl"
 #include "shaders/footprints/kernel.glsl"
 
-// With surface splats, the first three numbers of FaceForm::cut are the foot point.
+// With surface splats, the first three numbers of FaceForm::cut are the foot point, and color_sigma.w is the reach.
 layout(constant_id = SPEC_LABELS) const uint LABELS = 0u;
 
 struct SplatInputs {
@@ -85,6 +85,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         }
         if (TRACED == 1u) s.number_material.y |= e.state >= EDGE_LOWER && is_traced_at(number, e, p.view.z) ? IS_TRACED : 0u;
         if (PAYLOAD == PAYLOAD_COLOR) s.color_sigma.rgb = material.rgb;
+        if (SURFACES == 1u) s.color_sigma.w = (s.number_material.y & IS_TRACED) != 0u ? trace_reach(e.d2) : SURFACE_REACH;
     }
     if (FOOTPRINTS == TABLE) s.selected = unpack_footprint(PairsRef(params.frame.footprints).at[number], params.frame.table_depth);
     if (CLIP_KEEP + CLIP_REMOVE > 0u) s.matter = material.rgb;

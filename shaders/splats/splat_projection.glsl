@@ -57,6 +57,9 @@ bool is_traced_at(uint number, Edge e, float depth) {
     return is_traced(number) && shows;
 }
 
+// How far in front of their sheets surface splats vote, voxels.
+float votes_before() { return SURFACE_REACH + (CREASES == 1u ? SURFACE_CREASE : 0.0); }
+
 // Voxels on both sides of a face carry translucent matter. So its kernels are not moved: the depth is 0.
 FaceTraits traits_of(uint number, Edge e, uint material) {
     uvec2 code = BendingsRef(params.frame.traits).at[number];
@@ -154,7 +157,7 @@ Projection place_splat(uint number, Splat splat, Edge e) {
             support = vec2(cut.shift, cut.radius);
         }
         // Only the ray will find where the surface cuts the kernel.
-        if (TRACED == 1u) support = is_traced_at(number, e, p.view.z) ? vec2(0.0, trace_reach()) : support;
+        if (TRACED == 1u) support = is_traced_at(number, e, p.view.z) ? vec2(0.0, trace_reach(e.d2)) : support;
     }
     p.centre = support.x * e.n;
     p.radius = support.y;

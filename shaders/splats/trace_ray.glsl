@@ -48,8 +48,8 @@ const Stretch WHOLE_RAY = Stretch(-TRACE_NOWHERE, TRACE_NOWHERE);
 
 // The part of a ray that a kernel may cover. p: the ray's point nearest to the voxel; `ahead`: its distance along u
 // from the eye.
-Stretch kernel_stretch(vec3 p, float ahead) {
-    float half_chord = sqrt(max(trace_reach() * trace_reach() - dot(p, p), 0.0));
+Stretch kernel_stretch(vec3 p, float reach, float ahead) {
+    float half_chord = sqrt(max(reach * reach - dot(p, p), 0.0));
     Stretch s = Stretch(max(ahead - half_chord, 0.0), ahead + half_chord);
     if (!(half_chord > 0.0 && s.last > 0.0)) s = NO_STRETCH;
     return s;

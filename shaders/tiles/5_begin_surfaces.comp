@@ -27,8 +27,13 @@ ivec3 dims;
 #include "shaders/footprints/face_record.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
-// The material at p, index space. The field itself is evaluated only where the samples around leave a doubt.
-uint material_in_field(vec3 p) {
+// The material at p, index space, and how far the ray along u stays in the body there. The field itself is evaluated only
+// where the samples around leave a doubt.
+struct BegunMatter {
+    uint material;
+    float chord;
+};
+BegunMatter begun_at(vec3 p, vec3 u) {
     ivec3 cell = clamp(ivec3(floor(p)), ivec3(0), dims - 1);
     float least = voxel(cell), most = least;
     for (int i = 1; i < 8; ++i) {
@@ -36,19 +41,31 @@ uint material_in_field(vec3 p) {
         least = min(least, corner);
         most = max(most, corner);
     }
-    float spread = most - least, value = least;
-    bool doubt = material_of(least - spread) != material_of(most + spread);
-    IF_ANY(doubt) value = doubt ? bspline(p) : least;
-    return material_of(value);
+    float spread = most - least;
+    BegunMatter begun = BegunMatter(material_of(least), SURFACE_CHORD);
+    bool doubt = material_of(least - 2.0 * spread) != material_of(most + 2.0 * spread);
+    IF_ANY(doubt) {
+        vec4 field = bspline_slope(ivec3(0), p);
+        vec2 body = body_around(field.w);
+        if (doubt) begun = BegunMatter(material_of(field.w), chord_in_body(field.w, dot(field.xyz, u), body.x, body.y));
+        // Matter soon behind counts, too.
+        bool thin = doubt && is_drawn(begun.material) && begun.chord < SURFACE_CHORD;
+        IF_ANY(thin) {
+            float chord = min(begun.chord, SURFACE_PROBE);
+            for (int i = 1; i < SURFACE_PROBES; ++i) chord += is_drawn(material_of(bspline(p + (float(i) + 0.5) * SURFACE_PROBE * u))) ? SURFACE_PROBE : 0.0;
+            if (thin) begun.chord = chord;
+        }
+    }
+    return begun;
 }
 
 void begin_part(inout SurfaceVotes votes, RayPart part, vec3 from, vec3 u) {
     bool enters = part.first < part.last && part.n != vec3(0.0);
     IF_ANY(enters) {
         vec3 at = from + part.first * u;
-        uint material = material_in_field(at);
-        enters = enters && is_drawn(material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
-        if (enters) begin_matter(votes, part.first, normalize(part.n), BEGUN_MATTER | material);
+        BegunMatter begun = begun_at(at, u);
+        enters = enters && is_drawn(begun.material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
+        if (enters) begin_matter(votes, part.first, min(begun.chord, part.last - part.first), normalize(part.n), BEGUN_MATTER | begun.material);
     }
 }
 

@@ -48,6 +48,7 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/splats/traced_ray.glsl"
 #include "shaders/tiles/traced_pixel.glsl"
+#include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
 vec3 corner_normal(FaceForm face) { return sign(face.corner) * normalize(cross(face.slope, face.crease.xyz)); }
@@ -59,8 +60,8 @@ SurfaceVote vote_of_crease(FaceForm face, vec3 p, vec3 u) {
 }
 
 // The vote of a splat that no quadric fits. `ahead`: distance along u from the eye to p.
-SurfaceVote vote_of_field(SeenRay ray, vec3 p, vec3 u, float ahead) {
-    float half_chord = sqrt(max(SURFACE_REACH * SURFACE_REACH - dot(p, p), 0.0));
+SurfaceVote vote_of_field(SeenRay ray, float reach, vec3 p, vec3 u, float ahead) {
+    float half_chord = sqrt(max(reach * reach - dot(p, p), 0.0));
     float low = max(ahead - half_chord, 0.0), high = ahead + half_chord;
     bool first = ray.one.x > low && ray.one.x < high;
     bool matter = min(ray.one.y, high) > max(ray.one.x, low) || min(ray.two.y, high) > max(ray.two.x, low);
@@ -68,7 +69,11 @@ SurfaceVote vote_of_field(SeenRay ray, vec3 p, vec3 u, float ahead) {
     matter = matter || ray.last < high - 1e-3;
     vec3 n = first ? ray.first_normal : ray.second_normal;
     n = (first ? ray.upper.x : ray.upper.y) ? -n : n;
-    return vote_of_traced(low, high, first ? ray.one.x : ray.two.x, matter, n, SURFACE_REACH, p, u, ahead);
+    vec2 piece = first ? ray.one : ray.two;
+    // Matter soon behind counts, too; all that was not traced counts as matter.
+    float until = piece.x + SURFACE_CHORD, chord = piece.y - piece.x + max(until - max(ray.last, piece.y), 0.0);
+    chord += first ? max(min(ray.two.y, until) - ray.two.x, 0.0) : 0.0;
+    return vote_of_traced(low, high, piece.x, chord, matter, n, reach, p, u, ahead);
 }
 
 void main() {
@@ -107,11 +112,9 @@ void main() {
             uvec4 words = marks_from(marks_at, base, length);
             while (has_marks(words) && open) {
                 uvec2 entry = load_entry(at + int(base + take_mark(words)));
-                // No later vote is about the first surface.
-                bool decided = way_to(pair.front) <= parts.before.first || is_decided(pair, ways, entry.y);
-                bool refused = decided && !wins(pair.front);
-                open = !decided || refused;
-                if (refused) refuse_front(pair);
+                // Nothing lies in front of matter that begins where the ray does.
+                bool begun = way_to(pair.front) <= parts.before.first && mean_chord(pair.front) >= params.frame.solid;
+                open = !begun && !is_decided(pair, way_before(ways, entry.y), params.frame.solid);
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
@@ -130,13 +133,18 @@ void main() {
                     }
                 }
                 if (TRACED == 1u) {
-                    if ((number_material.y & IS_TRACED) != 0u) vote = vote_of_field(traced, p, u, ahead);
+                    if ((number_material.y & IS_TRACED) != 0u) vote = vote_of_field(traced, h.inputs.color_sigma.w, p, u, ahead);
                 }
                 // Normals point to the lower values.
                 if ((number_material.y & (FACES_UPWARD | IS_TRACED)) == FACES_UPWARD) vote.n = -vote.n;
                 float where = ahead + vote.z;
                 bool counts = is_in_part(parts.before, where);
-                if (CLIP_REMOVE > 0u) counts = counts || is_in_part(parts.behind, where);
+                float ends = parts.before.last;
+                if (CLIP_REMOVE > 0u) {
+                    ends = counts ? ends : parts.behind.last;
+                    counts = counts || is_in_part(parts.behind, where);
+                }
+                vote.chord = min(vote.chord, ends - where);
                 vote.weight = open && counts ? vote.weight : 0.0;
                 Shown shown = Shown(number_material.x, kind_of(number_material.x), ambient_reach(number_material.x, false));
                 count_vote(pair, vote, where, shown, LABELS == 1u);

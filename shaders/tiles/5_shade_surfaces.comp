@@ -25,6 +25,7 @@ ivec3 dims;
 #include "shaders/light/shading.glsl"
 #include "shaders/common/labels.glsl"
 #include "shaders/tiles/tile_places.glsl"
+#include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
 // The material that a body shows where it ends.
@@ -33,22 +34,26 @@ uint shown_material(uint body, bool upper) {
     return (body < 8u ? ends.x : ends.y) >> 4u * (body & 7u) & 15u;
 }
 
-vec3 payload_of(SurfaceVotes votes, vec3 u) {
+// Payload and opacity.
+vec4 seen_of(SurfaceVotes votes, vec3 u) {
     float way = max(way_to(votes), 1e-4), depth = way * dot(params.frame.view_z, u);
     bool begun = votes.number >= BEGUN_MATTER;
     Splat splat = SplatsRef(params.frame.splats).at[begun ? 0u : votes.number];
     vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
-    if (PAYLOAD == PAYLOAD_NORMAL) return normal;
-    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0);
     vec3 along = params.frame.index_to_world * u;
     uint material = begun ? votes.number - BEGUN_MATTER : shown_material(splat.edge >> 28, (splat.edge >> 26 & 3u) == EDGE_UPPER);
+    float chord = mean_chord(votes), opacity = 1.0 - exp(-params.frame.materials[material].a * length(along) * chord);
+    opacity = chord < 0.999 * SURFACE_CHORD ? opacity : 1.0;
+    if (PAYLOAD == PAYLOAD_NORMAL) return vec4(normal, opacity);
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec4(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0, opacity);
     vec3 color = params.frame.materials[material].rgb;
     if (LABELS == 1u) {
         uint label = begun ? label_near(clamp(ivec3(round(params.frame.anchor + params.frame.eye + way * u)), ivec3(0), dims - 1))
                            : votes.kind;
         color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];
     }
-    return shade(Surface(color, material, votes.number, dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));
+    vec3 light = shade(Surface(color, material, votes.number, dot(normal, normal) > 0.0, normal, arrives_at(votes), way * along, -normalize(along), depth));
+    return vec4(light, opacity);
 }
 
 void main() {
@@ -69,16 +74,22 @@ void main() {
         SurfacePair pair = load_votes(pixel);
         IF_ANY(some && marks) {
             bool open = load_pixel(number).a == 0.0;
-            closes = some && marks && open && wins(pair.front) && is_decided(pair, sheet_ways(u), params.frame.sheets_drawn);
+            closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u), params.frame.sheets_drawn), params.frame.solid);
             if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
         }
         IF_ANY(some && !marks) {
             // Also surfaces that no later splat decided.
             for (int k = 0; k < 2; ++k)
                 if (!wins(pair.front)) refuse_front(pair);
-            bool there = pair.front.hits > 0.0;
             vec4 seen = vec4(0.0);
-            IF_ANY(there) seen = there ? vec4(payload_of(pair.front, u), 1.0) : vec4(0.0);
+            for (int k = 0; k < 2; ++k) {
+                bool there = wins(pair.front) && seen.a < 0.999;
+                IF_ANY(there) {
+                    vec4 next = seen_of(pair.front, u);
+                    if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
+                }
+                pair.front = pair.behind;
+            }
             if (some) store_pixel(number, seen);
         }
     }

@@ -67,16 +67,19 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
                 uvec2 entry = load_entry(at + int(base) + findLSB(bits));
                 bits &= bits - 1u;
                 vec4 start;
+                float reach = TRACE_REACH;
                 if (PREPARED == 1u) {
                     start = load_start(entry.x);
+                    if (SURFACES == 1u) reach = load_reach(entry.x);
                 } else {
                     PreparedSplat s = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
                     start = vec4(s.start, s.plane);
+                    if (SURFACES == 1u) reach = s.inputs.color_sigma.w;
                 }
                 vec3 offset = start.xyz + start.w * across;
                 float beyond = dot(offset, u), ahead = start.w * way_length - beyond;
                 vec3 p = offset - beyond * u;
-                Stretch own = kernel_stretch(p, ahead);
+                Stretch own = kernel_stretch(p, reach, ahead);
                 found = Stretch(min(found.first, own.first), max(found.last, own.last));
             }
         }

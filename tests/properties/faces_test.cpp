@@ -66,9 +66,7 @@ TEST_P(NearerToTheTruth, ThanTheRayCaster) {
     EXPECT_GE(faces - rays, GetParam().over_rays);
     // Where a face does not agree with the field, rays search the field: never much worse than cubic rays.
     if (!draws_surfaces(scene.shot.settings, scene.shot.scene, *scene.shot.volume)) return;
-    // Specks of a voxel have soft rims at 8 per voxel; surfaces have none.
-    const double allowed = GetParam().scene == std::string("specks") ? 1.4 : 0.3;
-    EXPECT_GE(faces - cubic, -allowed);
+    EXPECT_GE(faces - cubic, -0.3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, NearerToTheTruth,

@@ -22,7 +22,9 @@ using glm::length;
 using glm::max;
 using glm::min;
 using glm::sqrt;
+using shader::BEGUN_MATTER;
 using shader::SURFACE_CERTAIN;
+using shader::SURFACE_CHORD;
 using shader::SURFACE_WINDOW;
 
 inline vec3 bent(const Bending& h, const vec3& v) {
@@ -250,7 +252,7 @@ TEST(SurfaceVotes, ShowTheLabelOfMostWeightAndTheMeanLight) {
 /// Nothing outvotes matter that begins at a plane; a surface in front of it is seen all the same.
 TEST(SurfaceVotes, BeginMatterCertainly) {
     SurfacePair pair = no_surfaces();
-    begin_matter(pair.front, 7, {0, 1, 0}, 5);
+    begin_matter(pair.front, 7, 2, {0, 1, 0}, 5);
     SurfaceVote vote;
     vote.weight = 1;
     vote.n = {1, 0, 0};
@@ -263,6 +265,48 @@ TEST(SurfaceVotes, BeginMatterCertainly) {
     count_vote(pair, vote, 5, {2, 0, 1}, false);
     EXPECT_EQ(pair.front.number, 2U);
     EXPECT_EQ(pair.behind.number, 5U);
+}
+
+/// A pixel stays open until what lies behind thin matter is known.
+TEST(SurfaceVotes, AreOpenBehindThinMatter) {
+    SurfacePair pair = no_surfaces();
+    SurfaceVote hit;
+    hit.weight = 1;
+    hit.n = {0, 0, -1};
+    hit.enters = true;
+    hit.chord = 0.25;
+    count_vote(pair, hit, 5, {1, 0, 1}, false);
+    EXPECT_FALSE(is_decided(pair, 5.5, 1)) << "later votes may be about it";
+    EXPECT_FALSE(is_decided(pair, 20, 1));
+    EXPECT_TRUE(is_decided(pair, 20, 0.2)) << "solid";
+    SurfaceVote miss = hit;
+    miss.enters = false;
+    count_vote(pair, miss, 5.1, {2, 0, 1}, false);
+    hit.weight = 0.5;
+    count_vote(pair, hit, 5.1, {3, 0, 1}, false);
+    EXPECT_NEAR(mean_chord(pair.front), 0.25 * 1.5 / 2.5, 1e-12) << "0 where it passes by";
+    hit.chord = 2;
+    count_vote(pair, hit, 9, {4, 0, 1}, false);
+    EXPECT_FALSE(is_decided(pair, 9.5, 1));
+    EXPECT_TRUE(is_decided(pair, 10, 1));
+    // Votes against the surface behind leave its place to the next.
+    count_vote(pair, miss, 9, {5, 0, 1}, false);
+    EXPECT_FALSE(is_decided(pair, 12, 1));
+    EXPECT_EQ(way_to(pair.behind), NO_SURFACE);
+    EXPECT_NEAR(way_to(pair.front), 5 + 0.1 / 3, 1e-12);
+}
+
+/// The chord of a ray through a ball, nearly grazing it.
+TEST(SurfaceVotes, KnowHowLongRaysStayInABall) {
+    for (const double depth : {0.01, 0.05, 0.1}) {
+        const double radius = 5, aside = radius - depth;
+        const SurfaceSplat splat = ball({0, 0.3 - radius, 0}, radius, 3);
+        const SurfaceVote vote = vote_of(splat, {0, 0.3 - radius + aside, 0}, {1, 0, 0});
+        ASSERT_TRUE(vote.enters);
+        EXPECT_NEAR(vote.chord, std::min(2 * std::sqrt(radius * radius - aside * aside), 2.0), 0.02 * vote.chord);
+    }
+    // Head on nothing is known of the other side.
+    EXPECT_EQ(vote_of(ball({0, 0, 4.8}, 5, 3), {0, 0, 0}, {0, 0, 1}).chord, 2);
 }
 
 TEST(SurfaceVotes, InFloatEqualThoseInDouble) {
