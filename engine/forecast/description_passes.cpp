@@ -150,7 +150,7 @@ class Passes {
         const bool warped = plan.variant.footprints != FootprintMode::Isotropic;
         const double drawing = kRates.draw_entry * entries +
                                (warped ? kRates.warped_fragment : kRates.fragment) * fragments(request, plan);
-        if (plan.variant.surfaces)
+        if (plan.variant.begins)
             add(name, "5_begin_surfaces", kRates.resolve_pixel * pixels,
                 {variant("5_begin_surfaces.comp", passes::begin_constants(plan.variant))});
         add(name, "3_select_footprints", kRates.select_splat * splats,

@@ -77,7 +77,7 @@ std::vector<Effect> settings_effects() {
                                 material.extinction = 0;
                             r.scene.materials.back().extinction = 8 / std::min({spacing.x, spacing.y, spacing.z});
                         },
-                    .passes = {"5_begin_surfaces", "5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
+                    .passes = {"5_draw_surfaces", "5_shade_surfaces", "5_trace_faces"},
                     .resources = {"traced rays", "traced entries"},
                     .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
                                 "splat traits", "tiles of splats", "unfinished sheets"},

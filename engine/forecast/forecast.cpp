@@ -189,6 +189,7 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     out.collection = collection;
     out.splats = splats;
     out.splats.extent.surfaces = collection.surfaces;
+    out.splats.extent.border = collection.surfaces && has_matter_at_border(*request.volume, collection.params);
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         out.draws.push_back(
             {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,

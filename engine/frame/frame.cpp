@@ -54,12 +54,14 @@ void sort_splats(gpu::Commands& commands, const FramePlan& plan, const TargetRes
     if (!continues)
         for (const gpu::Buffer* zeroed : {&targets.tile_closed, &targets.output})
             commands.fill(*zeroed, 0);
+    // A pixel without votes: negative words in its first texel (surface_pixel.glsl).
+    if (!continues && plan.variant.surfaces && !plan.variant.begins)
+        commands.fill(targets.tile_sheets, std::bit_cast<std::uint32_t>(-1.0F), 0, picture_bytes(plan));
     if (!continues && targets.outlines) commands.fill(targets.outlines, shader::NO_OUTLINE);
     if (plan.refined) commands.fill(targets.tile_finest, std::bit_cast<std::uint32_t>(1e30F));
     commands.barrier();
-    if (!continues && plan.variant.surfaces)
-        commands.span("5_begin_surfaces",
-                      [&] { passes::begin_surfaces(commands, plan.variant, plan.params.size); });
+    if (!continues && plan.variant.begins)
+        commands.span("5_begin_surfaces", [&] { passes::begin_surfaces(commands, plan.variant, plan.params.size); });
     commands.span("3_select_footprints",
                   [&] { passes::select_footprints(commands, plan.params.slot_count, plan.variant); });
     commands.span("4_sort_sheets",

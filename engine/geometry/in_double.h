@@ -31,6 +31,7 @@ constexpr Real SURFACE_CHORD = static_cast<Real>(shader::SURFACE_CHORD);
 constexpr Real SURFACE_ERROR = static_cast<Real>(shader::SURFACE_ERROR);
 constexpr Real SURFACE_NOISE = static_cast<Real>(shader::SURFACE_NOISE);
 constexpr Real SURFACE_RING = static_cast<Real>(shader::SURFACE_RING);
+constexpr Real SURFACE_SURE = static_cast<Real>(shader::SURFACE_SURE);
 constexpr Real SURFACE_TURN = static_cast<Real>(shader::SURFACE_TURN);
 constexpr Real SURFACE_WINDOW = static_cast<Real>(shader::SURFACE_WINDOW);
 

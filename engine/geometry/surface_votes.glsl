@@ -104,6 +104,18 @@ SurfaceVote vote_of_traced(Real low, Real high, Real enters, Real chord, bool ma
     return vote;
 }
 
+// The vote of such a splat beyond the matter that the ray entered at `enters` and stays in. If no surface is seen so far,
+// faces let the ray pass wrongly.
+SurfaceVote vote_of_deep(Real enters, vec3 n, Real ahead, bool seen) {
+    SurfaceVote vote;
+    vote.enters = true;
+    vote.z = enters - ahead;
+    vote.n = n;
+    vote.chord = SURFACE_CHORD;
+    vote.weight = seen ? 0.0 : SURFACE_SURE;
+    return vote;
+}
+
 // What a surface shows where a splat votes that the ray enters it.
 struct Shown {
     uint number;   // of the splat
@@ -146,13 +158,16 @@ Real way_to(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.way / votes.hi
 // Mean share of ambient light that arrives where the ray enters.
 Real arrives_at(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.arrives / votes.hits : 1.0; }
 
-// How near votes about the same surface are. Where matter begins is certain.
+// Largest distance of votes about the same surface; 0 where matter begins, since that is certain.
 Real window_of(SurfaceVotes votes) { return votes.number >= BEGUN_MATTER ? Real(0.0) : SURFACE_WINDOW; }
 
 // Mean length of the ray in the matter; it is 0 where it passes by.
 Real mean_chord(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.chord / (votes.hits + votes.misses) : 0.0; }
 
 bool wins(SurfaceVotes votes) { return votes.hits > votes.misses; }
+
+// Whether a surface at most SURFACE_WINDOW behind `way` is seen so far.
+bool is_seen_before(SurfaceVotes votes, Real way) { return wins(votes) && way_to(votes) < way + SURFACE_WINDOW; }
 
 // The first two surfaces on a ray, in this order, and the latest votes against one.
 struct SurfacePair {

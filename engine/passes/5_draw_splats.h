@@ -27,11 +27,12 @@ struct DrawVariant {
     bool lit_edges = false;           ///< splats without an edge are shaded as if without a normal
     bool silhouette = false;
     bool fog = false;
-    ClipCount clip{};        ///< kernels are cut at clip planes
-    bool opaque = false;     ///< only the longer of a ray's two pieces in a cut kernel counts
-    bool creases = false;    ///< kernels are also cut at creases: planes beside faces
-    bool surfaces = false;   ///< surface splats, drawn by 5_draw_surfaces
+    ClipCount clip{};             ///< kernels are cut at clip planes
+    bool opaque = false;          ///< only the longer of a ray's two pieces in a cut kernel counts
+    bool creases = false;         ///< kernels are also cut at creases: planes beside faces
+    bool surfaces = false;        ///< surface splats, drawn by 5_draw_surfaces
     std::uint32_t iso_count = 1;  ///< number of iso-values; only with surface splats
+    bool begins = false;     ///< with surface splats: rays may enter the volume, or what clip planes keep, in matter
     bool traced = false;     ///< rays find the faces of flagged splats, whose quadric does not fit
     bool antialias = false;  ///< footprints are at least a pixel wide
     bool outlines = false;   ///< stores where outlines cross each pixel

@@ -44,12 +44,13 @@ void trace_faces(gpu::Commands& commands, const DrawVariant& variant, TileDraw h
 gpu::Specialization begin_constants(const DrawVariant& variant) {
     return {{shader::SPEC_ISO_COUNT, variant.iso_count},
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
-            {shader::SPEC_CLIP_REMOVE, variant.clip.remove}};
+            {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+            {shader::SPEC_GROUP, kBeginGroup}};
 }
 
 void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size) {
     const std::uint64_t pixels = static_cast<std::uint64_t>(size.x) * static_cast<std::uint64_t>(size.y);
-    commands.dispatch("5_begin_surfaces.comp", begin_constants(variant), 0, commands.groups_for(pixels, 64));
+    commands.dispatch("5_begin_surfaces.comp", begin_constants(variant), 0, commands.groups_for(pixels, kBeginGroup));
     commands.barrier();
 }
 

@@ -47,6 +47,7 @@ void draw_tiles(gpu::Commands& commands, const DrawVariant& variant, TileDraw ho
 /// planes keep. Reads the volume and the field's coefficients.
 void begin_surfaces(gpu::Commands& commands, const DrawVariant& variant, const glm::ivec2& size);
 gpu::Specialization begin_constants(const DrawVariant& variant);
+inline constexpr std::uint32_t kBeginGroup = 256;  ///< invocations per workgroup
 
 /// The same for surface splats: counts their votes in `tile_sheets`, and marks decided pixels as opaque.
 void draw_surfaces(gpu::Commands& commands, const DrawVariant& variant, TileDraw how, const TileRound& round);

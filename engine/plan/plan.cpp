@@ -248,6 +248,31 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     return !stale.lists && !stale.transfer;
 }
 
+bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params) {
+    const glm::ivec3 last = volume.geometry.dims - 1;
+    const auto value = [&](const glm::ivec3& i) { return scaled_sample(volume, value_at(volume, i)); };
+    const auto is_matter = [&](float f) {
+        const auto above = std::upper_bound(std::begin(params.iso), std::begin(params.iso) + params.iso_count, f);
+        return (params.visible_mask >> (above - std::begin(params.iso)) & 1U) != 0;
+    };
+    const auto in_layer = [&](int axis, bool high) {
+        const int across = (axis + 1) % 3, down = (axis + 2) % 3;
+        glm::ivec3 i(0);
+        i[axis] = high ? last[axis] : 0;
+        for (i[across] = 0; i[across] <= last[across]; ++i[across])
+            for (i[down] = 0; i[down] <= last[down]; ++i[down]) {
+                glm::ivec3 before = i;
+                before[axis] = std::clamp(high ? i[axis] - 1 : i[axis] + 1, 0, last[axis]);
+                const float here = value(i), beyond = 2 * here - value(before);
+                if (is_matter(here) || is_matter(beyond)) return true;
+            }
+        return false;
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        if (in_layer(axis, false) || in_layer(axis, true)) return true;
+    return false;
+}
+
 CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const Settings& settings, bool keep_buried) {
     CollectionPlan plan;
     // Optical depth, and the view from inside matter, need all voxels.
@@ -316,7 +341,7 @@ double sheet_thickness(const VolumeGeometry& geometry, const Camera& camera, con
 
 namespace {
 
-/// Which values of the field are matter, and of which material.
+/// Fills in the materials by value.
 void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
     auto& p = plan.params;
     plan.variant.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
@@ -389,6 +414,12 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.narrow = draws_opaque_faces(settings, scene, geometry);
     p.support = static_cast<float>(uncut_kernel(settings, scene, geometry).radius);
     if (plan.variant.surfaces) plan_matter(volume, scene, plan);
+    const glm::dvec3 eye = geometry.to_index(view.eye);
+    const bool inside = glm::all(glm::greaterThan(eye, glm::dvec3(-0.5))) &&
+                        glm::all(glm::lessThan(eye, glm::dvec3(geometry.dims) - 0.5));
+    plan.variant.begins = plan.variant.surfaces && ((!inside && splats.border) || plan.variant.clip.any());
+    if (plan.variant.surfaces && splats.count >= shader::NUMBERED_SPLATS - shader::MAX_MATERIALS)
+        fail("{} surface splats are too many, expected less than 2^28: choose --opaque kernels", splats.count);
     const PaperShape paper;
     p.footprint = {.paper_inset = static_cast<float>(paper.inset),
                    .paper_rise = static_cast<float>(paper.rise),

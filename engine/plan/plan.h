@@ -65,6 +65,10 @@ StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wan
 /// `keep_buried`: buried voxels stay (the output is optical depth, or the eye is inside opaque matter).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
+/// Whether matter of the visible materials may lie at the volume's border, half a voxel beyond the outermost samples,
+/// to which the field continues linearly.
+bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params);
+
 /// Whether the voxel nearest to the eye is of an opaque material and not clipped. Buried voxels are then visible.
 bool eye_in_opaque(const Volume& volume, const Scene& scene, const Camera& camera);
 
@@ -104,6 +108,7 @@ struct SplatExtent {
     bool creases = true;         ///< some may have a crease: a plane beside their face
     bool traced = true;          ///< some may have a face that rays must find
     bool surfaces = false;       ///< they are surface splats
+    bool border = true;          ///< matter may lie at the volume's border
 };
 
 /// Throws Error if the view has more sheets than the sort allows. `farthest_reach`: upper bound of the kernels' reach,

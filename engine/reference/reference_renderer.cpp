@@ -119,8 +119,8 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     const bool surfaces = surface_scene_ && output != Output::Tau && !starts_in_opaque(camera.eye);
     const auto drawn = [&] {
         if (!surfaces) return draw(records, view, output);
-        const std::vector<glm::dvec4> frame = draw_surfaces(lit_surfaces(output), field(), *surface_scene_, scene_, view,
-                                                            settings_, payload_for(output));
+        const std::vector<glm::dvec4> frame =
+            draw_surfaces(lit_surfaces(output), field(), *surface_scene_, scene_, view, settings_, payload_for(output));
         return resolve(frame, width, height, scene_, output);
     };
     if (samples == 1) return drawn();

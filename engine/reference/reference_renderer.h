@@ -2,9 +2,9 @@
 #pragma once
 
 #include "engine/image/image.h"
-#include "engine/reference/surfaces.h"
 #include "engine/reference/4_sort_sheets.h"
 #include "engine/reference/5_draw_splats.h"
+#include "engine/reference/surfaces.h"
 
 namespace edgesplat::reference {
 

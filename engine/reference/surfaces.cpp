@@ -43,16 +43,16 @@ bool ends_beside(const Field& field, const ScaledScene& scene, const ivec3& i, i
     return false;
 }
 
-/// Whether matter ends on both sides of voxel i along two axes: no foot point lies on the far side of such a speck or
-/// rod.
-bool is_lone(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
+/// The number of axes along which matter ends on both sides of voxel i: 1 in a sheet, 2 in a rod, 3 in a speck. No foot
+/// point lies on its far side.
+int thin_axes(const Field& field, const ScaledScene& scene, const ivec3& i, int m) {
     int axes = 0;
     for (int axis = 0; axis < 3; ++axis) {
         ivec3 o(0);
         o[axis] = 1;
         axes += is_matter(field, scene, i + o, m) || is_matter(field, scene, i - o, m) ? 0 : 1;
     }
-    return axes >= 2;
+    return axes;
 }
 
 geometry::SurfaceCheck checked(const Field& field, const ivec3& i, const geometry::SurfaceSplat& face, const dvec3& n,
@@ -173,9 +173,10 @@ DrawnSplat drawn_splat(const SplatRecord& record, const Field& field, const View
     return s;
 }
 
-/// The vote of a splat on the ray with direction u; `ahead`: distance from the eye to its point p, nearest to the
-/// voxel.
-geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, const dvec3& p, const dvec3& u, double ahead) {
+/// The vote of a splat on the ray with direction u, after `front` is counted; `ahead`: distance from the eye to its
+/// point p, nearest to the voxel.
+geometry::SurfaceVote vote_on(const geometry::SurfaceVotes& front, const DrawnSplat& s, std::span<const Piece> ray,
+                              const dvec3& p, const dvec3& u, double ahead) {
     const VoxelEdge& edge = s.record->edge;
     if (!s.traced) {
         geometry::SurfaceVote vote =
@@ -187,6 +188,11 @@ geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, c
     }
     const double half_chord = std::sqrt(std::max(s.reach * s.reach - glm::dot(p, p), 0.0));
     const double low = std::max(ahead - half_chord, 0.0), high = ahead + half_chord;
+    // Rays are not traced further than this in matter.
+    for (const Piece& piece : ray)
+        if (const double deep = piece.begin + static_cast<double>(shader::SURFACE_DEEP);
+            half_chord > 0 && piece.entered && piece.end > deep && deep < low)
+            return geometry::vote_of_deep(piece.begin, piece.n, ahead, geometry::is_seen_before(front, piece.begin));
     double enters = kNowhere, chord = 0;
     dvec3 n(0);
     bool matter = false;
@@ -199,7 +205,8 @@ geometry::SurfaceVote vote_on(const DrawnSplat& s, std::span<const Piece> ray, c
     // Matter soon behind counts, too.
     for (const Piece& piece : ray)
         if (piece.begin >= enters)
-            chord += std::max(std::min(piece.end, enters + static_cast<double>(shader::SURFACE_CHORD)) - piece.begin, 0.0);
+            chord +=
+                std::max(std::min(piece.end, enters + static_cast<double>(shader::SURFACE_CHORD)) - piece.begin, 0.0);
     return geometry::vote_of_traced(low, high, enters, chord, matter, n, s.reach, p, u, ahead);
 }
 
@@ -311,7 +318,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     const Foot foot = foot_of(q, -middle, dvec3(0));
     const double steep = glm::length(foot.slope);
     const bool real = steep >= 0.3 && std::abs(q.at(foot.at)) < 0.05 &&
-                      glm::length(foot.at) < static_cast<double>(shader::SURFACE_FIT) && !is_lone(field, scene, i, m);
+                      glm::length(foot.at) < static_cast<double>(shader::SURFACE_FIT);
     face.upper = nearest.upper;
     face.n = real ? foot.slope / steep : nearest.n;
     face.D = glm::dot(real ? middle + foot.at : middle, face.n);
@@ -327,9 +334,12 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
             const ivec3 o = ivec3(k % 3, k / 3 % 3, k / 9) - 1;
             wrong = std::max(wrong, geometry::contradiction(own, dvec3(o), is_matter(field, scene, i + o, m)));
         }
-        const double moved = two_values ? 0 : geometry::moved_by_noise(check.steep, noise);
-        kept = (two_values || geometry::is_verified(check, noise)) && wrong <= kSide + moved && face.D > -0.05;
-        face.D2 = std::max(geometry::error_of(check), wrong);
+        const bool agrees = geometry::is_verified(check, noise) && face.D > -0.05 &&
+                            wrong <= kSide + geometry::moved_by_noise(check.steep, noise);
+        const int thin = thin_axes(field, scene, i, m);
+        kept = thin == 0 && (two_values || agrees);
+        const double least = thin == 1 ? static_cast<double>(shader::SURFACE_SHEET) : 0;
+        face.D2 = thin < 2 ? std::max({geometry::error_of(check), wrong, least}) : kNowhere;
     }
     if (two_values) {
         VoxelEdge planes = fit_face(field, scene, surfels, i, m);
@@ -437,12 +447,26 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                         pixel.pieces = pieces_of(field, surfaces.bodies, pixel.parts, view.eye_index, u);
                     const double ahead = glm::dot(from_eye, u);
                     geometry::SurfaceVote vote =
-                        vote_on(s, pixel.pieces.value_or(std::vector<Piece>{}), ahead * u - from_eye, u, ahead);
-                    const double way = ahead + vote.z;
-                    const auto holds = [&](const RayPart& part) { return way >= part.first - 1e-3 && way <= part.last; };
+                        vote_on(pixel.pair.front, s, pixel.pieces.value_or(std::vector<Piece>{}), ahead * u - from_eye,
+                                u, ahead);
+                    double way = ahead + vote.z;
+                    for (const RayPart& part : pixel.parts) {
+                        // A face enters the matter just before the part, within its error.
+                        const double early = part.first - way;
+                        if (!vote.enters || part.n == dvec3(0) || early <= 0 || early >= 1 ||
+                            early * std::abs(glm::dot(vote.n, u)) >= kSide * glm::length(vote.n))
+                            continue;
+                        way = part.first;
+                        vote.n = part.n;
+                    }
+                    const auto holds = [&](const RayPart& part) {
+                        return way >= part.first - 1e-3 && way <= part.last;
+                    };
                     const auto part = std::ranges::find_if(pixel.parts, holds);
-                    if (part == pixel.parts.end()) vote.weight = 0;
-                    else vote.chord = std::min(vote.chord, part->last - way);
+                    if (part == pixel.parts.end())
+                        vote.weight = 0;
+                    else
+                        vote.chord = std::min(vote.chord, part->last - way);
                     geometry::count_vote(pixel.pair, vote, way, {number, labels[number], s.record->reach.ambient},
                                          surfaces.materials.labels != nullptr);
                 }

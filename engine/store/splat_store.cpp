@@ -92,6 +92,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole, stale);
+    lists_.border = wanted.surfaces && has_matter_at_border(*volume.volume(), wanted.params);
     auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
     collected_ = wanted;
@@ -105,6 +106,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     lists_.occlusion = {};
     lists_.shadows = {};
     const CollectionBlock whole = whole_block(plan.dims);
+    lists_.border = plan.surfaces && has_matter_at_border(*volume.volume(), plan.params);
     clear_counts();
     bind(volume);
     place_block(plan, whole);

@@ -1,4 +1,4 @@
-// Which values of the field are matter, and of which material. Include after the uniform block `params.frame`.
+// The material of a value of the field. Include after the uniform block `params.frame`.
 #ifndef EDGESPLAT_MATTER_GLSL
 #define EDGESPLAT_MATTER_GLSL
 layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;

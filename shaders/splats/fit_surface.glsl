@@ -12,14 +12,15 @@ bool is_matter_at(ivec3 q, uint material) {
     return all(greaterThanEqual(q, ivec3(0))) && all(lessThan(q, dims)) && material_at(clamp(q, ivec3(0), dims - 1)) == material;
 }
 
-// Whether matter ends on both sides of the voxel along two axes: no foot point lies on the far side of such a speck or rod.
-bool is_lone(ivec3 p, uint material) {
+// The number of axes along which matter ends on both sides of the voxel: 1 in a sheet, 2 in a rod, 3 in a speck. No foot
+// point lies on its far side.
+int thin_axes(ivec3 p, uint material) {
     int axes = 0;
     for (int axis = 0; axis < 3; ++axis) {
         ivec3 o = ivec3(axis == 0, axis == 1, axis == 2);
         axes += is_matter_at(p + o, material) || is_matter_at(p - o, material) ? 0 : 1;
     }
-    return axes >= 2;
+    return axes;
 }
 
 // The face of voxel p of the material, beside which matter ends (2_collect_splats).
@@ -72,17 +73,14 @@ Face fit_surface(ivec3 p, uint material) {
             ivec3 o = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
             wrong = max(wrong, contradiction(own, vec3(o), is_matter_at(p + o, material)));
         }
+        int thin = thin_axes(p, material);
+        bool agrees = is_verified(check, params.scene.noise) && dot(own.foot, up) > -0.05 &&
+                      wrong <= SURFACE_SIDE + moved_by_noise(check.steep, params.scene.noise);
         // Between samples of only two values the field says nothing.
-        float moved = two_values ? 0.0 : moved_by_noise(check.steep, params.scene.noise);
-        kept = (two_values || is_verified(check, params.scene.noise)) && wrong <= SURFACE_SIDE + moved && dot(own.foot, up) > -0.05;
-        bool near = real_foot && !is_lone(p, material);
-        kept = kept && near;
-        if (near) {
-            face.edge = Edge(up, dot(own.foot, up), max(error_of(check), wrong), state);
-            face.h = own.h;
-        } else {
-            face.edge = Edge(n, dot(middle, n), 1e9, state);
-        }
+        kept = real_foot && thin == 0 && (two_values || agrees);
+        float error = max(max(error_of(check), wrong), thin == 1 ? SURFACE_SHEET : 0.0);
+        if (real_foot) face.h = own.h;
+        face.edge = Edge(real_foot ? up : n, dot(real_foot ? own.foot : middle, real_foot ? up : n), real_foot && thin < 2 ? error : 1e9, state);
         // Planes go further than the field, which rounds sharp edges.
         if (two_values) {
             Face planes = fit_face(p, material);

@@ -6,7 +6,7 @@
 #include "shaders/shared/bindings.h"
 #include "shaders/shared/frame_params.h"
 
-layout(local_size_x = 64) in;
+layout(local_size_x_id = SPEC_GROUP) in;
 #include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
@@ -80,5 +80,9 @@ void main() {
     SurfacePair pair = no_surfaces();
     begin_part(pair.front, parts.before, from, u);
     if (CLIP_REMOVE > 0u) begin_part(pair.front, pair.front.hits > 0.0 ? RayPart(0.0, 0.0, vec3(0.0)) : parts.behind, from, u);
-    store_votes(pixel, pair);
+    bool begun = pair.front.hits > 0.0;
+    if (!begun) forget_votes(pixel);
+    IF_ANY(begun) {
+        if (begun) store_votes(pixel, pair, true);
+    }
 }

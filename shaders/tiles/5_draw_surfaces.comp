@@ -60,12 +60,19 @@ SurfaceVote vote_of_crease(FaceForm face, vec3 p, vec3 u) {
 }
 
 // The vote of a splat that no quadric fits. `ahead`: distance along u from the eye to p.
-SurfaceVote vote_of_field(SeenRay ray, float reach, vec3 p, vec3 u, float ahead) {
+SurfaceVote vote_of_field(SurfaceVotes front, SeenRay ray, float reach, vec3 p, vec3 u, float ahead) {
     float half_chord = sqrt(max(reach * reach - dot(p, p), 0.0));
     float low = max(ahead - half_chord, 0.0), high = ahead + half_chord;
     bool first = ray.one.x > low && ray.one.x < high;
     bool matter = min(ray.one.y, high) > max(ray.one.x, low) || min(ray.two.y, high) > max(ray.two.x, low);
-    // Beyond what was traced nothing is known.
+    // The ray was not traced further than SURFACE_DEEP in matter.
+    bool second_deep = ray.two.x < TRACE_NOWHERE && ray.two.y >= TRACE_NOWHERE;
+    bool deep = half_chord > 0.0 && ray.last < low && (second_deep || (abs(ray.one.x) < TRACE_NOWHERE && ray.one.y >= TRACE_NOWHERE));
+    float entered = second_deep ? ray.two.x : ray.one.x;
+    vec3 n_deep = second_deep ? ray.second_normal : ray.first_normal;
+    n_deep = (second_deep ? ray.upper.y : ray.upper.x) ? -n_deep : n_deep;
+    if (deep) return vote_of_deep(entered, n_deep, ahead, is_seen_before(front, entered));
+    // Beyond what else was traced nothing is known.
     matter = matter || ray.last < high - 1e-3;
     vec3 n = first ? ray.first_normal : ray.second_normal;
     n = (first ? ray.upper.x : ray.upper.y) ? -n : n;
@@ -133,11 +140,19 @@ void main() {
                     }
                 }
                 if (TRACED == 1u) {
-                    if ((number_material.y & IS_TRACED) != 0u) vote = vote_of_field(traced, h.inputs.color_sigma.w, p, u, ahead);
+                    if ((number_material.y & IS_TRACED) != 0u) vote = vote_of_field(pair.front, traced, h.inputs.color_sigma.w, p, u, ahead);
                 }
                 // Normals point to the lower values.
                 if ((number_material.y & (FACES_UPWARD | IS_TRACED)) == FACES_UPWARD) vote.n = -vote.n;
                 float where = ahead + vote.z;
+                bool early = vote.enters && enters_just_before(parts.before, where, vote.n, u);
+                where = early ? parts.before.first : where;
+                vote.n = early ? parts.before.n : vote.n;
+                if (CLIP_REMOVE > 0u) {
+                    bool late = vote.enters && enters_just_before(parts.behind, where, vote.n, u);
+                    where = late ? parts.behind.first : where;
+                    vote.n = late ? parts.behind.n : vote.n;
+                }
                 bool counts = is_in_part(parts.before, where);
                 float ends = parts.before.last;
                 if (CLIP_REMOVE > 0u) {
@@ -146,13 +161,14 @@ void main() {
                 }
                 vote.chord = min(vote.chord, ends - where);
                 vote.weight = open && counts ? vote.weight : 0.0;
-                Shown shown = Shown(number_material.x, kind_of(number_material.x), ambient_reach(number_material.x, false));
+                uint numbered = number_material.x | number_material.y << 28;
+                Shown shown = Shown(numbered, kind_of(numbered), ambient_reach(number_material.x, false));
                 count_vote(pair, vote, where, shown, LABELS == 1u);
             }
         }
         IF_ANY(was_open) {
-            store_votes(held, pair);
-            if (!open) store_pixel(held.y * size.x + held.x, vec4(0.0, 0.0, 0.0, 1.0));
+            if (was_open) store_votes(held, pair, open || mean_chord(pair.front) < params.frame.solid);
+            if (was_open && !open) store_pixel(held.y * size.x + held.x, vec4(0.0, 0.0, 0.0, 1.0));
         }
     }
     uint closing = subgroupAdd(was_open && !open ? 1u : 0u);

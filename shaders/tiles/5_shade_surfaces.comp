@@ -28,24 +28,20 @@ ivec3 dims;
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
-// The material that a body shows where it ends.
-uint shown_material(uint body, bool upper) {
-    uvec2 ends = upper ? params.frame.body_upper : params.frame.body_lower;
-    return (body < 8u ? ends.x : ends.y) >> 4u * (body & 7u) & 15u;
-}
-
 // Payload and opacity.
 vec4 seen_of(SurfaceVotes votes, vec3 u) {
     float way = max(way_to(votes), 1e-4), depth = way * dot(params.frame.view_z, u);
     bool begun = votes.number >= BEGUN_MATTER;
-    Splat splat = SplatsRef(params.frame.splats).at[begun ? 0u : votes.number];
     vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
     vec3 along = params.frame.index_to_world * u;
-    uint material = begun ? votes.number - BEGUN_MATTER : shown_material(splat.edge >> 28, (splat.edge >> 26 & 3u) == EDGE_UPPER);
+    uint material = begun ? votes.number - BEGUN_MATTER : votes.number >> 28;
     float chord = mean_chord(votes), opacity = 1.0 - exp(-params.frame.materials[material].a * length(along) * chord);
     opacity = chord < 0.999 * SURFACE_CHORD ? opacity : 1.0;
     if (PAYLOAD == PAYLOAD_NORMAL) return vec4(normal, opacity);
-    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec4(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0, opacity);
+    if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) {
+        Splat splat = SplatsRef(params.frame.splats).at[begun ? 0u : splat_of(votes.number)];
+        return vec4(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0, opacity);
+    }
     vec3 color = params.frame.materials[material].rgb;
     if (LABELS == 1u) {
         uint label = begun ? label_near(clamp(ivec3(round(params.frame.anchor + params.frame.eye + way * u)), ivec3(0), dims - 1))
@@ -66,32 +62,33 @@ void main() {
     if (item % groups * gl_WorkGroupSize.x >= count) return;
     ivec2 at = pixel_of(tile, place, count), pixel = min(at, size - 1);
     bool inside = at.x < size.x && at.y < size.y && place < count, marks = (what & 0xfffffu) == 1u, closes = false;
-    IF_ANY(inside && hits_of(pixel) > 0.0) {
-        bool some = inside && hits_of(pixel) > 0.0;
-        uint number = uint(pixel.y * size.x + pixel.x);
-        vec2 slope = slopes_of(pixel);
-        vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    uint number = uint(pixel.y * size.x + pixel.x);
+    vec2 slope = slopes_of(pixel);
+    vec3 u = normalize(params.frame.ray_z + slope.x * params.frame.ray_x + slope.y * params.frame.ray_y);
+    SurfaceVotes front = load_front(pixel, inside);
+    bool some = front.hits > 0.0;
+    IF_ANY(some && marks) {
         SurfacePair pair = load_votes(pixel);
-        IF_ANY(some && marks) {
-            bool open = load_pixel(number).a == 0.0;
-            closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u), params.frame.sheets_drawn), params.frame.solid);
-            if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
-        }
-        IF_ANY(some && !marks) {
-            // Also surfaces that no later splat decided.
-            for (int k = 0; k < 2; ++k)
-                if (!wins(pair.front)) refuse_front(pair);
-            vec4 seen = vec4(0.0);
-            for (int k = 0; k < 2; ++k) {
-                bool there = wins(pair.front) && seen.a < 0.999;
-                IF_ANY(there) {
-                    vec4 next = seen_of(pair.front, u);
-                    if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
-                }
-                pair.front = pair.behind;
+        bool open = load_pixel(number).a == 0.0;
+        closes = some && marks && open && is_decided(pair, way_before(sheet_ways(u), params.frame.sheets_drawn), params.frame.solid);
+        if (closes) store_pixel(number, vec4(0.0, 0.0, 0.0, 1.0));
+    }
+    IF_ANY(some && !marks) {
+        bool shades = some && !marks;
+        vec4 seen = vec4(0.0);
+        for (int k = 0; k < 2; ++k) {
+            bool there = shades && wins(front);
+            IF_ANY(there) {
+                vec4 next = seen_of(front, u);
+                if (there) seen += (1.0 - seen.a) * next.a * vec4(next.rgb, 1.0);
             }
-            if (some) store_pixel(number, seen);
+            // Also surfaces that no later splat decided.
+            shades = shades && k == 0 && !(there && mean_chord(front) >= params.frame.solid);
+            IF_ANY(shades) {
+                if (shades) front = load_surface(pixel, 3u);
+            }
         }
+        if (some && !marks) store_pixel(number, seen);
     }
     uint closing = subgroupAdd(closes ? 1u : 0u);
     if (subgroupElect() && closing > 0u) atomicAdd(UintsRef(params.frame.tile_closed).at[tile], closing);

@@ -4,36 +4,62 @@
 #define INOUT(type) inout type
 #include "engine/geometry/surface_votes.glsl"
 
+// SurfaceVotes::number on the device: bits 0-27 the splat's number, 28-31 the material that is shown.
+uint splat_of(uint number) { return number & NUMBERED_SPLATS; }
+
 // The label of a splat.
-uint kind_of(uint number) { return LABELS == 1u && number < BEGUN_MATTER ? UintsRef(params.frame.labels).at[number] : 0u; }
+uint kind_of(uint number) { return LABELS == 1u && number < BEGUN_MATTER ? UintsRef(params.frame.labels).at[splat_of(number)] : 0u; }
 
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_texel, store_texel)
 
-uint votes_at(ivec2 pixel) { return VOTE_TEXELS * uint(pixel.y * params.frame.size.x + pixel.x); }
+// Where the k-th of a pixel's VOTE_TEXELS texels lies.
+uint vote_texel(ivec2 pixel, uint k) {
+    ivec2 size = params.frame.size;
+    return k * uint(size.x * size.y) + uint(pixel.y * size.x + pixel.x);
+}
 
-SurfaceVotes votes_of(vec4 a, vec4 b, vec2 c) {
+// A pixel without votes has a first texel only, with negative misses.
+void forget_votes(ivec2 pixel) { store_texel(vote_texel(pixel, 0u), vec4(0.0, -1.0, 0.0, 0.0)); }
+
+SurfaceVotes load_surface(ivec2 pixel, uint first) {
+    vec4 a = load_texel(vote_texel(pixel, first)), b = load_texel(vote_texel(pixel, first + 1u));
+    vec2 c = load_texel(vote_texel(pixel, first + 2u)).xy;
     uint number = floatBitsToUint(a.w);
     return SurfaceVotes(a.x, a.y, a.z, c.x, b.xyz, c.y, number, a.x > 0.0 ? kind_of(number) : 0u, b.w);
 }
 
+void store_surface(ivec2 pixel, uint first, SurfaceVotes votes, vec2 passed) {
+    store_texel(vote_texel(pixel, first), vec4(votes.hits, votes.misses, votes.way, uintBitsToFloat(votes.number)));
+    store_texel(vote_texel(pixel, first + 1u), vec4(votes.normal, votes.largest));
+    store_texel(vote_texel(pixel, first + 2u), vec4(votes.chord, votes.arrives, passed));
+}
+
+// The first surface; without votes if `some` is false.
+SurfaceVotes load_front(ivec2 pixel, bool some) {
+    SurfaceVotes votes = no_votes();
+    some = some && load_texel(vote_texel(pixel, 0u)).y >= 0.0;
+    IF_ANY(some) {
+        if (some) votes = load_surface(pixel, 0u);
+    }
+    return votes;
+}
+
 SurfacePair load_votes(ivec2 pixel) {
-    uint at = votes_at(pixel);
-    vec4 rest = load_texel(at + 4u);
-    vec2 passed = load_texel(at + 5u).xy;
-    return SurfacePair(votes_of(load_texel(at), load_texel(at + 1u), rest.xy), votes_of(load_texel(at + 2u), load_texel(at + 3u), rest.zw), passed.x,
-                       passed.y);
+    SurfacePair pair = no_surfaces();
+    bool some = load_texel(vote_texel(pixel, 0u)).y >= 0.0;
+    IF_ANY(some) {
+        if (some) {
+            vec2 passed = load_texel(vote_texel(pixel, 5u)).zw;
+            pair = SurfacePair(load_surface(pixel, 0u), load_surface(pixel, 3u), passed.x, passed.y);
+        }
+    }
+    return pair;
 }
 
-void store_votes(ivec2 pixel, SurfacePair pair) {
-    uint at = votes_at(pixel);
-    SurfaceVotes f = pair.front, b = pair.behind;
-    store_texel(at, vec4(f.hits, f.misses, f.way, uintBitsToFloat(f.number)));
-    store_texel(at + 1u, vec4(f.normal, f.largest));
-    store_texel(at + 2u, vec4(b.hits, b.misses, b.way, uintBitsToFloat(b.number)));
-    store_texel(at + 3u, vec4(b.normal, b.largest));
-    store_texel(at + 4u, vec4(f.chord, f.arrives, b.chord, b.arrives));
-    store_texel(at + 5u, vec4(pair.passed, pair.passed_way, 0.0, 0.0));
+// `whole`: also the second surface, which pixels with a solid first one do not show.
+void store_votes(ivec2 pixel, SurfacePair pair, bool whole) {
+    store_surface(pixel, 0u, pair.front, vec2(0.0));
+    IF_ANY(whole) {
+        if (whole) store_surface(pixel, 3u, pair.behind, vec2(pair.passed, pair.passed_way));
+    }
 }
-
-// Weight of the hits of the first surface; 0: nothing was counted.
-float hits_of(ivec2 pixel) { return load_texel(votes_at(pixel)).x; }

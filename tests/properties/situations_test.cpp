@@ -41,18 +41,22 @@ AnalyticScene solid(const glm::ivec3& dims, const std::function<double(const dve
 AnalyticScene nut() {
     return solid({52, 32, 46}, [](const dvec3& x) {
         const dvec3 p = x - dvec3(25.4, 15.7, 22.6);
-        const double hexagon = std::max({std::abs(p.z), std::abs(0.866 * p.x + 0.5 * p.z), std::abs(0.866 * p.x - 0.5 * p.z)});
+        const double hexagon =
+            std::max({std::abs(p.z), std::abs(0.866 * p.x + 0.5 * p.z), std::abs(0.866 * p.x - 0.5 * p.z)});
         return std::max({hexagon - 18.3, std::abs(p.y) - 9.4, 8.6 - std::hypot(p.x, p.z)});
     });
 }
 
 /// Ridges, in slices that are eight times as thick as pixels are wide.
 AnalyticScene ridges() {
-    const auto height = [](const dvec3& x) { return 9.5 + 2.2 * std::cos(0.3 * x.x + 0.1 * x.y) + 1.1 * std::sin(0.21 * x.y); };
+    const auto height = [](const dvec3& x) {
+        return 9.5 + 2.2 * std::cos(0.3 * x.x + 0.1 * x.y) + 1.1 * std::sin(0.21 * x.y);
+    };
     return solid({48, 40, 18},
                  [height](const dvec3& x) {
-                     const double slope = std::hypot(0.66 * std::sin(0.3 * x.x + 0.1 * x.y),
-                                                     0.22 * std::sin(0.3 * x.x + 0.1 * x.y) - 0.23 * std::cos(0.21 * x.y));
+                     const double slope =
+                         std::hypot(0.66 * std::sin(0.3 * x.x + 0.1 * x.y),
+                                    0.22 * std::sin(0.3 * x.x + 0.1 * x.y) - 0.23 * std::cos(0.21 * x.y));
                      return (x.z - height(x)) / std::hypot(1.0, slope);
                  },
                  {0.5, 0.5, 4});
@@ -69,10 +73,12 @@ AnalyticScene speckle() {
 AnalyticScene passages() {
     return solid({36, 32, 26},
                  [](const dvec3& x) {
-                     const double block = std::max({std::abs(x.x - 17.5) - 13, std::abs(x.y - 15.5) - 11, std::abs(x.z - 12.5) - 8});
+                     const double block =
+                         std::max({std::abs(x.x - 17.5) - 13, std::abs(x.y - 15.5) - 11, std::abs(x.z - 12.5) - 8});
                      double way = 1e9;
                      for (int k = -1; k <= 1; ++k)
-                         way = std::min(way, std::hypot(x.x - 17.5 - 7 * k - 1.5 * std::sin(0.3 * x.y), x.z - 12.3) - 1.1 - 0.2 * k);
+                         way = std::min(way, std::hypot(x.x - 17.5 - 7 * k - 1.5 * std::sin(0.3 * x.y), x.z - 12.3) -
+                                                 1.1 - 0.2 * k);
                      return std::max(block, -way);
                  },
                  {1, 1, 2});
@@ -91,7 +97,8 @@ AnalyticScene rods() {
 /// A wave that the volume's border cuts.
 AnalyticScene wave() {
     return solid({32, 30, 28}, [](const dvec3& x) {
-        return (x.z - 12 - 4 * std::sin(0.45 * x.x + 0.2 * x.y)) / std::hypot(1.0, 1.97 * std::cos(0.45 * x.x + 0.2 * x.y));
+        return (x.z - 12 - 4 * std::sin(0.45 * x.x + 0.2 * x.y)) /
+               std::hypot(1.0, 1.97 * std::cos(0.45 * x.x + 0.2 * x.y));
     });
 }
 
@@ -111,10 +118,11 @@ TEST_P(Situations, AreNotWorseThanCubicRays) {
     for (const Exact& exact : {whole, exact_shot(scene, close)}) {
         const Shot& shot = exact.shot;
         const auto rays = [&](RaycastFilter filter) {
-            return decibels(test_renderer()
-                                .raycast(shot.scene, shot.camera, shot.settings, {.filter = filter}, shot.width, shot.height)
-                                .color,
-                            exact.truth);
+            return decibels(
+                test_renderer()
+                    .raycast(shot.scene, shot.camera, shot.settings, {.filter = filter}, shot.width, shot.height)
+                    .color,
+                exact.truth);
         };
         const double surfaces = decibels(render(shot).color, exact.truth), cubic = rays(RaycastFilter::Cubic);
         std::printf("%-9s surfaces %.1f dB, trilinear rays %.1f, cubic %.1f\n", GetParam().name, surfaces,

@@ -81,8 +81,8 @@ TEST_F(CliNoData, IsDrawnAsTheSmallestValueIfThatIsTransparent) {
             << ".raw\"\nraw = \"20x20x20:float32:little\"\n[camera]\nview = \"oblique\"\n[output]\nsize = [64, 64]\n";
     drawn("nan.toml", "", "a.png");
     drawn("least.toml", "", "b.png");
-    // The range of values differs, and with it their rounding.
-    expect_same("a.png", "b.png", 0.02);
+    // The range of values differs, and with it their rounding and which samples tell the noise.
+    expect_same("a.png", "b.png", 0.04);
 }
 
 TEST_F(CliNoData, BelongsToNoOpaqueMaterialBelow) {

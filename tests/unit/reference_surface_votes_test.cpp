@@ -25,6 +25,7 @@ using glm::sqrt;
 using shader::BEGUN_MATTER;
 using shader::SURFACE_CERTAIN;
 using shader::SURFACE_CHORD;
+using shader::SURFACE_SURE;
 using shader::SURFACE_WINDOW;
 
 inline vec3 bent(const Bending& h, const vec3& v) {
