@@ -277,10 +277,7 @@ geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, st
 }  // namespace
 
 SurfaceScene::SurfaceScene(const Scene& whole, const Volume& volume)
-    : scene(scene_of_bodies(whole)),
-      bodies(scale_scene(scene, volume)),
-      materials(scale_scene(whole, volume)),
-      ends(bodies_of(whole)) {}
+    : scene(scene_of_bodies(whole)), bodies(scale_scene(scene, volume)), materials(scale_scene(whole, volume)) {}
 
 VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
                       const ivec3& i, int m, double noise, bool two_values) {
@@ -367,8 +364,8 @@ std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& 
             record.edge = fit_surface(field, bodies, surfels, field.voxel(record.voxel),
                                       static_cast<int>(record.material), noise, two_values);
             if (quantised) record.edge = quantise(record.edge);
-            const Body& body = surfaces.ends[record.material];
-            record.material = static_cast<std::uint32_t>(record.edge.upper ? body.last : body.first);
+            const double own = field.at(field.voxel(record.voxel));
+            record.material = static_cast<std::uint32_t>(surfaces.materials.material(own));
             record.classified =
                 labelled(field, surfaces.materials, scene, record.voxel, static_cast<int>(record.material));
         }

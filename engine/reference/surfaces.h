@@ -13,10 +13,9 @@ namespace edgesplat::reference {
 /// The bodies of matter that surface splats show (bodies_of), in scaled units.
 struct SurfaceScene {
     SurfaceScene(const Scene& whole, const Volume& volume);
-    Scene scene;             ///< scene_of_bodies
-    ScaledScene bodies;      ///< of `scene`
-    ScaledScene materials;   ///< of the whole scene
-    std::vector<Body> ends;  ///< materials at the ends of each body
+    Scene scene;            ///< scene_of_bodies
+    ScaledScene bodies;     ///< of `scene`
+    ScaledScene materials;  ///< of the whole scene
 };
 
 /// The face of a surface splat at voxel i of body m, which ends beside it. `noise`: standard deviation of the

@@ -15,6 +15,7 @@ layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, ANTIALIAS = 0u, NARROW = 1u, TRACED = 0u, NODES = 6u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
+layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
@@ -24,6 +25,7 @@ ivec3 dims;
 #include "shaders/splats/splat_projection.glsl"
 #include "shaders/light/shading.glsl"
 #include "shaders/common/labels.glsl"
+#include "shaders/common/matter.glsl"
 #include "shaders/tiles/tile_places.glsl"
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
@@ -35,6 +37,15 @@ vec4 seen_of(SurfaceVotes votes, vec3 u) {
     vec3 normal = unit_or_zero(params.frame.normal_to_world * votes.normal);
     vec3 along = params.frame.index_to_world * u;
     uint material = begun ? votes.number - BEGUN_MATTER : votes.number >> 28;
+    // With several materials in a body: that of the splat's own voxel.
+    if (ISO_COUNT > 1u) {
+        IF_ANY(!begun) {
+            uint at = begun ? 0u : SplatsRef(params.frame.splats).at[splat_of(votes.number)].voxel;
+            uint nx = uint(dims.x), ny = uint(dims.y);
+            uint own = material_of(imageLoad(volume, ivec3(at % nx, at / nx % ny, at / nx / ny)).r);
+            material = begun ? material : own;
+        }
+    }
     float chord = mean_chord(votes), opacity = 1.0 - exp(-params.frame.materials[material].a * length(along) * chord);
     opacity = chord < 0.999 * SURFACE_CHORD ? opacity : 1.0;
     if (PAYLOAD == PAYLOAD_NORMAL) return vec4(normal, opacity);
