@@ -82,7 +82,7 @@ std::vector<Effect> settings_effects() {
                     .resized = {"batches of splats", "prepared splats", "sheets of splats", "splat list", "splat order",
                                 "splat traits", "tiles of splats", "unfinished sheets"},
                     .constants = {{shader::SPEC_SURFACES, "SPEC_SURFACES"}},
-                    .frame_fields = {"body_lower", "body_upper", "iso", "sheets_drawn", "solid", "visible_mask"},
+                    .frame_fields = {"iso", "sheets_drawn", "solid", "visible_mask"},
                     .scene_fields = {"noise"}});
     rows.push_back({.name = "footprint table",
                     .help = "footprints of plane faces are read from a table whose layers pass 3 selects and rotates",

@@ -89,14 +89,6 @@ SplatCount most_splats(const CollectionPlan& plan) {
 
 namespace {
 
-/// Number of a material, scaled sample -> material.
-std::uint8_t material_of(const shader::SceneParams& params, float scaled) {
-    std::uint8_t material = 0;
-    for (std::uint32_t j = 0; j < params.iso_count; ++j)
-        material += params.iso[j] <= scaled ? 1U : 0U;
-    return material;
-}
-
 /// Whether matter of the voxel's material ends on one of its six sides (2_collect_splats).
 bool ends_beside(const Volume& volume, const shader::SceneParams& params, const std::vector<std::uint8_t>& materials,
                  const glm::ivec3& at) {
@@ -113,7 +105,7 @@ bool ends_beside(const Volume& volume, const shader::SceneParams& params, const 
             beside[axis] += step;
             before[axis] = std::clamp(at[axis] - step, 0, dims[axis] - 1);
             const bool outermost = beside[axis] < 0 || beside[axis] == dims[axis];
-            const std::uint8_t there =
+            const std::uint32_t there =
                 outermost ? material_of(params, std::max(1.5F * value(at) - 0.5F * value(before), 0.0F))
                           : materials[index(beside)];
             if (there != materials[index(at)]) return true;
@@ -130,7 +122,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
     std::vector<std::uint8_t> materials(voxels), splats(voxels), opaque(plan.buried ? voxels : 0);
     for (std::uint64_t i = 0; i < voxels; ++i) {
-        materials[i] = material_of(params, scaled_sample(volume, volume.values[i]));
+        materials[i] = static_cast<std::uint8_t>(material_of(params, scaled_sample(volume, volume.values[i])));
         if (!volume.has_data(i)) materials[i] |= kMissing;
     }
     for (std::uint64_t i = 0; i < voxels; ++i) {

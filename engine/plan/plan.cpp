@@ -248,13 +248,26 @@ bool CollectionPlan::operator==(const CollectionPlan& other) const {
     return !stale.lists && !stale.transfer;
 }
 
+namespace {
+
+/// SceneParams::iso and FrameParams::iso.
+void place_iso_values(const Volume& volume, const Scene& scene, float (&iso)[16]) {
+    std::fill(std::begin(iso), std::end(iso), 3e38F);
+    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
+        iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+}
+
+}  // namespace
+
+std::uint32_t material_of(const shader::SceneParams& params, float scaled) {
+    const std::span values(params.iso, params.iso_count);
+    return static_cast<std::uint32_t>(std::ranges::count_if(values, [&](float iso) { return iso <= scaled; }));
+}
+
 bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params) {
     const glm::ivec3 last = volume.geometry.dims - 1;
     const auto value = [&](const glm::ivec3& i) { return scaled_sample(volume, value_at(volume, i)); };
-    const auto is_matter = [&](float f) {
-        const auto above = std::upper_bound(std::begin(params.iso), std::begin(params.iso) + params.iso_count, f);
-        return (params.visible_mask >> (above - std::begin(params.iso)) & 1U) != 0;
-    };
+    const auto is_matter = [&](float f) { return (params.visible_mask >> material_of(params, f) & 1U) != 0; };
     const auto in_layer = [&](int axis, bool high) {
         const int across = (axis + 1) % 3, down = (axis + 2) % 3;
         glm::ivec3 i(0);
@@ -285,9 +298,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
     auto& params = plan.params;
     params.dims = plan.dims;
     params.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
-    std::fill(std::begin(params.iso), std::end(params.iso), 3e38F);
-    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
-        params.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+    place_iso_values(volume, scene, params.iso);
     plan.transfer = transfer_rows(scene, volume);
     const double radius = uncut_kernel(settings, scene, volume.geometry).radius;
     int farthest = 0;
@@ -345,18 +356,10 @@ namespace {
 void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
     auto& p = plan.params;
     plan.variant.iso_count = static_cast<std::uint32_t>(scene.iso_values.size());
-    std::fill(std::begin(p.iso), std::end(p.iso), 3e38F);
-    for (std::size_t j = 0; j < scene.iso_values.size(); ++j)
-        p.iso[j] = static_cast<float>(scaled_iso_value(volume, scene.iso_values[j]));
+    place_iso_values(volume, scene, p.iso);
     for (std::size_t m = 0; m < scene.materials.size(); ++m)
         if (scene.materials[m].extinction > 0) p.visible_mask |= 1U << m;
     p.solid = static_cast<float>(solid_chord(scene, volume.geometry));
-    const std::vector<Body> bodies = bodies_of(scene);
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-        const int word = b < 8 ? 0 : 1, bit = 4 * static_cast<int>(b % 8);
-        p.body_lower[word] |= static_cast<std::uint32_t>(bodies[b].first) << bit;
-        p.body_upper[word] |= static_cast<std::uint32_t>(bodies[b].last) << bit;
-    }
 }
 
 /// A material's value interval, half open, scaled like the device's samples.

@@ -65,6 +65,9 @@ StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wan
 /// `keep_buried`: buried voxels stay (the output is optical depth, or the eye is inside opaque matter).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
+/// Material of a scaled sample.
+std::uint32_t material_of(const shader::SceneParams& params, float scaled);
+
 /// Whether matter of the visible materials may lie at the volume's border, half a voxel beyond the outermost samples,
 /// to which the field continues linearly.
 bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params);

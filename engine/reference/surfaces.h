@@ -10,10 +10,10 @@
 
 namespace edgesplat::reference {
 
-/// The bodies of matter that surface splats show (bodies_of), in scaled units.
+/// The bodies of matter that surface splats show (scene_of_bodies), in scaled units.
 struct SurfaceScene {
     SurfaceScene(const Scene& whole, const Volume& volume);
-    Scene scene;            ///< scene_of_bodies
+    Scene scene;            ///< one material for each body
     ScaledScene bodies;     ///< of `scene`
     ScaledScene materials;  ///< of the whole scene
 };

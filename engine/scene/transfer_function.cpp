@@ -111,25 +111,16 @@ bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& 
            allows_surfaces(canonical_settings(settings, scene));
 }
 
-std::vector<Body> bodies_of(const Scene& scene) {
-    std::vector<Body> bodies;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        const bool matter = scene.materials[m].extinction > 0;
-        if (bodies.empty() || bodies.back().matter != matter) bodies.push_back({m, m, matter});
-        bodies.back().last = m;
+Scene scene_of_bodies(const Scene& scene) {
+    Scene bodies = scene;
+    bodies.iso_values.clear();
+    bodies.materials = {scene.materials.front()};
+    for (std::size_t m = 1; m < scene.materials.size(); ++m) {
+        if ((scene.materials[m].extinction > 0) == (scene.materials[m - 1].extinction > 0)) continue;
+        bodies.iso_values.push_back(scene.iso_values[m - 1]);
+        bodies.materials.push_back(scene.materials[m]);
     }
     return bodies;
-}
-
-Scene scene_of_bodies(const Scene& scene) {
-    Scene of_bodies = scene;
-    of_bodies.iso_values.clear();
-    of_bodies.materials.clear();
-    for (const Body& body : bodies_of(scene)) {
-        if (body.first > 0) of_bodies.iso_values.push_back(scene.iso_values[body.first - 1]);
-        of_bodies.materials.push_back(scene.materials[body.first]);
-    }
-    return of_bodies;
 }
 
 double solid_chord(const Scene& scene, const VolumeGeometry& geometry) {

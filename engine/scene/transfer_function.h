@@ -55,17 +55,8 @@ std::optional<std::size_t> traced_material(const Settings& settings, const Scene
 /// settings and effects that allow it.
 bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume);
 
-/// A run of materials with matter, or of materials without.
-struct Body {
-    std::size_t first = 0, last = 0;
-    bool matter = false;
-};
-
-/// The materials of a scene without a transfer function, ascending. Only where matter and no matter meet, opaque matter
-/// has a surface that is seen.
-std::vector<Body> bodies_of(const Scene& scene);
-
-/// The same scene with a body for each material; its materials have no colours of their own.
+/// The same scene, without a transfer function, with one material for each body: a run of materials with matter, or of
+/// materials without. Only where bodies meet, opaque matter has a surface that is seen.
 Scene scene_of_bodies(const Scene& scene);
 
 /// Voxels of a scene's opaque matter along a ray behind which surface splats show nothing.

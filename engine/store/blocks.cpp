@@ -10,13 +10,6 @@ namespace {
 
 constexpr int kBorder = shader::BLOCK_BORDER;
 
-std::uint32_t material_of(const shader::SceneParams& params, float scaled) {
-    std::uint32_t material = 0;
-    for (std::uint32_t j = 0; j < params.iso_count; ++j)
-        material += params.iso[j] <= scaled ? 1U : 0U;
-    return material;
-}
-
 /// Bit mask of all materials from that of range.low to that of range.high.
 std::uint32_t materials_between(const shader::SceneParams& params, const ValueRange& range, const Volume& volume) {
     const auto material = [&](float value) {

@@ -1,5 +1,5 @@
-// The pieces of a ray that clip planes keep. Include after the declarations that
-// shaders/common/clip.glsl names, and after shaders/footprints/slice.glsl.
+// The pieces of a ray that clip planes keep. Include after the declarations that shaders/common/clip.glsl
+// names, and after shaders/footprints/slice.glsl.
 #ifndef EDGESPLAT_CLIP_RAY_GLSL
 #define EDGESPLAT_CLIP_RAY_GLSL
 

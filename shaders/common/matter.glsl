@@ -1,15 +1,10 @@
-// The material of a value of the field. Include after the uniform block `params.frame`.
+// The matter in the field that surface splats show. Include after the uniform block `params.frame`.
 #ifndef EDGESPLAT_MATTER_GLSL
 #define EDGESPLAT_MATTER_GLSL
-layout(constant_id = SPEC_ISO_COUNT) const uint ISO_COUNT = 1u;
+#define ISO_VALUES params.frame.iso
+#include "shaders/common/material.glsl"
 
-uint material_of(float value) {
-    uint material = 0u;
-    for (uint j = 0u; j < ISO_COUNT; ++j) material += params.frame.iso[j] <= value ? 1u : 0u;
-    return material;
-}
-
-bool is_drawn(uint material) { return (params.frame.visible_mask >> material & 1u) == 1u; }
+bool is_drawn(uint material) { return in_mask(params.frame.visible_mask, material); }
 
 // The values of the body of matter that contains a value, half open: materials with matter that adjoin are one body.
 vec2 body_around(float value) {

@@ -120,8 +120,6 @@ struct FrameParams {
     float iso[16];          // the scene's iso-values, scaled, ascending; beyond them: +3e38
     uint visible_mask;      // bit m: material m is matter
     float solid;            // voxels of matter along a ray behind which nothing is seen
-    uvec2 body_lower;       // 4 bits for each body: the material at its lower end
-    uvec2 body_upper;       // at its upper end
     uint sheets_drawn;      // after this part of the picture, all splats in front of this sheet are drawn
 };
 
@@ -133,7 +131,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1672);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1656);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -29,12 +29,6 @@ float border_weight(ivec3 voxel) {
     return pow(BORDER_WEIGHT, float(outermost.x + outermost.y + outermost.z));
 }
 
-// The material that a body shows where it ends.
-uint shown_material(uint body, bool upper) {
-    uvec2 ends = upper ? params.frame.body_upper : params.frame.body_lower;
-    return (body < 8u ? ends.x : ends.y) >> 4u * (body & 7u) & 15u;
-}
-
 SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 depths) {
     SplatInputs s;
     s.from_eye = p.position - params.frame.eye;
@@ -69,7 +63,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
     }
     if (PAYLOAD == PAYLOAD_NORMAL) payload = world_normal;
     s.color_sigma = vec4(payload, material.a);
-    s.number_material = uvec2(number, SURFACES == 1u ? shown_material(splat.edge >> 28, e.state == EDGE_UPPER) : splat.edge >> 28);
+    s.number_material = uvec2(number, splat.edge >> 28);
     if (FACES) {
         bool is_cut = e.state >= EDGE_LOWER && e.d < params.frame.support + FACE_DEPTH;
         bool has_normal = e.state >= (PAYLOAD == PAYLOAD_COLOR && LIT_EDGES == 1u ? EDGE_LOWER : EDGE_NORMAL);
