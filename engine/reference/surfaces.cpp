@@ -450,7 +450,8 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                     for (const RayPart& part : pixel.parts) {
                         // A face enters the matter just before the part, within its error.
                         const double early = part.first - way;
-                        if (!vote.enters || part.n == dvec3(0) || early <= 0 || early >= 1 ||
+                        if (!vote.enters || part.n == dvec3(0) || early <= 0 ||
+                            early >= static_cast<double>(shader::SURFACE_EARLY) ||
                             early * std::abs(glm::dot(vote.n, u)) >= kSide * glm::length(vote.n))
                             continue;
                         way = part.first;

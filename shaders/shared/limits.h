@@ -83,6 +83,7 @@ EDGESPLAT_CONSTANT float SURFACE_CERTAIN = 1e3f;  // weight of matter that begin
 EDGESPLAT_CONSTANT uint NUMBERED_SPLATS = 0xfffffffu;  // numbers of surface splats in votes lie below this minus MAX_MATERIALS
 EDGESPLAT_CONSTANT uint BEGUN_MATTER = 0xfffffff0u;  // plus a material: stands for a splat's number where matter begins so
 EDGESPLAT_CONSTANT uint VOTE_TEXELS = 6u;       // of a pixel: both surfaces' votes, ten numbers each, and those against
+EDGESPLAT_CONSTANT float SURFACE_EARLY = 1.0f;   // a face that a ray enters at most this far before a border or plane, within SURFACE_SIDE of it, is seen there
 EDGESPLAT_CONSTANT float SURFACE_SIDE = 0.1f;    // the same of samples on a kept face's wrong side, without noise
 EDGESPLAT_CONSTANT int FOOT_STEPS = 8;          // steps towards the foot point on a quadric
 EDGESPLAT_CONSTANT float BENDING_UNIT = 8.0f;   // components of H, 1/voxel, are stored as 10 bits of sign(h) sqrt(|h| / 8)

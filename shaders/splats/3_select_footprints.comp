@@ -78,7 +78,7 @@ void main() {
         beside = 0.0;
         drawn = drawn && !looks_away(i, e, splat.edge >> 28, p);
     }
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p));
+    if (CLIP_KEEP + CLIP_REMOVE > 0u) drawn = drawn && !is_cut_away(p.position + p.centre, reach_across(p) + (SURFACES == 1u ? SURFACE_EARLY : 0.0));
     if (FOOTPRINTS == TABLE && drawn)
         PairsRef(params.frame.footprints).at[i] =
             select_footprint(e, is_in_table(i, e, splat.edge >> 28), p.position - params.frame.eye, params.frame.table_depth);

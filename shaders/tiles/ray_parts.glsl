@@ -20,7 +20,7 @@ RayPart kept_part(RayPart whole, Slice kept, vec3 face) {
 // A face that a ray enters just before the part, within the error of faces, is seen where the part begins. n: its normal.
 bool enters_just_before(RayPart part, float way, vec3 n, vec3 u) {
     float before = part.first - way;
-    return part.n != vec3(0.0) && before > 0.0 && before < 1.0 && before * abs(dot(n, u)) < SURFACE_SIDE * length(n);
+    return part.n != vec3(0.0) && before > 0.0 && before < SURFACE_EARLY && before * abs(dot(n, u)) < SURFACE_SIDE * length(n);
 }
 
 bool is_in_part(RayPart part, float way) { return way >= part.first - 1e-3 && way <= part.last; }
