@@ -68,24 +68,12 @@ void occlusion(AppState& state) {
           [](SceneDocument& d, double v) { d.effects.occlusion->radius = v; });
 }
 
-void shadows(AppState& state) {
-    const auto document = state.session.document();
-    if (std::ranges::none_of(document.lights, &edgesplat::Light::shadows)) return;
-    const Scope scope(state, "shadows");
-    ImGui::TextDisabled("shadows");
-    slide(state, "pixels", document.effects.shadows.resolution, 16, 2048,
-          [](SceneDocument& d, int v) { d.effects.shadows.resolution = v; });
-    slide(state, "layers", document.effects.shadows.layers, 2, 1024,
-          [](SceneDocument& d, int v) { d.effects.shadows.layers = v; });
-}
-
 }  // namespace
 
 void effects_panel(AppState& state) {
     fog(state);
     silhouette(state);
     occlusion(state);
-    shadows(state);
     const edgesplat::Effects effects = state.session.document().effects;
     flag(state, "antialiased footprints", effects.antialias,
          [](SceneDocument& d, bool on) { d.effects.antialias = on; });

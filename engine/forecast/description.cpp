@@ -64,10 +64,8 @@ const char* name_of(Held held) {
     switch (held) {
         case Held::Uploading:
             return "while uploading";
-        case Held::Occluding:
-            return "while occluding";
-        case Held::Sweeping:
-            return "while sweeping";
+        case Held::Lighting:
+            return "while lighting";
         case Held::Drawing:
             return "while drawing";
         case Held::Always:

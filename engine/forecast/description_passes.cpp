@@ -21,12 +21,13 @@ namespace {
 
 /// Nanoseconds of a pass per voxel, splat, entry, sheet, fragment or pixel that it processes.
 struct Rates {
-    double bury_voxel, normal_voxel, edge_voxel, spline_voxel, collect_voxel, collect_splat, occlude_splat;
+    double bury_voxel, normal_voxel, edge_voxel, spline_voxel, collect_voxel, collect_splat, occlude_splat,
+        shadow_splat;
     double select_splat, sort_entry, sort_sheet, draw_entry, fragment, warped_fragment, composite_pixel, resolve_pixel;
 };
 
 // Round numbers of the right order of magnitude for two processor cores; not fitted to measurements.
-constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 30, 6, 3000, 150, 6, 25, 2, 4};
+constexpr Rates kRates{4, 6, 60, 300, 4, 60, 5000, 4000, 30, 6, 3000, 150, 6, 25, 2, 4};
 // Assumed speed of a GPU relative to two processor cores; not measured.
 constexpr double kGpuFactor = 200;
 
@@ -106,30 +107,18 @@ class Passes {
     void add_reach(const FrameRequest& request, const FrameForecast& f) {
         const double splats = static_cast<double>(f.splats.extent.count);
         const Clip& clip = request.scene.effects.clip;
-        if (f.occluded) {
-            add("setup", "2b_occlude_ambient", kRates.occlude_splat * splats,
-                {variant("2b_occlude_ambient.comp",
-                         passes::occlude_constants({.iso_count = f.collection.params.iso_count,
-                                                    .clip = {static_cast<std::uint32_t>(clip.keep.size()),
-                                                             static_cast<std::uint32_t>(clip.remove.size())},
-                                                    .surfaces = f.collection.surfaces,
-                                                    .transfer = !request.scene.transfer.empty()}))});
-        }
-        if (f.light_frames.empty()) return;
-        double sweep = 0;
-        for (const FramePlan& light : f.light_frames) {
-            const double pixels = static_cast<double>(light.params.size.x) * light.params.size.y;
-            sweep += kRates.draw_entry * splats * light.sheets_per_splat +
-                     kRates.composite_pixel * pixels * light.params.sheet_count * 2;
-        }
-        add("setup", "2c_sweep_light", sweep,
-            {variant("5b_draw_splats.vert, 5b_draw_splats.frag",
-                     passes::draw_constants(f.light_frames.front().variant)),
-             "2c_sweep_light.comp"});
-        add("setup", "2d_shadow_splats", kRates.select_splat * splats * static_cast<double>(f.light_frames.size()),
-            {variant("2d_shadow_splats.comp",
-                     {{shader::SPEC_CLIP_KEEP, f.light_frames.front().variant.clip.keep},
-                      {shader::SPEC_CLIP_REMOVE, f.light_frames.front().variant.clip.remove}})});
+        const passes::SplatLight in{
+            .iso_count = f.collection.params.iso_count,
+            .clip = {static_cast<std::uint32_t>(clip.keep.size()), static_cast<std::uint32_t>(clip.remove.size())},
+            .surfaces = f.collection.surfaces,
+            .transfer = !request.scene.transfer.empty()};
+        const auto add_pass = [&](const char* pass, double milliseconds) {
+            const std::string shader = fmt::format("{}.comp", pass);
+            add("setup", pass, milliseconds, {variant(shader.c_str(), passes::light_constants(in))});
+        };
+        if (f.occluded) add_pass("2b_occlude_ambient", kRates.occlude_splat * splats);
+        if (f.shadow_lights > 0)
+            add_pass("2c_cast_shadows", kRates.shadow_splat * splats * static_cast<double>(f.shadow_lights));
     }
 
     std::vector<std::string> sort_sheets_shaders(const passes::DrawVariant& drawn) const {

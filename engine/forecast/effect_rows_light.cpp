@@ -54,10 +54,9 @@ void shadow(FrameRequest& request) {
 std::string shadow_reason(const FrameRequest& r) {
     const auto numbers = shadow_lights(r.scene);
     if (numbers.empty()) return "";
-    const ShadowQuality& quality = r.scene.effects.shadows;
-    return fmt::format("lights[{}]{} cast{} shadows, with {} x {} pixels and at most {} layers", numbers[0],
+    return fmt::format("lights[{}]{} cast{} shadows", numbers[0],
                        numbers.size() > 1 ? fmt::format(" and lights[{}]", numbers[1]) : "",
-                       numbers.size() > 1 ? "" : "s", quality.resolution, quality.resolution, quality.layers);
+                       numbers.size() > 1 ? "" : "s");
 }
 
 std::string occlusion_reason(const FrameRequest& r) {
@@ -134,7 +133,7 @@ std::vector<Effect> light_effects() {
                     .reason = shadow_reason,
                     .turn_on = shadow,
                     .base = light,
-                    .passes = {"2c_sweep_light", "2d_shadow_splats"},
+                    .passes = {"2c_cast_shadows"},
                     .resources = {"splat shadows"},
                     .record = {{"light that reaches the splat", 4}},
                     .constants = {{shader::SPEC_SHADOWS, "SPEC_SHADOWS"}},

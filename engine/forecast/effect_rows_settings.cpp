@@ -134,8 +134,7 @@ std::vector<Effect> settings_effects() {
          .help = "voxels that opaque ones occlude from every side are culled; the picture does not change",
          .call = "settings.cull_buried and an opaque material; not with --keep-buried (on by default)",
          .reason = [](const FrameRequest& r) -> std::string {
-             const bool keep = r.outputs.tau || eye_in_opaque(*r.volume, r.scene, r.camera);
-             const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keep);
+             const CollectionPlan plan = plan_collection(*r.volume, r.scene, drawn_settings(r), keeps_buried(r));
              if (!plan.buried) return "";
              return fmt::format("voxels at least {} voxels behind an opaque surface are culled",
                                 plan.params.bury_distance);

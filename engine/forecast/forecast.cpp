@@ -170,7 +170,9 @@ CollectionPlan planned_collection(const FrameRequest& request) {
 }
 
 bool keeps_buried(const FrameRequest& request) {
-    return request.outputs.tau || eye_in_opaque(*request.volume, request.scene, request.camera);
+    const bool in_kernels = eye_in_opaque(*request.volume, request.scene, request.camera) &&
+                            !draws_surfaces(drawn_settings(request), request.scene, *request.volume);
+    return request.outputs.tau || in_kernels;
 }
 
 FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& collection, const SplatCount& splats,
@@ -187,15 +189,8 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
             {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
                                                request.size, payload, out.splats.extent, reach, profile.refines)});
     }
-    if (!shadow_lights(request.scene).empty()) {
-        const ShadowPlan shadows = plan_shadows(request.scene, out.settings);
-        for (const Light& light : shadows.lights)
-            for (const Camera& view : light_views(light, request.volume->geometry, splats.extent.low,
-                                                  splats.extent.high, reach, shadows.quality.resolution))
-                out.light_frames.push_back(
-                    plan_light_frame(*request.volume, request.scene, shadows, view, splats.extent, reach));
-    }
     out.occluded = occludes_ambient(request.scene);
+    out.shadow_lights = shadow_lights(request.scene).size();
     out.resources = planned_resources(out);
     return out;
 }

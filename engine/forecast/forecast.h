@@ -25,8 +25,8 @@ SplatCount most_splats(const CollectionPlan& plan);
 /// Counts on the host the splats that passes 1a and 2 collect: about 10 ns per voxel.
 SplatCount count_splats(const Volume& volume, const CollectionPlan& plan);
 
-/// Lifetime of a resource. Of the last four only one is active at a time; Drawing lasts until the next picture.
-enum class Held { Always, Uploading, Occluding, Sweeping, Drawing };
+/// Lifetime of a resource. Of the last three only one is active at a time; Drawing lasts until the next picture.
+enum class Held { Always, Uploading, Lighting, Drawing };
 
 /// An image or a buffer that a frame needs.
 struct PlannedResource {
@@ -51,8 +51,8 @@ struct FrameForecast {
     SplatCount splats;
     const gpu::DeviceProfile* profile = nullptr;  ///< the device's profile
     std::vector<ForecastDraw> draws;
-    std::vector<FramePlan> light_frames;     ///< pictures of the lights with shadows
     bool occluded = false;                   ///< ambient occlusion is on
+    std::size_t shadow_lights = 0;           ///< number of lights with shadows
     std::vector<PlannedResource> resources;  ///< all resources of a Renderer during this frame
 };
 

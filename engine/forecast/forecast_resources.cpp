@@ -7,7 +7,7 @@
 #include "engine/plan/resource_table.h"
 #include "engine/store/blocks.h"
 #include "engine/store/light.h"
-#include "shaders/shared/occlusion_params.h"
+#include "shaders/shared/light_params.h"
 
 namespace edgesplat {
 namespace {
@@ -56,22 +56,15 @@ void add_light(const FrameForecast& f, std::vector<PlannedResource>& out) {
     const auto add_list = [&](gpu::Buffer SplatLists::*list) {
         out.push_back(buffer(row_of(list).text, f.splats.extent.count * kLightBytes));
     };
-    if (f.occluded) {
-        add_list(&SplatLists::occlusion);
-        out.push_back(buffer(kOcclusionBlock, sizeof(shader::OcclusionParams), gpu::Buffer::Place::Host));
-        out.back().held = Held::Occluding;
-    }
-    if (f.light_frames.empty()) return;
-    add_list(&SplatLists::shadows);
-    std::uint64_t layers = 0;
-    for (const FramePlan& light : f.light_frames)
-        layers = std::max(layers, light_layer_bytes(light));
-    out.push_back(buffer(kLightLayers, layers));
-    out.back().held = Held::Sweeping;
+    if (f.occluded) add_list(&SplatLists::occlusion);
+    if (f.shadow_lights > 0) add_list(&SplatLists::shadows);
+    if (!f.occluded && f.shadow_lights == 0) return;
+    out.push_back(buffer(kLightBlock, sizeof(shader::LightParams), gpu::Buffer::Place::Host));
+    out.back().held = Held::Lighting;
 }
 
-/// Adds the targets of the picture's draws or of the lights' pictures, each as large as its largest draw needs.
-void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& profile, Held held,
+/// Adds the targets of the picture's draws, each as large as its largest draw needs.
+void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& profile,
                  std::vector<PlannedResource>& out) {
     for (const TargetImageRow& row : target_image_rows()) {
         std::optional<glm::ivec3> largest;
@@ -80,17 +73,17 @@ void add_targets(const std::vector<FramePlan>& draws, const gpu::DeviceProfile& 
         if (!largest) continue;
         out.push_back(image(row.text, row.shape(*largest)));
         out.back().grows = row.taller_is_reusable;
-        out.back().held = held;
+        out.back().held = Held::Drawing;
     }
     for (const TargetBufferRow& row : target_buffer_rows()) {
         std::uint64_t bytes = 0;
         for (const FramePlan& plan : draws)
             bytes = std::max(bytes, row.bytes(plan, profile));
-        if (bytes == 0 || (row.always && held != Held::Drawing)) continue;
+        if (bytes == 0) continue;
         out.push_back(buffer(row.text, bytes, row.place));
         out.back().texels = row.texels;
         out.back().grows = !row.always;
-        out.back().held = row.always ? Held::Always : held;
+        out.back().held = row.always ? Held::Always : Held::Drawing;
     }
 }
 
@@ -103,8 +96,7 @@ std::vector<PlannedResource> planned_resources(const FrameForecast& forecast) {
     std::vector<FramePlan> draws;
     for (const ForecastDraw& draw : forecast.draws)
         draws.push_back(draw.plan);
-    add_targets(draws, *forecast.profile, Held::Drawing, out);
-    add_targets(forecast.light_frames, *forecast.profile, Held::Sweeping, out);
+    add_targets(draws, *forecast.profile, out);
     add_placeholders(out);
     // Uploads are sequential; the largest staging buffer counts.
     std::uint64_t staging = 0;

@@ -153,9 +153,8 @@ MemoryNeed memory_need(const gpu::Device& device, const FrameForecast& forecast,
     const auto most = [uploads](const Sums& s) {
         const auto& t = s.by_time;
         const auto at = [&](Held when) { return t.at(static_cast<std::size_t>(when)); };
-        return at(Held::Always) +
-               std::max({uploads ? at(Held::Uploading) + s.picture_before : 0, at(Held::Occluding) + s.picture_before,
-                         at(Held::Sweeping), at(Held::Drawing)});
+        return at(Held::Always) + std::max({uploads ? at(Held::Uploading) + s.picture_before : 0,
+                                            at(Held::Lighting) + s.picture_before, at(Held::Drawing)});
     };
     Sums both;
     for (const Sums& place : sums) {
@@ -217,12 +216,6 @@ std::vector<FittingChange> fitting_changes(const gpu::Device& device, const Fram
     if (request.settings.edges == EdgeEstimator::Cubic) {
         changed.settings.edges = EdgeEstimator::March;
         offer("--edges march", changed);
-    }
-    changed = request;
-    if (!shadow_lights(request.scene).empty()) {
-        for (int& side = changed.scene.effects.shadows.resolution; side >= 32 && !fits(changed);)
-            side /= 2;
-        offer(fmt::format("effects.shadows.resolution = {}", changed.scene.effects.shadows.resolution), changed);
     }
     changed = request;
     if (request.outputs.tau) {

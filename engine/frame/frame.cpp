@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 
-#include "engine/passes/2c_sweep_light.h"
 #include "engine/passes/3_select_footprints.h"
 #include "engine/passes/4_mark_pixels.h"
 #include "engine/passes/4_prepare_splats.h"
@@ -16,33 +15,24 @@
 
 namespace edgesplat {
 
-std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                  std::optional<std::uint32_t> shadow_channel) {
+std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets) {
     const auto& p = plan.params;
     const passes::DrawSplats draw{plan.variant, targets.sheets, targets.depth, targets.indices, targets.draws};
-    const auto span = [&](const char* pass, const auto& body) {
-        commands.span(shadow_channel ? "2c_sweep_light" : pass, body);
-    };
     commands.run([&] {
         commands.fill(targets.counters, 0);
         passes::clear_accumulated(commands, targets.accumulated);
-        span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
-        span("4_sort_sheets", [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
+        commands.span("3_select_footprints", [&] { passes::select_footprints(commands, p.slot_count, plan.variant); });
+        commands.span("4_sort_sheets",
+                      [&] { passes::sort_sheets(commands, plan.variant, plan.params, plan.sort_segments); });
         for (std::uint32_t group = 0; group < p.group_count; ++group) {
-            span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
-            span("6_composite_sheet", [&] {
-                if (shadow_channel) passes::sweep_light(commands, p.size, group);
-                passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group);
-            });
+            commands.span("5_draw_splats", [&] { passes::draw_splats(commands, draw, group); });
+            commands.span("6_composite_sheet",
+                          [&] { passes::composite_sheet(commands, targets.accumulated, plan.variant.payload, group); });
         }
-        if (shadow_channel)
-            commands.span("2d_shadow_splats",
-                          [&] { passes::shadow_splats(commands, p.splat_count, plan.variant.clip, *shadow_channel); });
-        else
-            span("7_resolve", [&] {
-                passes::resolve(commands, plan.variant, p.size, plan.gradient);
-                commands.to_host(targets.output);
-            });
+        commands.span("7_resolve", [&] {
+            passes::resolve(commands, plan.variant, p.size, plan.gradient);
+            commands.to_host(targets.output);
+        });
     });
     return commands.span_times();
 }

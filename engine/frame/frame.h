@@ -3,17 +3,14 @@
 #pragma once
 
 #include <functional>
-#include <optional>
 
 #include "engine/compositors/tiles/lists.h"
 #include "engine/distribute/parts.h"
 
 namespace edgesplat {
 
-/// Draws a frame whose sheets are layers of a target: splat list -> pixels in `targets.output`. Runs and waits. With
-/// `shadow_channel` it draws a light's picture: the light that reaches each splat goes to that half of `splat_shadows`.
-std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets,
-                                  std::optional<std::uint32_t> shadow_channel = {});
+/// Draws a frame whose sheets are layers of a target: splat list -> pixels in `targets.output`. Runs and waits.
+std::vector<PassTime> draw_sheets(gpu::Commands& commands, const FramePlan& plan, const TargetResources& targets);
 
 /// Records passes 3 and 4 of a tiled frame, up to the order of sheets, into the current run. `continues`: the frame
 /// continues behind sheets that are drawn already, so that the picture is kept.

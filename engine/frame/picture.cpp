@@ -15,8 +15,6 @@ void need_layers(const gpu::Device& device, const Scene& scene, const Settings& 
     if (obstacle.empty()) return;
     if (canonical_settings(settings, scene).sheet_format != SheetFormat::Tiles)
         fail("sheet_format: {} has {}, expected `tiles`", device.info().name, obstacle);
-    if (!shadow_lights(scene).empty())
-        fail("shadows: {} has {}, expected lights without shadows", device.info().name, obstacle);
 }
 
 FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const Camera& camera,
@@ -30,12 +28,6 @@ FramePlan PictureDrawer::plan(const LevelStore& level, const Scene& scene, const
     if (culling_.bricks)
         cull_bricks(out, level.splats.lists().bricks, {volume.geometry, camera, size, out.variant.antialias});
     return out;
-}
-
-bool PictureDrawer::provide_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost) {
-    if (!shadow_lights(scene).empty()) return cast_shadows(level, scene, settings, cost);
-    level.splats.drop_shadows();
-    return false;
 }
 
 void PictureDrawer::draw(const LevelStore& level, FramePlan plan) {

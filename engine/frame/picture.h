@@ -24,7 +24,7 @@ struct Culling {
     std::uint64_t min_splats_to_hide = std::uint64_t{1} << 16U;
 };
 
-/// Throws Error if the picture or a light's picture needs sheets as layers of a target and the device cannot do that.
+/// Throws Error if the picture needs sheets as layers of a target and the device cannot do that.
 void need_layers(const gpu::Device& device, const Scene& scene, const Settings& settings);
 
 /// Throws Error naming a splat whose classified value is not finite.
@@ -41,9 +41,6 @@ class PictureDrawer {
 
     FramePlan plan(const LevelStore& level, const Scene& scene, const Camera& camera, const Settings& settings,
                    const glm::ivec2& size, std::uint32_t payload) const;
-    /// Runs passes 2c and 2d for the level's splats if lights cast shadows and the stored shadows do not match; this
-    /// frees the targets. Returns whether they ran.
-    bool provide_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     /// Draws the plan and waits. With DeviceChoice::check_numbers it throws Error naming the pass and the splat if a
     /// number in the splat list or the picture is not finite.
     void draw(const LevelStore& level, FramePlan plan);
@@ -63,8 +60,6 @@ class PictureDrawer {
     Targets& targets() { return targets_; }
 
   private:
-    /// provide_shadows() of a scene with shadow-casting lights.
-    bool cast_shadows(LevelStore& level, const Scene& scene, const Settings& settings, SetupCost& cost);
     void draw_planned(const LevelStore& level);
     /// Draws a tiled picture after the sort.
     void draw_chunks(const Chunks& chunks, const passes::TileDraw& how);

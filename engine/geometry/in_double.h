@@ -11,9 +11,13 @@ namespace edgesplat::geometry {
 using Real = double;
 using uint = std::uint32_t;
 using vec3 = glm::dvec3;
+using ivec3 = glm::ivec3;
+using vec2 = glm::dvec2;
+using mat3 = glm::dmat3;
 using Bending = glm::dmat3;
 using glm::abs;
 using glm::acos;
+using glm::ceil;
 using glm::clamp;
 using glm::cos;
 using glm::cross;
@@ -25,6 +29,7 @@ using glm::normalize;
 using glm::sin;
 using glm::sqrt;
 
+constexpr Real SHADOW_STEP = static_cast<Real>(shader::SHADOW_STEP);
 constexpr Real SURFACE_CERTAIN = static_cast<Real>(shader::SURFACE_CERTAIN);
 using shader::BEGUN_MATTER;
 constexpr Real SURFACE_CHORD = static_cast<Real>(shader::SURFACE_CHORD);
@@ -44,6 +49,7 @@ inline vec3 bent(const Bending& h, const vec3& v) {
 #pragma GCC diagnostic ignored "-Wunused-function"
 namespace {  // NOLINT(google-build-namespaces)
 #define INOUT(type) type&
+#include "engine/geometry/light_ray.glsl"
 #include "engine/geometry/surface_votes.glsl"
 // After what it uses.
 #include "engine/geometry/surface_check.glsl"

@@ -121,6 +121,7 @@ struct Shown {
     uint number;   // of the splat
     uint kind;     // its label
     Real arrives;  // share of ambient light
+    vec2 lights;   // shares of the two lights with shadows
 };
 
 // Votes about one surface on a ray.
@@ -131,6 +132,7 @@ struct SurfaceVotes {
     Real chord;   // likewise, of chords
     vec3 normal;  // likewise, of unit normals
     Real arrives; // likewise, of the share of ambient light that arrives
+    vec2 lights;  // likewise, of the shares of the lights with shadows
     uint number;  // the splat with the largest weight of a hit; with labels, the first of the seen label
     uint kind;
     Real largest;  // that weight; with labels, how far theirs exceeds all others'
@@ -144,6 +146,7 @@ SurfaceVotes no_votes() {
     votes.chord = 0.0;
     votes.normal = vec3(0.0);
     votes.arrives = 0.0;
+    votes.lights = vec2(0.0);
     votes.number = 0u;
     votes.kind = 0u;
     votes.largest = 0.0;
@@ -157,6 +160,13 @@ Real way_to(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.way / votes.hi
 
 // Mean share of ambient light that arrives where the ray enters.
 Real arrives_at(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.arrives / votes.hits : 1.0; }
+
+// Likewise of the lights with shadows.
+vec2 lights_at(SurfaceVotes votes) {
+    vec2 all = vec2(1.0);
+    if (votes.hits > 0.0) all = votes.lights / votes.hits;
+    return all;
+}
 
 // Largest distance of votes about the same surface; 0 where matter begins, since that is certain.
 Real window_of(SurfaceVotes votes) { return votes.number >= BEGUN_MATTER ? Real(0.0) : SURFACE_WINDOW; }
@@ -193,6 +203,7 @@ void begin_matter(INOUT(SurfaceVotes) votes, Real way, Real chord, vec3 n, uint 
     votes.chord = SURFACE_CERTAIN * min(chord, SURFACE_CHORD);
     votes.normal = SURFACE_CERTAIN * n;
     votes.arrives = SURFACE_CERTAIN;
+    votes.lights = vec2(SURFACE_CERTAIN);
     votes.number = number;
     votes.largest = SURFACE_CERTAIN;
 }
@@ -240,6 +251,7 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     to.way += weight * way;
     to.chord += weight * vote.chord;
     to.arrives += weight * shown.arrives;
+    to.lights += weight * shown.lights;
     if (hit) to.normal += w / max(length(vote.n), 1e-12) * vote.n;
     bool agrees = labelled && shown.kind == to.kind;
     bool takes = !agrees && weight > to.largest;

@@ -2,7 +2,7 @@
 
 namespace edgesplat::passes {
 
-gpu::Specialization occlude_constants(const OccludeAmbient& in) {
+gpu::Specialization light_constants(const SplatLight& in) {
     return {{shader::SPEC_ISO_COUNT, in.iso_count},
             {shader::SPEC_CLIP_KEEP, in.clip.keep},
             {shader::SPEC_CLIP_REMOVE, in.clip.remove},
@@ -10,8 +10,8 @@ gpu::Specialization occlude_constants(const OccludeAmbient& in) {
             {shader::SPEC_TRANSFER, in.transfer ? 1U : 0U}};
 }
 
-void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in) {
-    commands.dispatch("2b_occlude_ambient.comp", occlude_constants(in), 0, commands.groups_for(in.splat_count, 64));
+void occlude_ambient(gpu::Commands& commands, const SplatLight& in) {
+    commands.dispatch("2b_occlude_ambient.comp", light_constants(in), 0, commands.groups_for(in.splat_count, 64));
     commands.barrier();
 }
 

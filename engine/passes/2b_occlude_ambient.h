@@ -3,11 +3,12 @@
 
 #include "engine/gpu/commands.h"
 #include "engine/passes/clip_count.h"
-#include "shaders/shared/occlusion_params.h"
+#include "shaders/shared/light_params.h"
 
 namespace edgesplat::passes {
 
-struct OccludeAmbient {
+/// Inputs of 2b_occlude_ambient and 2c_cast_shadows.
+struct SplatLight {
     std::uint64_t splat_count = 0;
     std::uint32_t iso_count = 1;
     ClipCount clip{};
@@ -15,10 +16,10 @@ struct OccludeAmbient {
     bool transfer = false;  ///< extinction is from SceneParams::transfer
 };
 
-/// Specialization of 2b_occlude_ambient.comp.
-gpu::Specialization occlude_constants(const OccludeAmbient& in);
+/// Specialization of both.
+gpu::Specialization light_constants(const SplatLight& in);
 
-/// Reads the volume, SceneParams and the splat list, writes OcclusionParams::reach. View-independent.
-void occlude_ambient(gpu::Commands& commands, const OccludeAmbient& in);
+/// Reads the volume, SceneParams and the splat list, writes LightParams::reach. View-independent.
+void occlude_ambient(gpu::Commands& commands, const SplatLight& in);
 
 }  // namespace edgesplat::passes

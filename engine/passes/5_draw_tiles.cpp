@@ -45,6 +45,7 @@ gpu::Specialization begin_constants(const DrawVariant& variant) {
     return {{shader::SPEC_ISO_COUNT, variant.iso_count},
             {shader::SPEC_CLIP_KEEP, variant.clip.keep},
             {shader::SPEC_CLIP_REMOVE, variant.clip.remove},
+            {shader::SPEC_SHADOWS, variant.shadows},
             {shader::SPEC_GROUP, kBeginGroup}};
 }
 

@@ -286,9 +286,34 @@ bool has_matter_at_border(const Volume& volume, const shader::SceneParams& param
     return false;
 }
 
+namespace {
+
+/// Whether the field may be matter at a point in the volume (index space): the samples around, widened by twice their
+/// range, reach it.
+bool may_be_matter(const Volume& volume, const shader::FrameParams& params, const glm::dvec3& at) {
+    const glm::ivec3 last = volume.geometry.dims - 1,
+                     cell = glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), last);
+    float least = INFINITY, most = -INFINITY;
+    for (int i = 0; i < 8; ++i) {
+        const glm::ivec3 corner = glm::min(cell + glm::ivec3(i & 1, i >> 1 & 1, i >> 2), last);
+        const float value = scaled_sample(volume, value_at(volume, corner));
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+    const float spread = 2 * (most - least);
+    const auto material = [&](float value) {
+        return std::ranges::count_if(params.iso, [&](float iso) { return iso <= value; });
+    };
+    for (auto m = material(least - spread); m <= material(most + spread); ++m)
+        if ((params.visible_mask >> m & 1U) != 0) return true;
+    return false;
+}
+
+}  // namespace
+
 CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const Settings& settings, bool keep_buried) {
     CollectionPlan plan;
-    // Optical depth, and the view from inside matter, need all voxels.
+    // Optical depth needs all voxels.
     plan.surfaces = !keep_buried && draws_surfaces(settings, whole, volume);
     const Scene& scene = plan.surfaces ? scene_of_bodies(whole) : whole;
     plan.dims = volume.geometry.dims;
@@ -420,7 +445,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     const glm::dvec3 eye = geometry.to_index(view.eye);
     const bool inside = glm::all(glm::greaterThan(eye, glm::dvec3(-0.5))) &&
                         glm::all(glm::lessThan(eye, glm::dvec3(geometry.dims) - 0.5));
-    plan.variant.begins = plan.variant.surfaces && ((!inside && splats.border) || plan.variant.clip.any());
+    plan.variant.begins =
+        plan.variant.surfaces && (plan.variant.clip.any() || (inside ? may_be_matter(volume, p, eye) : splats.border));
     if (plan.variant.surfaces && splats.count >= shader::NUMBERED_SPLATS - shader::MAX_MATERIALS)
         fail("{} surface splats are too many, expected less than 2^28: choose --opaque kernels", splats.count);
     const PaperShape paper;

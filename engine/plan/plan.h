@@ -62,7 +62,8 @@ struct StaleResults {
 /// What `wanted` must compute again if the results of `held` exist.
 StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wanted);
 
-/// `keep_buried`: buried voxels stay (the output is optical depth, or the eye is inside opaque matter).
+/// `keep_buried`: buried voxels stay, and kernels draw (the output is optical depth, or the eye is inside opaque matter
+/// that kernels draw).
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
 /// Material of a scaled sample.

@@ -61,6 +61,11 @@ std::uint64_t of_groups(const FramePlan& plan, std::uint64_t bytes) {
 std::uint32_t prepared_slots(const FramePlan& plan) {
     return passes::prepared_slots(splats(plan) * plan.sheets_per_splat);
 }
+/// Of BIND_TILE_SHEETS.
+std::uint64_t texels_of_pixel(const FramePlan& plan) {
+    if (!plan.variant.surfaces) return 1;
+    return shader::VOTE_TEXELS + (plan.variant.shadows > 0 ? 1 : 0);
+}
 std::optional<glm::ivec3> layers(const FramePlan& plan, std::uint32_t count) {
     if (plan.variant.tiles) return std::nullopt;
     return glm::ivec3(plan.params.size, static_cast<int>(count));
@@ -126,7 +131,7 @@ const std::array kSplatLists{
 
 const std::array kLightLists{
     row<LightListRow>(text("splat occlusion", "(splats) uint", "2b", "5"), &L::occlusion, &F::splat_occlusion),
-    row<LightListRow>(text("splat shadows", "(splats) uint", "2d", "5"), &L::shadows, &F::splat_shadows),
+    row<LightListRow>(text("splat shadows", "(splats) uint", "2c", "5"), &L::shadows, &F::splat_shadows),
 };
 
 const std::array kTargetImages{
@@ -250,11 +255,10 @@ const std::array kTargetBuffers{
     row<TargetBufferRow>(text("saturated pixels, host", "(tiles) uint", "5", "host"), &T::tile_closed_on_host, nullptr,
                          Place::Host, kNoTexels, kUnbound,
                          [](const FramePlan& p, const Profile&) { return of_refined_tiles(p, kWord); }),
-    row<TargetBufferRow>(text("unfinished sheets", "(y, x) vec4, or votes about surfaces", "5", "5"), &T::tile_sheets,
-                         &F::tile_sheets, Place::Device, kSums, shader::BIND_TILE_SHEETS,
-                         [](const FramePlan& p, const Profile&) {
-                             return if_tiles(p, (p.variant.surfaces ? shader::VOTE_TEXELS : 1U) * picture_bytes(p));
-                         }),
+    row<TargetBufferRow>(
+        text("unfinished sheets", "(y, x) vec4, or votes about surfaces", "5", "5"), &T::tile_sheets, &F::tile_sheets,
+        Place::Device, kSums, shader::BIND_TILE_SHEETS,
+        [](const FramePlan& p, const Profile&) { return if_tiles(p, texels_of_pixel(p) * picture_bytes(p)); }),
     row<TargetBufferRow>(
         text("outlines", "(y, x) where one crosses the pixel", "5", "7"), &T::outlines, &F::outlines, Place::Device,
         kWords, shader::BIND_OUTLINES,

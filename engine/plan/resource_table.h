@@ -106,7 +106,6 @@ std::span<const vk::Format> placeholder_texels();
 
 /// Temporary resources.
 inline constexpr ResourceText kStagingBuffer{"staging buffer", "(rows) texels", "host", "copies"};
-inline constexpr ResourceText kOcclusionBlock{"occlusion parameters", "(1) OcclusionParams", "host", "2b"};
-inline constexpr ResourceText kLightLayers{"light layers", "(layers, y, x) optical depth from the light", "2c", "2d"};
+inline constexpr ResourceText kLightBlock{"light parameters", "(1) LightParams", "host", "2b, 2c"};
 
 }  // namespace edgesplat

@@ -44,7 +44,7 @@ void Bindings::write_splats(const SplatLists& lists) {
     for (const auto& row : field_image_rows())
         put_image(row.binding, lists.*row.image, row.kind);
     set_.put_block(shader::BIND_SCENE, lists.scene ? lists.scene : no_block_);
-    set_.put_block(shader::BIND_OCCLUSION, no_block_);
+    set_.put_block(shader::BIND_LIGHT, no_block_);
 }
 
 void Bindings::write_targets(const TargetResources& targets) {

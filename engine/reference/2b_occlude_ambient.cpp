@@ -4,22 +4,16 @@
 #include <cmath>
 #include <numbers>
 
+#include "engine/geometry/in_double.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 
 namespace edgesplat::reference {
-namespace {
 
-constexpr double kDark = 12;
-
-/// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-glm::dmat3 frame_of(const glm::dvec3& n) {
-    const double s = n.z >= 0 ? 1 : -1;
-    const double a = -1 / (s + n.z), b = n.x * n.y * a;
-    return {glm::dvec3(1 + s * n.x * n.x * a, s * b, -s * n.x), glm::dvec3(b, s + n.y * n.y * a, -n.y), n};
+double extinction_of(double value, const ScaledScene& scaled, const Scene& scene) {
+    if (!scaled.transfer.empty()) return transfer_at(scaled.transfer, value).extinction;
+    return scene.materials[static_cast<std::size_t>(scaled.material(value))].extinction;
 }
-
-}  // namespace
 
 double ambient_reach(const SplatRecord& record, const Field& field, const ScaledScene& scaled, const Scene& scene,
                      const VolumeGeometry& geometry, double band, double radius, bool turned, int rays) {
@@ -37,7 +31,7 @@ double ambient_reach_at(const SurfacePoint& s, std::uint32_t splat_voxel, const 
     const glm::dvec3 start = glm::dvec3(voxel) + s.foot + std::min(kOcclusionLift * s.voxel, s.room) * s.step;
     const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
     const bool sphere = s.normal == glm::dvec3(0);
-    const glm::dmat3 frame = sphere ? glm::dmat3(1) : frame_of(s.normal);
+    const glm::dmat3 frame = sphere ? glm::dmat3(1) : edgesplat::geometry::frame_of(s.normal);
     const glm::uvec3 v(voxel);
     const std::uint32_t turn = v.x * 3518319155U + v.y * 2882110345U + v.z * 2360945575U;
     const double phase = (turn >> 8U) * (2 * std::numbers::pi / 16777216.0);
@@ -55,10 +49,7 @@ double ambient_reach_at(const SurfacePoint& s, std::uint32_t splat_voxel, const 
         for (int i = 0; i < static_cast<int>(steps) && tau < kDark; ++i) {
             const glm::ivec3 p(glm::floor(start + (i + 0.5) * dl * u + 0.5));
             if (field.clamped(p) != p || !field.has_data(field.offset(p)) || clip.cuts_away(glm::dvec3(p))) continue;
-            const double value = field.at(p);
-            tau += dl * (scaled.transfer.empty()
-                             ? scene.materials[static_cast<std::size_t>(scaled.material(value))].extinction
-                             : transfer_at(scaled.transfer, value).extinction);
+            tau += dl * extinction_of(field.at(p), scaled, scene);
         }
         sum += std::exp(-tau);
     }

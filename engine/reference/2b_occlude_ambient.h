@@ -6,6 +6,11 @@
 namespace edgesplat::reference {
 
 constexpr int kOcclusionRays = 48, kOcclusionSteps = 256;
+/// Optical depth beyond which nothing is seen.
+constexpr double kDark = 12;
+
+/// Extinction of matter with the scaled value, per mm.
+double extinction_of(double value, const ScaledScene& scaled, const Scene& scene);
 
 /// Share [0, 1] of the ambient light that reaches the splat; occluders further away than `radius` mm do not count.
 /// `turned`: the other face of a wall. The device casts kOcclusionRays rays; other numbers serve to measure its error.

@@ -363,11 +363,12 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                     const glm::dvec3 u(rays_[at]);
                     const double ahead = glm::dot(center - view_.eye_index, u);
                     const glm::dvec3 p = view_.eye_index + ahead * u - center;
+                    const double radius = footprints_.kernel().radius;
+                    if (!(glm::dot(p, p) < radius * radius)) continue;
                     const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
                     const VoxelEdge edge = met(splat, p, u).record.edge;
                     if (!footprints_.cuts(edge)) continue;
-                    keep_outer(outlines[at],
-                               outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau, footprints_.kernel()));
+                    keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
                 }
             }
         }

@@ -21,6 +21,22 @@ double not_zero(double v) {
     return std::abs(v) < kStraight ? std::copysign(kStraight, v) : v;
 }
 
+/// Change of a function with this gradient, at a depth (mm), from a pixel to its neighbours to the right and below.
+dvec2 rate_across(const View& view, const dvec3& gradient, double depth) {
+    const double pixel = 2 * view.frame.tan_half_y * depth / view.height;
+    return pixel * dvec2(glm::dot(gradient, view.world_to_index * view.frame.right),
+                         glm::dot(gradient, view.world_to_index * -view.frame.up));
+}
+
+/// The outline where `level` is 0; matter lies where it is negative. `rate`: change of `level` per pixel. nullopt if
+/// the outline is a pixel or more away.
+std::optional<Outline> outline_of_rate(double level, const dvec2& rate) {
+    const bool down = std::abs(rate.y) > std::abs(rate.x);
+    const double along = down ? rate.y : rate.x, pixels = level / std::abs(along);
+    if (!(std::abs(pixels) < 1)) return {};
+    return Outline{pixels, -level / along, down};
+}
+
 /// A splat along one ray.
 struct OutlinedSplat {
     const VoxelEdge& edge;
@@ -34,24 +50,17 @@ struct OutlinedSplat {
     /// Whether the ray's point z lies inside a corner's third plane.
     bool inside_corner(double z) const { return sight.ray.corner.p + z * sight.ray.corner.u < edge.corner.D; }
 
-    /// Change of a function with this gradient at z, from a pixel to its neighbours to the right and below.
     dvec2 rate_across(const dvec3& gradient, double z) const {
-        const double pixel = 2 * view.frame.tan_half_y * depth(z) / view.height;
-        return pixel * dvec2(glm::dot(gradient, view.world_to_index * view.frame.right),
-                             glm::dot(gradient, view.world_to_index * -view.frame.up));
+        return reference::rate_across(view, gradient, depth(z));
     }
 
-    /// The outline where `level` is 0; matter lies where it is negative. `rate`: change of `level` per pixel. nullopt
-    /// if the outline is a pixel or more away, or the splat is too faint or too far from the ray.
+    /// outline_of_rate(); nullopt if the splat is too faint or too far from the ray.
     std::optional<Outline> passing(double level, const dvec2& rate, double z) const {
-        const bool down = std::abs(rate.y) > std::abs(rate.x);
-        const double along = down ? rate.y : rate.x, pixels = level / std::abs(along);
         const double distance2 = sight.ray.rho2 + z * z;
         const bool knows = level < 0 ? tau > static_cast<double>(shader::OUTLINE_TAU) &&
                                            distance2 < static_cast<double>(shader::OUTLINE_FAR2)
                                      : distance2 < static_cast<double>(shader::OUTLINE_NEAR2);
-        if (!knows || !(std::abs(pixels) < 1)) return {};
-        return Outline{pixels, -level / along, down};
+        return knows ? outline_of_rate(level, rate) : std::nullopt;
     }
 
     /// The outline of a face: the ray's minimum of phi, or of a wall's other face its maximum.
@@ -86,14 +95,18 @@ struct OutlinedSplat {
 }  // namespace
 
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const dvec3& p, const dvec3& u, double ahead,
-                                  double tau, const Kernel& kernel) {
+                                  double tau) {
     const double depth_along = glm::dot(view.frame.forward, view.geometry.index_to_world_axes * u);
-    const OutlinedSplat splat{edge, view,       face_sight(edge, p, u), cut_of(edge, kernel).thickness, ahead,
+    const OutlinedSplat splat{edge, view,       face_sight(edge, p, u), cut_of(edge, kKernel).thickness, ahead,
                               tau,  depth_along};
-    if (!(splat.sight.ray.rho2 < kernel.radius * kernel.radius)) return {};
     std::optional<Outline> outline = splat.of_face();
     keep_outer(outline, splat.of_crease());
     return outline;
+}
+
+std::optional<Outline> outline_at(const View& view, const dvec3& u, double way, double level, const dvec3& gradient) {
+    const double depth = way * glm::dot(view.frame.forward, view.geometry.index_to_world_axes * u);
+    return outline_of_rate(level, rate_across(view, gradient, depth));
 }
 
 void keep_outer(std::optional<Outline>& kept, const std::optional<Outline>& found) {

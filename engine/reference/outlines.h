@@ -18,11 +18,15 @@ struct Outline {
     bool down = false;  ///< axis: true downwards, false to the right
 };
 
-/// The outline of a splat's face or crease next to the ray p + z u, which passes through its kernel. p: the ray's point
-/// nearest to the voxel, relative to it; u: unit, index space; `ahead`: from the eye to p, voxels; `tau`: the splat's
-/// optical depth on the ray; `kernel`: the splat's.
+/// The outline of a splat's face or crease next to the ray p + z u. p: the ray's point nearest to the voxel, relative
+/// to it; u: unit, index space; `ahead`: from the eye to p, voxels; `tau`: the splat's optical depth on the ray.
 std::optional<Outline> outline_of(const VoxelEdge& edge, const View& view, const glm::dvec3& p, const glm::dvec3& u,
-                                  double ahead, double tau, const Kernel& kernel);
+                                  double ahead, double tau);
+
+/// The outline next to a point of the ray along u, `way` voxels from the eye, where a function with this gradient
+/// (index space) is `level`; matter lies where it is negative. nullopt if the outline is a pixel or more away.
+std::optional<Outline> outline_at(const View& view, const glm::dvec3& u, double way, double level,
+                                  const glm::dvec3& gradient);
 
 /// Keeps the outer of two splats' outlines, since the matter of either counts.
 void keep_outer(std::optional<Outline>& kept, const std::optional<Outline>& found);

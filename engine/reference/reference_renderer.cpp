@@ -4,7 +4,7 @@
 
 #include "engine/image/sample_mean.h"
 #include "engine/reference/2b_occlude_ambient.h"
-#include "engine/reference/2c_sweep_light.h"
+#include "engine/reference/2c_cast_shadows.h"
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/parallel.h"
@@ -115,8 +115,8 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
         if (output == Output::Tau) record.edge.traced.reset();
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
-    // Optical depth, and the view from inside matter, need all voxels.
-    const bool surfaces = surface_scene_ && output != Output::Tau && !starts_in_opaque(camera.eye);
+    // Optical depth needs all voxels.
+    const bool surfaces = surface_scene_ && output != Output::Tau;
     const auto drawn = [&] {
         if (!surfaces) return draw(records, view, output);
         const std::vector<glm::dvec4> frame =
@@ -139,30 +139,31 @@ void PreparedVolume::replace_surface(std::size_t voxel, const VoxelEdge& edge) {
 
 std::vector<SplatRecord> PreparedVolume::lit_surfaces(Output output) const {
     std::vector<SplatRecord> lit = surfaces_;
-    if (output != Output::Color || !occludes_ambient(scene_)) return lit;
-    const AmbientOcclusion& occlusion = *scene_.effects.occlusion;
+    const std::vector<std::size_t> shadowing = shadow_lights(scene_);
+    const bool occludes = occludes_ambient(scene_);
+    if (output != Output::Color || (!occludes && shadowing.empty())) return lit;
+    const ScaledScene& bodies = surface_scene_->bodies;
+    const Scene& scene = surface_scene_->scene;
+    const VolumeGeometry& geometry = volume_->geometry;
     parallel_for(static_cast<int>(lit.size()), [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
             SplatRecord& record = lit[static_cast<std::size_t>(i)];
             // Their second distance is an error, and planes cut rays, not splats.
             VoxelEdge face = record.edge;
             face.D2 = std::numeric_limits<double>::infinity();
-            const SurfacePoint point = surface_point(face, edge_reach(settings_), false, volume_->geometry);
-            const double reach = ambient_reach_at(point, record.voxel, field(), surface_scene_->bodies,
-                                                  surface_scene_->scene, volume_->geometry, occlusion.radius);
-            record.reach.ambient = 1 - occlusion.strength * (1 - reach);
+            const SurfacePoint point = surface_point(face, edge_reach(settings_), false, geometry);
+            if (occludes) {
+                const AmbientOcclusion& occlusion = *scene_.effects.occlusion;
+                const double reach =
+                    ambient_reach_at(point, record.voxel, field(), bodies, scene, geometry, occlusion.radius);
+                record.reach.ambient = 1 - occlusion.strength * (1 - reach);
+            }
+            for (const std::size_t l : shadowing)
+                record.reach.lights[l] =
+                    light_reach(point, record.voxel, field(), bodies, scene, geometry, scene_.lights[l]);
         }
     });
     return lit;
-}
-
-bool PreparedVolume::starts_in_opaque(const glm::dvec3& eye) const {
-    const glm::dvec3 nearest = glm::round(volume_->geometry.to_index(eye)), last(volume_->geometry.dims - 1);
-    if (!glm::all(glm::greaterThanEqual(nearest, glm::dvec3(0))) || !glm::all(glm::lessThanEqual(nearest, last)))
-        return false;
-    const std::size_t at = field().offset(glm::ivec3(nearest));
-    return field().has_data(at) &&
-           scaled_.drawn[static_cast<std::size_t>(scaled_.material(field().at(glm::ivec3(nearest))))];
 }
 
 void PreparedVolume::find_light(std::span<SplatRecord> records) const {
@@ -171,8 +172,6 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
     const double band = edge_reach(settings_);
     const IndexClip clip = index_clip(scene_.effects.clip, geometry);
     const std::vector<std::size_t> shadowing = shadow_lights(scene_);
-    const double across = glm::length(geometry.index_to_world_axes * glm::dvec3(geometry.dims));
-    const double pixel = across / scene_.effects.shadows.resolution;
     const auto& occlusion = scene_.effects.occlusion;
     if (!occludes_ambient(scene_) && shadowing.empty()) return;
     parallel_for(static_cast<int>(records.size()), [&](int begin, int end) {
@@ -188,12 +187,9 @@ void PreparedVolume::find_light(std::span<SplatRecord> records) const {
                 record.turned_ambient = is_wall(record.edge, band) ? ambient(true) : record.reach.ambient;
             }
             for (const std::size_t l : shadowing) {
-                const Light& light = scene_.lights[l];
-                const glm::dvec3 at = geometry.to_world(glm::dvec3(f.voxel(record.voxel)));
-                const bool far = light.kind == Light::Kind::Directional;
-                const glm::dvec3 to_light = glm::normalize(far ? light.direction : light.position - at);
-                const glm::dvec3 place = lit_place(record, f, geometry, band, to_light, pixel, clip);
-                record.reach.lights[l] = light_reach(records, f, scene_, geometry, footprints_, light, place, clip);
+                const SurfacePoint point = lit_point(record, f, geometry, band, scene_.lights[l], clip);
+                record.reach.lights[l] =
+                    light_reach(point, record.voxel, f, scaled_, scene_, geometry, scene_.lights[l]);
             }
         }
     });

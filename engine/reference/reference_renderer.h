@@ -47,8 +47,6 @@ class PreparedVolume {
     Image render(const Camera& camera, int width, int height, Output output = Output::Color) const;
 
   private:
-    /// Whether the voxel nearest to the eye is of opaque matter.
-    bool starts_in_opaque(const glm::dvec3& eye) const;
     /// The surface splats, with the light that reaches them if `output` shows it.
     std::vector<SplatRecord> lit_surfaces(Output output) const;
     /// Finds the light that reaches each splat: ambient occlusion and shadows.

@@ -3,12 +3,12 @@
 
 #include "engine/reference/2_collect_splats.h"
 #include "engine/scene/clip_planes.h"
+#include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
-/// Voxels between a surface and the point above it where light arrives: smallest and largest for shadows; for ambient
-/// occlusion.
-constexpr double kShortestLift = 1.5, kLongestLift = 8, kOcclusionLift = 1.25;
+/// Voxels between a surface and the point above it where light arrives: of lights with shadows, of ambient light.
+constexpr double kShadowLift = static_cast<double>(shader::SHADOW_LIFT), kOcclusionLift = 1.25;
 
 struct SurfacePoint {
     glm::dvec3 foot{0};    ///< relative to the voxel centre, index space

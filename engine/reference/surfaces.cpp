@@ -7,6 +7,7 @@
 
 #include "engine/geometry/in_double.h"
 #include "engine/reference/faces.h"
+#include "engine/reference/outlines.h"
 #include "engine/reference/parallel.h"
 #include "engine/reference/volume_piece.h"
 #include "engine/volume/labels.h"
@@ -124,6 +125,48 @@ std::vector<Piece> pieces_of(const Field& field, const ScaledScene& bodies, std:
     return found;
 }
 
+/// The outlines of the field next to a ray between `low` and `high`: where it passes nearest to matter, and where it is
+/// deepest behind the begin of its first piece.
+std::optional<Outline> searched_outline(const Field& field, const ScaledScene& bodies, std::span<const RayPart> parts,
+                                        std::span<const Piece> pieces, const View& view, const dvec3& u, double low,
+                                        double high) {
+    const dvec3& eye = view.eye_index;
+    const auto slope = [&](double z) { return glm::dot(spline_gradient(field, eye + z * u), u); };
+    // Where the field turns between a and b, or nullopt.
+    const auto turn = [&](double a, double b) -> std::optional<double> {
+        const bool rises = slope(a) > 0;
+        if ((slope(b) > 0) == rises) return {};
+        for (int step = 0; step < 30; ++step)
+            ((slope(0.5 * (a + b)) > 0) == rises ? a : b) = 0.5 * (a + b);
+        return a;
+    };
+    constexpr double kStep = 0.1;
+    std::optional<Outline> found;
+    // The level is 0 at the value `end`, and `outward` is 1 if values grow out of the matter, else -1.
+    const auto keep = [&](double z, double end, double outward) {
+        const dvec3 g = spline_gradient(field, eye + z * u);
+        const double level = outward * (sample(field, eye + z * u, true) - end) / glm::length(g);
+        if (std::isfinite(end)) keep_outer(found, outline_at(view, u, z, level, outward * glm::normalize(g)));
+    };
+    for (double a = low; a < high; a += kStep) {
+        const auto z = turn(a, a + kStep);
+        const auto holds = [&](const RayPart& part) { return z >= part.first && z <= part.last; };
+        if (!z || std::ranges::none_of(parts, holds)) continue;
+        const int m = bodies.material(sample(field, eye + *z * u, true));
+        if (bodies.drawn[static_cast<std::size_t>(m)]) continue;
+        const bool rises = slope(a) > 0;
+        keep(*z, rises ? bodies.upper(m) : bodies.lower(m), rises ? -1 : 1);
+    }
+    if (pieces.empty() || !pieces[0].entered) return found;
+    const double begin = pieces[0].begin, farthest = std::sqrt(static_cast<double>(shader::OUTLINE_FAR2));
+    for (double a = begin; a < begin + farthest; a += kStep)
+        if (const auto z = turn(a, a + kStep)) {
+            keep(*z, sample(field, eye + begin * u, true), slope(begin) > 0 ? -1 : 1);
+            break;
+        }
+    return found;
+}
+
 geometry::SurfacePlane plane_of(const dvec3& n, double away) {
     return {n, std::isfinite(away) ? away : 1e9};
 }
@@ -138,6 +181,14 @@ struct DrawnSplat {
     int sheet = 0;
     PixelBox box;
 };
+
+/// Its face without the error in D2, which is no wall's thickness.
+VoxelEdge outlined_face(const DrawnSplat& s) {
+    VoxelEdge face = s.record->edge;
+    face.D2 = std::numeric_limits<double>::infinity();
+    if (!s.creased) face.crease = face.corner = {};
+    return face;
+}
 
 double longest_voxel(const VolumeGeometry& geometry) {
     const dvec3 spacing = geometry.spacing();
@@ -254,7 +305,9 @@ geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, st
         const int material = materials.material(value);
         const bool matter = materials.drawn[static_cast<std::size_t>(material)] &&
                             field.has_data(field.offset(field.clamped(ivec3(glm::round(at)))));
-        if (pair.front.hits > 0 || part.n == dvec3(0) || !matter) continue;
+        if (pair.front.hits > 0 || !matter) continue;
+        // An eye in matter sees nothing else.
+        const dvec3 n = part.n == dvec3(0) ? -u : part.n;
         const ScaledScene& bodies = surfaces.bodies;
         const int body = bodies.material(value);
         double chord = geometry::chord_in_body(value, glm::dot(spline_gradient(field, at), u), bodies.lower(body),
@@ -268,7 +321,7 @@ geometry::SurfacePair begun(const Field& field, const SurfaceScene& surfaces, st
                 chord += bodies.drawn[static_cast<std::size_t>(bodies.material(further))] ? kStep : 0;
             }
         }
-        geometry::begin_matter(pair.front, part.first, std::min(chord, part.last - part.first), glm::normalize(part.n),
+        geometry::begin_matter(pair.front, part.first, std::min(chord, part.last - part.first), glm::normalize(n),
                                shader::BEGUN_MATTER + static_cast<std::uint32_t>(material));
     }
     return pair;
@@ -396,6 +449,8 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
     std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return splats[i].sheet; });
     const dvec3 view_z = depth_slope(view);
     const double reach = before * glm::length(view_z);
+    const std::vector<std::size_t> shadowing = shadow_lights(scene);
+    const bool smooth = payload == Payload::Color && smooths_outlines(settings, scene);
     const auto seen_by = [&](const geometry::SurfaceVotes& votes, const dvec3& at) {
         Seen seen;
         if (votes.number < shader::BEGUN_MATTER) {
@@ -408,16 +463,20 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
             seen.color = label ? label->color : scene.materials[seen.material].color;
         }
         seen.reach.ambient = geometry::arrives_at(votes);
+        for (std::size_t k = 0; k < shadowing.size(); ++k)
+            seen.reach.lights[shadowing[k]] = geometry::lights_at(votes)[static_cast<int>(k)];
         return seen;
     };
     std::vector<glm::dvec4> frame(static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height),
                                   glm::dvec4(0));
+    std::vector<std::optional<Outline>> outlines(smooth ? frame.size() : 0);
     parallel_for(view.height, [&](int begin, int end) {
         struct Pixel {
             geometry::SurfacePair pair = geometry::no_surfaces();
             std::vector<RayPart> parts;
             bool closed = false;
             std::optional<std::vector<Piece>> pieces;
+            std::optional<Outline> outline;
         };
         const auto width = static_cast<std::size_t>(view.width);
         std::vector<Pixel> pixels(width * static_cast<std::size_t>(end - begin));
@@ -465,7 +524,23 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                         vote.weight = 0;
                     else
                         vote.chord = std::min(vote.chord, part->last - way);
-                    geometry::count_vote(pixel.pair, vote, way, {number, labels[number], s.record->reach.ambient},
+                    const bool hidden =
+                        geometry::wins(pixel.pair.front) &&
+                        way > geometry::way_to(pixel.pair.front) + static_cast<double>(shader::SURFACE_WINDOW);
+                    if (smooth && vote.weight > 0 && !hidden && s.traced) {
+                        const double half = std::sqrt(
+                            std::max(s.reach * s.reach - glm::dot(from_eye - ahead * u, from_eye - ahead * u), 0.0));
+                        keep_outer(pixel.outline, searched_outline(field, surfaces.bodies, pixel.parts, *pixel.pieces,
+                                                                   view, u, ahead - half, ahead + half));
+                    }
+                    if (smooth && vote.weight > 0 && !hidden && !s.traced)
+                        keep_outer(pixel.outline,
+                                   outline_of(outlined_face(s), view, ahead * u - from_eye, u, ahead, 1));
+                    glm::dvec2 lights(1);
+                    for (std::size_t k = 0; k < shadowing.size(); ++k)
+                        lights[static_cast<int>(k)] = s.record->reach.lights[shadowing[k]];
+                    geometry::count_vote(pixel.pair, vote, way,
+                                         {number, labels[number], s.record->reach.ambient, lights},
                                          surfaces.materials.labels != nullptr);
                 }
         }
@@ -488,9 +563,10 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                     sum += share * glm::dvec4(payload_at(votes, seen, scene, view, u, payload), 1);
                 }
                 frame[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = sum;
+                if (smooth) outlines[static_cast<std::size_t>(y) * width + static_cast<std::size_t>(x)] = pixel.outline;
             }
     });
-    return frame;
+    return smooth ? smoothed(frame, outlines, view.width, view.height) : frame;
 }
 
 }  // namespace edgesplat::reference

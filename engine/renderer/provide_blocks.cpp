@@ -12,11 +12,6 @@
 namespace edgesplat {
 namespace {
 
-/// Whether splats outside the picture matter: they may cast shadows.
-bool needs_everything(const Scene& scene) {
-    return !shadow_lights(scene).empty();
-}
-
 /// Rays may have to search the whole volume for surface splats.
 Settings settings_in_blocks(const FrameRequest& request) {
     Settings settings = drawn_settings(request);
@@ -51,8 +46,10 @@ std::optional<std::uint64_t> SplatProvider::most_splats_in_blocks(const FrameReq
 SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& request, double patience,
                                                          double& milliseconds) {
     const Volume& original = *levels_.original();
-    if (occludes_ambient(request.scene)) {
-        fail("occlusion: {} is on the device block by block, expected a volume that fits as a whole", original.name);
+    const bool shadowed = !shadow_lights(request.scene).empty();
+    if (shadowed || occludes_ambient(request.scene)) {
+        fail("{}: {} is on the device block by block, expected a volume that fits as a whole",
+             shadowed ? "shadows" : "occlusion", original.name);
     }
     const auto start = Clock::now();
     const auto most = most_splats_in_blocks(request);
@@ -62,7 +59,6 @@ SplatProvider::Gathered SplatProvider::collect_in_blocks(const FrameRequest& req
     CollectionPlan wanted = plan_collection(*shown_.volume.volume(), request.scene, settings, keep_buried);
     wanted.blocks = true;
     const Gathered gathered = collect_blocks(request, wanted, *most, patience);
-    if (gathered == Gathered::All) drawer_->provide_shadows(shown_, request.scene, settings, cost_);
     if (!cost_.times.empty()) milliseconds += milliseconds_since(start);
     return gathered;
 }
@@ -134,10 +130,9 @@ std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request
     std::vector<std::size_t> shown;
     for (std::size_t i = 0; i < blocks.size(); ++i) {
         const CollectionBlock& block = blocks[i];
-        if (needs_everything(request.scene) || view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
+        if (view.shows(block.core_low, block.core_size, reach)) shown.push_back(i);
     }
-    // Shadows need all splats.
-    if (!divides_blocks_ || needs_everything(request.scene)) return shown;
+    if (!divides_blocks_) return shown;
     const double thickness = sheet_thickness(geometry, request.camera, drawn_settings(request));
     std::vector<CollectionBlock> cores;
     for (const std::size_t i : shown)
@@ -153,10 +148,9 @@ std::vector<std::size_t> SplatProvider::blocks_shown(const FrameRequest& request
 
 bool SplatProvider::can_skip_hidden_blocks(const FrameRequest& request) const {
     const Settings drawn = drawn_settings(request);
-    // Parts, shadows and optical depth need occluded splats; several samples are several pictures, each with its own
-    // view.
-    return options_->exchange == nullptr && shadow_lights(request.scene).empty() && !request.outputs.tau &&
-           request.scene.effects.samples == 1 && drawn.saturation < 1 && drawn.sheet_format == SheetFormat::Tiles;
+    // Parts and optical depth need occluded splats; several samples are several pictures, each with its own view.
+    return options_->exchange == nullptr && !request.outputs.tau && request.scene.effects.samples == 1 &&
+           drawn.saturation < 1 && drawn.sheet_format == SheetFormat::Tiles;
 }
 
 void SplatProvider::sort_by_depth(const FrameRequest& request, std::vector<std::size_t>& blocks) const {

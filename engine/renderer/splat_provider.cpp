@@ -142,8 +142,7 @@ double SplatProvider::provide_undivided(const FrameRequest& request) {
     const auto start = Clock::now();
     const Settings settings = drawn_settings(request);
     const bool found = shown_.provide(request.scene, settings, keeps_buried(request), cost_);
-    const bool shadowed = drawer_->provide_shadows(shown_, request.scene, settings, cost_);
-    return found || shadowed ? milliseconds_since(start) : 0;
+    return found ? milliseconds_since(start) : 0;
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {

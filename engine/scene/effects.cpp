@@ -49,9 +49,6 @@ void validate(const Effects& effects) {
         check("occlusion.strength", strength, strength >= 0 && strength <= 1, "[0, 1]");
         check("occlusion.radius", occlusion->radius, occlusion->radius > 0, "(0, inf) mm");
     }
-    const auto& [resolution, layers] = effects.shadows;
-    check("shadows.resolution", resolution, resolution >= 16 && resolution <= 2048, "[16, 2048] pixels");
-    check("shadows.layers", layers, layers >= 2 && layers <= 1024, "[2, 1024]");
     check_planes("keep", effects.clip.keep);
     check_planes("remove", effects.clip.remove);
     if (effects.background_top) check_color("background_top", *effects.background_top);

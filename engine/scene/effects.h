@@ -34,13 +34,6 @@ struct AmbientOcclusion {
     bool operator==(const AmbientOcclusion&) const = default;
 };
 
-/// Resolution of the shadow volumes.
-struct ShadowQuality {
-    int resolution = 256;  ///< pixels across a light's view, [16, 2048]
-    int layers = 128;      ///< maximum number of layers along the light, [2, 1024]
-    bool operator==(const ShadowQuality&) const = default;
-};
-
 /// A plane through `point`; points on the side of `normal` are beyond it.
 struct Plane {
     glm::dvec3 point{0};         ///< world mm
@@ -73,7 +66,6 @@ struct Effects {
     std::optional<Fog> fog;
     std::optional<Silhouette> silhouette;
     std::optional<AmbientOcclusion> occlusion;
-    ShadowQuality shadows;  ///< used where a light asks for shadows
     Clip clip;
     std::optional<glm::dvec3> background_top;  ///< linear light: top of a vertical gradient; `background` is its bottom
     /// Limits footprints to at least one pixel and keeps their energy (Zwicker et al. 2002, EWA splatting).

@@ -163,10 +163,6 @@ void add_effects(KeyTable& t) {
           {.help = "Share of the occlusion that is applied", .range = kShare});
     t.add("effects.occlusion.radius", MEMBER(effects.occlusion->radius),
           {.unit = "mm", .help = "Radius within which matter occludes", .range = kAboveZero});
-    t.add("effects.shadows.resolution", MEMBER(effects.shadows.resolution),
-          {.unit = "pixels", .help = "Resolution across the light", .range = {16, 2048}});
-    t.add("effects.shadows.layers", MEMBER(effects.shadows.layers),
-          {.help = "Layers along the light", .range = {2, 1024}});
     t.add("effects.clip.keep[].point", MEMBER(effects.clip.keep[i].point),
           {.unit = "world mm", .help = "A point of the plane"});
     t.add("effects.clip.keep[].normal", MEMBER(effects.clip.keep[i].normal),

@@ -103,8 +103,8 @@ std::optional<std::size_t> traced_material(const Settings& settings, const Scene
 bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume) {
     const Effects& effects = scene.effects;
     // Light that arrives at splats is unknown where planes cut out a piece: no splat lies there.
-    const bool lit = shadow_lights(scene).empty() && !(occludes_ambient(scene) && !effects.clip.remove.empty());
-    const bool plain = !effects.antialias && !smooths_outlines(settings, scene) && scene.transfer.empty();
+    const bool lit = effects.clip.remove.empty() || (shadow_lights(scene).empty() && !occludes_ambient(scene));
+    const bool plain = !effects.antialias && scene.transfer.empty();
     if (!lit || !plain || settings.opaque != OpaqueMatter::Surfaces) return false;
     const auto matter = std::ranges::any_of(scene.materials, [](const Material& m) { return m.extinction > 0; });
     return matter && !draws_missing_samples(scene, volume) && all_matter_is_opaque(scene, volume.geometry) &&

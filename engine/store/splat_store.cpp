@@ -308,8 +308,8 @@ bool LevelStore::provide(const Scene& scene, const Settings& settings, bool keep
     const bool uploaded = volume.provide();
     const bool collected =
         splats.collect(volume, plan_collection(*volume.volume(), scene, settings, keep_buried), cost);
-    const bool occluded = splats.occlude(volume, scene, cost);
-    return uploaded || collected || occluded;
+    const bool lit = splats.light(volume, scene, cost);
+    return uploaded || collected || lit;
 }
 
 }  // namespace edgesplat

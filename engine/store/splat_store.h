@@ -1,4 +1,4 @@
-// Keeps a volume's splats on the device: runs passes 1 to 2b, which are view-independent, for the whole volume or block
+// Keeps a volume's splats on the device: runs passes 1 to 2c, which are view-independent, for the whole volume or block
 // by block.
 #pragma once
 
@@ -44,9 +44,8 @@ class SplatStore {
     explicit SplatStore(DeviceSession& session) : session_(&session) {}
 
     const SplatLists& lists() const { return lists_; }
-    /// The plans of the present list and of its shadows; nullopt if they must be computed.
+    /// The plan of the present list; nullopt if it must be computed.
     const std::optional<CollectionPlan>& collected() const { return collected_; }
-    const std::optional<ShadowPlan>& shadowed() const { return shadowed_; }
     /// Frees everything.
     void drop();
     /// Binds these lists and the volume's images for the next runs.
@@ -56,13 +55,8 @@ class SplatStore {
     bool collect(VolumeStore& volume, const CollectionPlan& wanted, SetupCost& cost);
     /// Replaces the transfer function by that of a plan for the same lists.
     void classify(const CollectionPlan& wanted);
-    /// Runs pass 2b if the scene needs it and its plan changed. Returns whether it ran.
-    bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
-    void drop_shadows();
-    /// begin_shadows() sets all splats to unshadowed; then passes 2c and 2d write `lists().shadows`; end_shadows()
-    /// records their plan.
-    void begin_shadows();
-    void end_shadows(const ShadowPlan& plan) { shadowed_ = plan; }
+    /// Runs passes 2b and 2c if the scene needs them and their plans changed. Returns whether any ran.
+    bool light(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
 
     /// For a volume in blocks: starts an empty list; blocks will be read from `source`.
     void begin_blocks(VolumeStore& volume, std::shared_ptr<const SampleSource> source, const CollectionPlan& wanted);
@@ -89,6 +83,8 @@ class SplatStore {
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 
   private:
+    bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
+    bool cast_shadows(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     void recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale, SetupCost& cost);
     void collect_changes(VolumeStore& volume, SetupCost& cost);
     /// Drops all splats and everything stale; allocates the resources of the plan's passes for blocks as large as
@@ -121,8 +117,8 @@ class SplatStore {
     DeviceSession* session_;
     SplatLists lists_;
     std::optional<CollectionPlan> collected_;
-    std::optional<OcclusionPlan> occluded_;  ///< plan of the stored ambient occlusion
-    std::optional<ShadowPlan> shadowed_;
+    std::optional<OcclusionPlan> occluded_;    ///< plan of the stored ambient occlusion
+    std::optional<ShadowPlan> shadowed_;       ///< and shadows
     std::optional<ResidentBlocks> residence_;  ///< set if the volume is in blocks
 };
 
@@ -130,7 +126,7 @@ class SplatStore {
 struct LevelStore {
     explicit LevelStore(DeviceSession& session) : volume(session), splats(session) {}
 
-    /// For a volume as a whole: runs those of passes 1 to 2b that the scene needs and whose inputs changed. Returns
+    /// For a volume as a whole: runs those of passes 1 to 2c that the scene needs and whose inputs changed. Returns
     /// whether any ran.
     bool provide(const Scene& scene, const Settings& settings, bool keep_buried, SetupCost& cost);
 

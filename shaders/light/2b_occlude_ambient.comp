@@ -3,7 +3,7 @@
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/shared/bindings.h"
-#include "shaders/shared/occlusion_params.h"
+#include "shaders/shared/light_params.h"
 
 layout(local_size_x = 64) in;
 #include "shaders/common/groups.glsl"
@@ -13,30 +13,19 @@ layout(constant_id = SPEC_TRANSFER) const uint TRANSFER = 0u;
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_SCENE, scalar) uniform Scene { SceneParams scene; } params;
-layout(binding = BIND_OCCLUSION, scalar) uniform Occlusion { OcclusionParams at; } occlusion;
-#define CLIP_PARAMS occlusion.at
+layout(binding = BIND_LIGHT, scalar) uniform Light { LightParams at; } light;
+#define CLIP_PARAMS light.at
 #include "shaders/light/surface_point.glsl"
-#include "shaders/common/transfer.glsl"
+#include "shaders/light/extinction.glsl"
+#define Real float
+#include "engine/geometry/light_ray.glsl"
 
-const float DARK = 12.0;  // optical depth; from here on, transmittance rounds to 0 in 16 bits
 // Cosine and sine of the golden angle: successive points of Vogel's spiral (1979).
 const vec2 GOLDEN = vec2(-0.7373688780783197, 0.6754902942615238);
 
-#include "shaders/common/material.glsl"
-#include "shaders/common/clip.glsl"
-
-float extinction_at(ivec3 p) {
-    float value = imageLoad(volume, p).r;
-    float extinction = TRANSFER == 1u ? transfer_at(TransferRef(params.scene.transfer), value).a
-                                      : occlusion.at.extinction[material_of(value)];
-    extinction = value >= 0.0 ? extinction : 0.0;  // no data
-    if (CLIP_KEEP + CLIP_REMOVE > 0u) extinction = is_cut_away(vec3(p), 0.0) ? 0.0 : extinction;
-    return extinction;
-}
-
 // Transmittance exp(-tau) over `radius` mm from `start` (index space) along `u` (index units per mm).
 float transmittance(vec3 start, vec3 u) {
-    float radius = occlusion.at.radius;
+    float radius = light.at.radius;
     // The 0.01 absorbs rounding: if the radius is a whole number of voxels, `steps` is that number.
     int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
     float dl = radius / float(steps);
@@ -49,21 +38,15 @@ float transmittance(vec3 start, vec3 u) {
     float tau = 0.0;
     for (int i = first; i < last && tau < DARK; ++i) {
         vec3 p = start + (float(i) + 0.5) * dl * u;
-        tau += dl * extinction_at(clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1));
+        ivec3 nearest = clamp(ivec3(floor(p + 0.5)), ivec3(0), params.scene.dims - 1);
+        tau += dl * extinction_of(imageLoad(volume, nearest).r, vec3(nearest));
     }
     return exp(-tau);
 }
 
-// Duff et al. 2017, "Building an Orthonormal Basis, Revisited".
-mat3 frame_of(vec3 n) {
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z), b = n.x * n.y * a;
-    return mat3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y), n);
-}
-
 void main() {
     uint i = invocation_number();
-    if (i >= occlusion.at.splat_count) return;
+    if (i >= light.at.splat_count) return;
     Splat splat = SplatsRef(params.scene.splats).at[i];
     Edge e = unpack_edge(splat.normal, splat.edge);
     // Their second distance is an error, and planes cut rays, not splats.
@@ -75,12 +58,12 @@ void main() {
     uint turn = voxel.x * 3518319155u + voxel.y * 2882110345u + voxel.z * 2360945575u;
     float phase = float(turn >> 8u) * (6.28318531 / 16777216.0);
 
-    mat3 to_index = transpose(occlusion.at.normal_to_world);
+    mat3 to_index = transpose(light.at.normal_to_world);
     vec2 reach = vec2(0.0);
     int faces = is_wall(e, params.scene.band) ? 2 : 1;
     for (int face = 0; face < faces; ++face) {
-        SurfacePoint s = surface_point(e, params.scene.band, face == 1, occlusion.at.normal_to_world);
-        if (SURFACES == 0u && CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), occlusion.at.normal_to_world);
+        SurfacePoint s = surface_point(e, params.scene.band, face == 1, light.at.normal_to_world);
+        if (SURFACES == 0u && CLIP_KEEP + CLIP_REMOVE > 0u) s = at_cut(s, e, vec3(voxel), light.at.normal_to_world);
         bool sphere = s.normal == vec3(0.0);
         vec3 start = vec3(voxel) + s.foot + min(OCCLUSION_LIFT * s.voxel, s.room) * s.step;
         mat3 frame = sphere ? mat3(1.0) : frame_of(s.normal);
@@ -97,5 +80,5 @@ void main() {
         if (face == 0) reach = vec2(sum / float(OCCLUSION_RAYS));
         else reach.y = sum / float(OCCLUSION_RAYS);
     }
-    UintsRef(occlusion.at.reach).at[i] = packUnorm2x16(reach);
+    UintsRef(light.at.reach).at[i] = packUnorm2x16(reach);
 }

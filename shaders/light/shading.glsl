@@ -15,7 +15,7 @@ layout(constant_id = SPEC_SILHOUETTE) const uint SILHOUETTE = 0u;
 struct Surface {
     vec3 color;       // linear light
     uint material;
-    uint number;      // of the splat
+    vec2 lights;      // shares of the two lights with shadows that arrive (lights_reach)
     bool has_normal;
     vec3 normal;      // world, unit
     float ambient;    // share of ambient light that arrives (ambient_reach)
@@ -41,7 +41,7 @@ vec3 lit(Surface s) {
         bool at_light = dot(towards, towards) == 0.0;
         vec3 to_light = unit_or_zero(towards);
         float facing = at_light ? 1.0 : dot(s.normal, to_light);
-        vec3 light = params.frame.light_color[l].rgb * light_reach(s.number, l);
+        vec3 light = params.frame.light_color[l].rgb * light_reach(s.lights, l);
         diffuse += response.y * light * (s.has_normal ? max(facing, 0.0) : 0.5);
         if (GLOSS == 1u) {
             vec3 halfway = unit_or_zero(to_light + s.to_eye);

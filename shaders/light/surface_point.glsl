@@ -3,8 +3,6 @@
 // shader declares CLIP_KEEP and CLIP_REMOVE (specialization constants) and CLIP_PARAMS, which contains the planes.
 #include "shaders/edges/edge_record.glsl"
 
-const float SHORTEST_LIFT = 1.5;  // voxels between a surface and the starting point of a ray from it
-
 const float CUT_REACH = KERNEL_RADIUS;
 
 struct SurfacePoint {

@@ -16,7 +16,7 @@ EDGESPLAT_CONSTANT uint BIND_ACCUMULATED = 7u;   // rgba32f, premultiplied colou
 EDGESPLAT_CONSTANT uint BIND_TABLE = 8u;         // r16f, layers of footprints (shared/footprint_table.h)
 EDGESPLAT_CONSTANT uint BIND_SCENE = 9u;         // SceneParams
 EDGESPLAT_CONSTANT uint BIND_FRAME = 10u;        // FrameParams
-EDGESPLAT_CONSTANT uint BIND_OCCLUSION = 11u;    // OcclusionParams
+EDGESPLAT_CONSTANT uint BIND_LIGHT = 11u;        // LightParams
 // Texel views of buffers that also have an address; lavapipe loads and stores texels faster.
 EDGESPLAT_CONSTANT uint BIND_PICTURE = 12u;        // rgba32f, FrameParams::output_pixels
 EDGESPLAT_CONSTANT uint BIND_TILE_COUNTERS = 13u;  // r32ui, FrameParams::tile_counters

@@ -76,7 +76,6 @@ struct FrameParams {
     Address traits;         // (splat_count) uvec2: second derivatives of the face (face_record.glsl); only with faces
     Address splat_shadows;    // (splat_count) uint: 2 x unorm16, the share of each of the two lights with shadows that reaches the splat
     Address splat_occlusion;  // (splat_count) uint: 2 x unorm16, the share of ambient light that reaches each face
-    Address light_layers;     // (sheet_count, size.y, size.x) float, in a light's picture: optical depth up to each sheet
     uint shadow_channels;     // 4 bits per light: 0: no shadow, else the half of splat_shadows, counted from 1
     float occlusion_strength;
     vec4 clip_keep[8];      // normal (unit) and offset, index space relative to anchor: values above 0 are beyond the plane
@@ -131,7 +130,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1656);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1648);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

@@ -8,6 +8,7 @@
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/footprints/face_form.glsl"
 #include "shaders/footprints/face.glsl"
+#include "shaders/splats/face_sight.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 #include "shaders/common/clip_ray.glsl"
@@ -53,26 +54,7 @@ vec3 cap_payload(vec3 face, vec3 p, vec3 u, float z) {
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
     vec3 entry = params.frame.index_to_world * (from_eye + p + z * u);
     vec3 to_eye = -normalize(params.frame.index_to_world * u);
-    return shade(Surface(matter, number_material.y & MATERIAL_BITS, number_material.x, true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
-}
-
-// The splat's face along a ray. z is measured from p, the ray's point nearest to the voxel.
-struct FaceSight {
-    FaceRay ray;
-    vec3 slope;  // grad phi at p
-    vec3 turn;   // derivative of grad phi along u
-};
-
-FaceSight face_sight(vec3 p, vec3 u) {
-    vec3 hp = bent(face_form.h, p), hu = bent(face_form.h, u);
-    vec3 slope = face_form.slope + hp;
-    FaceRay ray;
-    ray.rho2 = dot(p, p);
-    ray.phi = Quadratic(face_form.value + 0.5 * dot(face_form.slope + slope, p), dot(slope, u), 0.5 * dot(u, hu));
-    ray.slope2 = Quadratic(dot(slope, slope), 2.0 * dot(slope, hu), dot(hu, hu));
-    ray.across = dot(p, slope);
-    ray.turn = dot(p, hu);
-    return FaceSight(ray, slope, hu);
+    return shade(Surface(matter, number_material.y & MATERIAL_BITS, lights_reach(number_material.x), true, world_normal, ambient_reach(number_material.x, false), entry, to_eye, depth));
 }
 
 // The piece of the pixel's ray in the volume. The volume's border cuts kernels as a face does. low, high: from the eye
@@ -99,21 +81,6 @@ VolumePiece piece_in_volume(vec3 u) {
     return piece;
 }
 
-// Normal of a corner's third plane, not unit; faces of creases are plane.
-vec3 corner_normal() { return sign(face_form.corner) * cross(face_form.slope, face_form.crease.xyz); }
-
-FaceCrease crease_seen(vec3 p, vec3 u) {
-    vec4 plane = face_form.crease;
-    FaceCrease seen = FaceCrease(dot(plane.xyz, p), dot(plane.xyz, u), plane.w, dot(plane.xyz, face_form.slope), 0.0, 0.0, FACE_NOWHERE);
-    IF_ANY(abs(face_form.corner) < FACE_NO_WALL) {
-        vec3 third = normalize(corner_normal());
-        seen.corner_p = dot(third, p);
-        seen.corner_u = dot(third, u);
-        seen.corner_distance = abs(face_form.corner);
-    }
-    return seen;
-}
-
 // Payload of the surface at one end of the ray's piece in the kernel. `border`: the volume's normal if the piece ends
 // at the border, else 0. `ahead`: distance along u from the eye to p.
 vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead) {
@@ -134,7 +101,7 @@ vec3 face_payload(FaceSight sight, FaceEnd end, vec3 border, vec3 u, float ahead
     // Matter around the eye is seen right in front of it.
     float away = max(ahead + end.z, 1e-4), depth = away * dot(params.frame.view_z, u);
     if (PAYLOAD == PAYLOAD_DEPTH_DISTANCE) return vec3(depth, color_sigma.g, 0.0);
-    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, number_material.x, has_normal || at_border, world_normal,
+    return shade(Surface(color_sigma.rgb, number_material.y & MATERIAL_BITS, lights_reach(number_material.x), has_normal || at_border, world_normal,
                          ambient_reach(number_material.x, end.side < 0.0), away * way, -normalize(way), depth));
 }
 

@@ -8,6 +8,7 @@
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/traced_ray.glsl"
 #include "shaders/common/matter.glsl"
+#include "shaders/splats/outline_word.glsl"
 
 // Packs the normal out of the matter; the last bit says whether the values outside are higher.
 uint pack_end(vec3 n, bool upper) { return (pack_normal(n) & ~1u) | (upper ? 1u : 0u); }
@@ -55,6 +56,28 @@ Stretch kernel_stretch(vec3 p, float reach, float ahead) {
     return s;
 }
 
+// Where the field is nearest to the matter on a ray that passes it, or deepest in the matter. `level`: distance from the
+// matter, negative in it.
+struct Passing {
+    float z;
+    float level;
+    vec3 out_of;  // unit
+};
+const Passing NO_PASSING = Passing(TRACE_NOWHERE, TRACE_NOWHERE, vec3(0.0));
+
+// Of a ray that enters the matter at z0, where the field's gradient is g0; g1: at z1 in it. `inward`: 1 if values grow into
+// the matter, else -1. The slope along the ray is taken as linear.
+Passing deepest(float z0, vec3 g0, float z1, vec3 g1, vec3 u, float inward) {
+    float s0 = inward * dot(g0, u), bend = (s0 - inward * dot(g1, u)) / max(z1 - z0, 1e-3), z = s0 / max(bend, 1e-9);
+    vec3 g = inward * mix(g0, g1, z / max(z1 - z0, 1e-3));
+    float steep = max(length(g), 1e-9);
+    Passing p = Passing(z0 + z, -0.5 * s0 * z / steep, -g / steep);
+    if (!(bend > 0.0 && z * z < OUTLINE_FAR2)) p = NO_PASSING;
+    return p;
+}
+
+uint outline_of_passing(Passing p, vec3 u) { return outline_word(p.level, rate_across(p.out_of, p.z * dot(params.frame.view_z, u))); }
+
 // Traces the ray along u from `from`, within `kept`; matter is where the field lies in `interval`. Samples lie TRACE_STEP apart, at
 // positions independent of the beginning. An extra sample lies where the field may have an extremum beyond the
 // interval's end. Ends are refined by Newton's method. Stops after the second piece, TRACE_DEEP inside a piece, or at
@@ -69,7 +92,10 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
     whole = Stretch(max(whole.first, kept.first), min(whole.last, kept.last));
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
-    TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP);
+    TracedRay t = TracedRay(vec2(TRACE_NOWHERE), vec2(TRACE_NOWHERE), 0u, 0u, float(k) * TRACE_STEP, NO_OUTLINE);
+    Passing passing = NO_PASSING;
+    vec3 g_before = vec3(0.0), g_first = vec3(0.0), g_last = vec3(0.0);
+    float z_last = 0.0, inward = 1.0;
     uint pieces = 0u;
     bool begun = false, matter = false, turned = false, probes = false, looks = along.first < along.last;
     float entered = along.first, probe = 0.0, before = 0.0, value_before = 0.0, slope_before = 0.0;  // the previous sample
@@ -97,6 +123,13 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         t.one.x = enters && !second ? guess : t.one.x;
         t.first_end = enters && !second ? code : t.first_end;
         t.one.y = leaves && !second ? guess : t.one.y;
+        if (OUTLINES == 1u) {
+            g_first = enters && !second ? field.xyz : g_first;
+            inward = enters && !second ? (upper ? -1.0 : 1.0) : inward;
+            bool in_first = pieces == 1u && (leaves || (walks && inside));
+            g_last = in_first ? field.xyz : g_last;
+            z_last = in_first ? z : z_last;
+        }
         t.two.x = enters && second ? guess : t.two.x;
         t.second_end = enters && second ? code : t.second_end;
         t.two.y = leaves && second ? guess : t.two.y;
@@ -105,6 +138,15 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         Turn turn = turn_of(value_before, slope_before * step, field.w, slope * step);
         float beyond = turn.value + 0.5 * (turn.value - 0.5 * (value_before + field.w));
         bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(SURFACES == 1u ? beyond : turn.value, interval) != matter;
+        if (OUTLINES == 1u) {
+            vec2 empty = body_around(turn.value);
+            float towards = slope_before > 0.0 ? empty.y : empty.x;
+            vec3 g = mix(g_before, field.xyz, turn.at);
+            float level = abs(towards - turn.value) / max(length(g), 1e-9);
+            bool passes = walks && begun && !inside && !matter && turn.there && (slope_before > 0.0) == (towards > turn.value) && level < passing.level;
+            if (passes) passing = Passing(before + turn.at * step, level, (slope_before > 0.0 ? -g : g) / max(length(g), 1e-9));
+            g_before = walks && !turns ? field.xyz : g_before;
+        }
         bool takes = walks && !turns, crosses = takes && begun && inside != matter;
         float outer = inside ? value_before : field.w;
         vec2 body = SURFACES == 1u ? body_around(inside ? field.w : value_before) : interval;
@@ -131,6 +173,11 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         bool deep = takes && !crosses && matter && z - entered > (SURFACES == 1u ? SURFACE_DEEP : TRACE_DEEP), at_end = takes && !crosses && k > end;
         t.last = at_end ? max(z, until) : takes ? z : t.last;
         looks = !(leaves && second) && !at_end && pieces < 3u && !deep;
+    }
+    if (OUTLINES == 1u) {
+        Passing deep = deepest(t.one.x, g_first, z_last, g_last, u, inward);
+        uint crossed = abs(t.one.x) < TRACE_NOWHERE && z_last > t.one.x ? outline_of_passing(deep, u) : NO_OUTLINE;
+        t.outline = min(crossed, passing.level < TRACE_NOWHERE ? outline_of_passing(passing, u) : NO_OUTLINE);
     }
     return t;
 }

@@ -8,10 +8,11 @@ struct TracedRay {
     vec2 one, two;               // pieces of the ray in the matter, voxels from the eye; the first may begin at -TRACE_NOWHERE
     uint first_end, second_end;  // normals where they begin: pack_end()
     float last;                  // the end of the part of the ray that was traced
+    uint outline;                // that passes the pixel (outline_word.glsl), or NO_OUTLINE
 };
 
 vec4 pieces_texel(TracedRay t) { return vec4(t.one, t.two); }
-vec4 ends_texel(TracedRay t) { return vec4(uintBitsToFloat(t.first_end), uintBitsToFloat(t.second_end), t.last, 0.0); }
+vec4 ends_texel(TracedRay t) { return vec4(uintBitsToFloat(t.first_end), uintBitsToFloat(t.second_end), t.last, uintBitsToFloat(~t.outline)); }
 
 // The same, unpacked for drawing.
 struct SeenRay {
@@ -19,10 +20,12 @@ struct SeenRay {
     vec3 first_normal, second_normal;  // out of the matter
     bvec2 upper;                       // the values beyond these ends are higher
     float last;
+    uint outline;
 };
 
 SeenRay seen_ray(vec4 pieces, vec4 ends) {
     uvec2 code = floatBitsToUint(ends.xy);
-    return SeenRay(pieces.xy, pieces.zw, unpack_normal(code.x), unpack_normal(code.y), notEqual(code & 1u, uvec2(0u)), ends.z);
+    uint outline = ~floatBitsToUint(ends.w);
+    return SeenRay(pieces.xy, pieces.zw, unpack_normal(code.x), unpack_normal(code.y), notEqual(code & 1u, uvec2(0u)), ends.z, outline);
 }
 #endif

@@ -1,5 +1,5 @@
 // Before surface splats are drawn: clears each pixel's votes. Where the ray enters the volume, or what clip planes keep,
-// in the matter, it stores a certain vote instead. docs/method/surfaces.md.
+// in the matter, or begins in it at the eye, it stores a certain vote instead. docs/method/surfaces.md.
 #version 460
 #extension GL_GOOGLE_include_directive : require
 #include "shaders/drivers/if_any.glsl"
@@ -25,6 +25,7 @@ ivec3 dims;
 #include "shaders/tiles/pixel_slopes.glsl"
 #include "shaders/tiles/ray_parts.glsl"
 #include "shaders/footprints/face_record.glsl"
+#include "shaders/light/shadow.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
 // The material at p, index space, and how far the ray along u stays in the body there. The field itself is evaluated only
@@ -60,12 +61,14 @@ BegunMatter begun_at(vec3 p, vec3 u) {
 }
 
 void begin_part(inout SurfaceVotes votes, RayPart part, vec3 from, vec3 u) {
-    bool enters = part.first < part.last && part.n != vec3(0.0);
+    bool enters = part.first < part.last;
+    // An eye in matter sees nothing else.
+    vec3 n = part.n == vec3(0.0) ? -u : part.n;
     IF_ANY(enters) {
         vec3 at = from + part.first * u;
         BegunMatter begun = begun_at(at, u);
         enters = enters && is_drawn(begun.material) && has_data(voxel(clamp(ivec3(round(at)), ivec3(0), dims - 1)));
-        if (enters) begin_matter(votes, part.first, min(begun.chord, part.last - part.first), normalize(part.n), BEGUN_MATTER | begun.material);
+        if (enters) begin_matter(votes, part.first, min(begun.chord, part.last - part.first), normalize(n), BEGUN_MATTER | begun.material);
     }
 }
 

@@ -10,7 +10,7 @@
 
 layout(local_size_x_id = SPEC_GROUP) in;
 #include "shaders/common/groups.glsl"
-const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, PAYLOAD = PAYLOAD_NORMAL, SLICED = 0u, TRANSFER = 0u, LIT_EDGES = 0u, ANTIALIAS = 0u;
+const uint FOOTPRINTS = PROCEDURAL, WARP = FACE, PAYLOAD = PAYLOAD_NORMAL, SLICED = 0u, TRANSFER = 0u, LIT_EDGES = 0u, ANTIALIAS = 0u, FACE_PIECES = 1u;
 layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
@@ -22,10 +22,12 @@ layout(constant_id = SPEC_COUNT) const uint COUNT = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;
+layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
 layout(binding = BIND_PREPARED, rgba32f) uniform readonly image2D prepared;
 #include "shaders/drivers/texels.glsl"
 STORED_PIXELS(BIND_PICTURE, picture, output_pixels, load_pixel, store_pixel)
+STORED_WORDS(BIND_OUTLINES, passing, outlines, load_outline, store_outline)
 TEXEL_PAIRS(BIND_TILE_ENTRIES, entries, tile_entries, load_entry)
 TEXEL_WORDS(BIND_TILE_MARKS, marks, tile_marks, load_mark)
 TEXEL_WORDS(BIND_TILE_TODO, todo_pixels, tile_todo, load_todo)
@@ -39,6 +41,8 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/splats/splat_inputs.glsl"
 #include "shaders/footprints/footprint.glsl"
 #include "shaders/splats/prepared_splat.glsl"
+FaceForm face_form;
+#include "shaders/tiles/outline.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip_ray.glsl"
 #include "shaders/common/volume_ends.glsl"
@@ -51,12 +55,11 @@ layout(push_constant) uniform Push { uint what; };  // as in 5_draw_tiles
 #include "shaders/tiles/sheet_ways.glsl"
 #include "shaders/tiles/surface_pixel.glsl"
 
-vec3 corner_normal(FaceForm face) { return sign(face.corner) * normalize(cross(face.slope, face.crease.xyz)); }
-
-SurfaceVote vote_of_crease(FaceForm face, vec3 p, vec3 u) {
-    bool corner = abs(face.corner) < FACE_NO_WALL;
-    SurfacePlane third = SurfacePlane(corner ? corner_normal(face) : vec3(0.0), corner ? abs(face.corner) : CORNER_NONE);
-    return vote_of_planes(SurfacePlane(face.slope, -face.value), SurfacePlane(face.crease.xyz, face.crease.w), third, SURFACE_REACH, p, u);
+SurfaceVote vote_of_crease(vec3 p, vec3 u) {
+    bool corner = abs(face_form.corner) < FACE_NO_WALL;
+    SurfacePlane third = SurfacePlane(corner ? normalize(corner_normal()) : vec3(0.0), corner ? abs(face_form.corner) : CORNER_NONE);
+    vec4 second = face_form.crease;
+    return vote_of_planes(SurfacePlane(face_form.slope, -face_form.value), SurfacePlane(second.xyz, second.w), third, SURFACE_REACH, p, u);
 }
 
 // The vote of a splat that no quadric fits. `ahead`: distance along u from the eye to p.
@@ -114,6 +117,8 @@ void main() {
         if (TRACED == 1u) traced = load_seen_ray(held);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         SurfacePair pair = load_votes(held);
+        uint outline = NO_OUTLINE;
+        if (OUTLINES == 1u) outline = load_outline(held.y * size.x + held.x);
         uint length = range.y - range.x;
         for (uint base = 0u; base < length && open; base += 4u * MARKED_AT_ONCE) {
             uvec4 words = marks_from(marks_at, base, length);
@@ -125,18 +130,19 @@ void main() {
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
-                FaceForm face = h.inputs.face;
+                face_form = h.inputs.face;
+                // Surface splats keep their foot where kernels keep what cuts them.
+                vec3 foot = vec3(face_form.cut.depth, face_form.cut.thickness, face_form.cut.reach2);
                 uvec2 number_material = h.inputs.number_material;
                 vec3 offset = h.start + h.plane * across;
                 float beyond = dot(offset, u);
                 vec3 p = offset - beyond * u;
                 float ahead = h.plane * way_length - beyond;
                 if (COUNT == 1u) evaluated += open ? 1u : 0u;
-                SurfaceVote vote = vote_of(SurfaceSplat(face.value, face.slope, face.h, vec3(face.cut.depth, face.cut.thickness, face.cut.reach2),
-                                                        SURFACE_REACH), p, u);
+                SurfaceVote vote = vote_of(SurfaceSplat(face_form.value, face_form.slope, face_form.h, foot, SURFACE_REACH), p, u);
                 if (CREASES == 1u) {
-                    IF_ANY(face.crease.w < CREASE_REACH) {
-                        if (face.crease.w < CREASE_REACH) vote = vote_of_crease(face, p, u);
+                    IF_ANY(face_form.crease.w < CREASE_REACH) {
+                        if (face_form.crease.w < CREASE_REACH) vote = vote_of_crease(p, u);
                     }
                 }
                 if (TRACED == 1u) {
@@ -161,13 +167,22 @@ void main() {
                 }
                 vote.chord = min(vote.chord, ends - where);
                 vote.weight = open && counts ? vote.weight : 0.0;
+                if (OUTLINES == 1u) {
+                    bool hidden = wins(pair.front) && where > way_to(pair.front) + SURFACE_WINDOW;
+                    bool shows = vote.weight > 0.0 && !hidden, searched = (number_material.y & IS_TRACED) != 0u;
+                    face_form.cut.depth = 0.0;
+                    face_form.cut.thickness = FACE_NO_WALL;
+                    if (shows && !searched) outline = min(outline, outline_of(p, u, ahead, 1.0));
+                    if (TRACED == 1u) outline = shows && searched ? min(outline, traced.outline) : outline;
+                }
                 uint numbered = number_material.x | number_material.y << 28;
-                Shown shown = Shown(numbered, kind_of(numbered), ambient_reach(number_material.x, false));
+                Shown shown = Shown(numbered, kind_of(numbered), ambient_reach(number_material.x, false), lights_reach(number_material.x));
                 count_vote(pair, vote, where, shown, LABELS == 1u);
             }
         }
         IF_ANY(was_open) {
             if (was_open) store_votes(held, pair, open || mean_chord(pair.front) < params.frame.solid);
+            if (OUTLINES == 1u && was_open) store_outline(held.y * size.x + held.x, outline);
             if (was_open && !open) store_pixel(held.y * size.x + held.x, vec4(0.0, 0.0, 0.0, 1.0));
         }
     }

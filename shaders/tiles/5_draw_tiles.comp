@@ -169,7 +169,10 @@ void main() {
                 if (TRACED == 1u) color_sigma.a = use_traced(traced, p, u, ahead) ? color_sigma.a : 0.0;
                 vec4 value = splat_value(p, u, ahead, mm);
                 sheet_sum += value;
-                if (OUTLINES == 1u) outline = sum.a < OUTLINE_OPEN ? min(outline, outline_of(p, u, ahead, value.a)) : outline;
+                if (OUTLINES == 1u) {
+                    bool shows = sum.a < OUTLINE_OPEN && face_form.cut.depth >= 0.0 && dot(p, p) < KERNEL_R2;
+                    outline = shows ? min(outline, outline_of(p, u, ahead, value.a)) : outline;
+                }
             }
         }
         // The next round may continue the last entry's sheet, even if this pixel drew nothing of it.

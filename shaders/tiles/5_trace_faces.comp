@@ -22,6 +22,7 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_ROUNDS) const uint ROUNDS = 1u;
+layout(constant_id = SPEC_OUTLINES) const uint OUTLINES = 0u;
 layout(constant_id = SPEC_PREPARED) const uint PREPARED = 1u;
 layout(constant_id = SPEC_REFINED) const uint REFINED = 0u;
 layout(constant_id = SPEC_WIDE_MARKS) const uint WIDE_MARKS = 0u;

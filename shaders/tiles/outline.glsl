@@ -1,8 +1,10 @@
 // Finds the outline that passes a pixel: the distance across the ray from the pixel's centre to the point where the
-// face, or the edge of a crease, turns away. Include after shaders/splats/splat_value.glsl. docs/method.md,
-// 5_draw_tiles, "Outlines".
+// face, or the edge of a crease, turns away. The including shader declares the variable
+// `face_form` and the uniform block `params.frame`. docs/method/smoothing.md, Outlines.
 #ifndef EDGESPLAT_OUTLINE_GLSL
 #define EDGESPLAT_OUTLINE_GLSL
+#include "shaders/splats/face_sight.glsl"
+#include "shaders/splats/outline_word.glsl"
 
 // A splat along the pixel's ray.
 struct OutlinedSplat {
@@ -13,24 +15,10 @@ struct OutlinedSplat {
     float tau;          // optical depth of the splat on the ray
 };
 
-// Packs an outline. The matter lies where `level` < 0; `rate`: change of `level` per pixel to the right and down. Of
-// two words the smaller counts, since matter of either splat is matter of both.
-// Bits: level in pixels from -1 (12) | axis is down (1) | offset along the axis, pixels, from -1 (16)
-uint outline_word(OutlinedSplat splat, float level, vec2 rate, float z) {
-    bool down = abs(rate.y) > abs(rate.x);
-    float along = down ? rate.y : rate.x, pixels = level / abs(along), offset = -level / along;
+uint splat_outline(OutlinedSplat splat, float level, vec2 rate, float z) {
     float distance2 = splat.sight.ray.rho2 + z * z;
     bool knows = level < 0.0 ? splat.tau > OUTLINE_TAU && distance2 < OUTLINE_FAR2 : distance2 < OUTLINE_NEAR2;
-    uint word = uint(clamp(0.5 * pixels + 0.5, 0.0, 1.0) * 4095.0) << 17 | (down ? 1u << 16 : 0u) |
-                uint(clamp(0.5 * offset + 0.5, 0.0, 1.0) * 65535.0);
-    return knows && abs(pixels) < 1.0 ? word : NO_OUTLINE;
-}
-
-// Change of a function with this gradient, at a depth (mm), from a pixel to the next to the right and to the next
-// below.
-vec2 rate_across(vec3 gradient, float depth) {
-    vec2 pixel = 2.0 * depth * vec2(params.frame.tan_half_x, params.frame.tan_half_y) / vec2(params.frame.size);
-    return pixel * vec2(dot(gradient, params.frame.ray_x), dot(gradient, params.frame.ray_y));
+    return knows ? outline_word(level, rate) : NO_OUTLINE;
 }
 
 // Whether the point z of the ray lies inside the third plane of a corner.
@@ -46,7 +34,7 @@ uint outline_of_face(OutlinedSplat splat) {
     bool there = (opens || face_form.cut.thickness < FACE_NO_WALL) && depth > 0.0;
     if (CREASES == 1u) there = there && splat.crease.p + z * splat.crease.u < splat.crease.distance && inside_corner(splat, z);
     vec2 rate = side * rate_across(splat.sight.slope + z * splat.sight.turn, depth);
-    return there ? outline_word(splat, level, rate, z) : NO_OUTLINE;
+    return there ? splat_outline(splat, level, rate, z) : NO_OUTLINE;
 }
 
 // Outline of the edge between face and crease, where the ray's piece between them shrinks to length 0.
@@ -61,10 +49,10 @@ uint outline_of_crease(OutlinedSplat splat) {
     float along = splat.sight.ray.phi.b + 2.0 * at_face * splat.sight.ray.phi.a;
     vec2 rate = side * (rate_across(face_form.crease.xyz, depth) / u - rate_across(splat.sight.slope + at_face * splat.sight.turn, depth) / along);
     bool there = roots.real && crease.distance < FACE_NO_WALL && depth > 0.0 && along * u < 0.0 && inside_corner(splat, z);
-    return there ? outline_word(splat, side * (at_face - at_crease), rate, z) : NO_OUTLINE;
+    return there ? splat_outline(splat, side * (at_face - at_crease), rate, z) : NO_OUTLINE;
 }
 
-// Outline of a splat with the optical depth `tau` on the ray; other arguments as in splat_value().
+// Outline of a splat with a face and with the optical depth `tau` on the ray; other arguments as in splat_value().
 uint outline_of(vec3 p, vec3 u, float ahead, float tau) {
     OutlinedSplat splat;
     splat.sight = face_sight(p, u);
@@ -74,6 +62,6 @@ uint outline_of(vec3 p, vec3 u, float ahead, float tau) {
     splat.tau = tau;
     uint word = outline_of_face(splat);
     if (CREASES == 1u) word = min(word, outline_of_crease(splat));
-    return face_form.cut.depth >= 0.0 && splat.sight.ray.rho2 < KERNEL_R2 ? word : NO_OUTLINE;
+    return word;
 }
 #endif

@@ -12,7 +12,7 @@ uint kind_of(uint number) { return LABELS == 1u && number < BEGUN_MATTER ? Uints
 
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_texel, store_texel)
 
-// Where the k-th of a pixel's VOTE_TEXELS texels lies.
+// Where the k-th of a pixel's VOTE_TEXELS texels lies; with shadows, one more contains the shares of their lights.
 uint vote_texel(ivec2 pixel, uint k) {
     ivec2 size = params.frame.size;
     return k * uint(size.x * size.y) + uint(pixel.y * size.x + pixel.x);
@@ -25,7 +25,12 @@ SurfaceVotes load_surface(ivec2 pixel, uint first) {
     vec4 a = load_texel(vote_texel(pixel, first)), b = load_texel(vote_texel(pixel, first + 1u));
     vec2 c = load_texel(vote_texel(pixel, first + 2u)).xy;
     uint number = floatBitsToUint(a.w);
-    return SurfaceVotes(a.x, a.y, a.z, c.x, b.xyz, c.y, number, a.x > 0.0 ? kind_of(number) : 0u, b.w);
+    vec2 lights = vec2(0.0);
+    if (SHADOWS > 0u) {
+        vec4 both = load_texel(vote_texel(pixel, VOTE_TEXELS));
+        lights = first == 0u ? both.xy : both.zw;
+    }
+    return SurfaceVotes(a.x, a.y, a.z, c.x, b.xyz, c.y, lights, number, a.x > 0.0 ? kind_of(number) : 0u, b.w);
 }
 
 void store_surface(ivec2 pixel, uint first, SurfaceVotes votes, vec2 passed) {
@@ -62,4 +67,5 @@ void store_votes(ivec2 pixel, SurfacePair pair, bool whole) {
     IF_ANY(whole) {
         if (whole) store_surface(pixel, 3u, pair.behind, vec2(pair.passed, pair.passed_way));
     }
+    if (SHADOWS > 0u) store_texel(vote_texel(pixel, VOTE_TEXELS), vec4(pair.front.lights, pair.behind.lights));
 }

@@ -66,8 +66,6 @@ std::string joined(const EffectSet& effects) {
 /// The largest difference of nearly all pixels; full scale is 1.
 double largest_difference(const FrameRequest& request, Output output) {
     if (output != Output::Color) return 0.002;
-    // Shadows are swept in layers of whole pixels, the reference sums kernels: docs/method/light.md gives the errors.
-    if (!shadow_lights(request.scene).empty()) return 0.06;
     // Between drawn pixels a refined picture differs by at most a step of eight bits.
     return drawn_settings(request).pixels == PixelChoice::Refined ? 0.01 : 0.002;
 }

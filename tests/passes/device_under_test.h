@@ -16,12 +16,10 @@ namespace edgesplat::test {
 struct DeviceUnderTest {
     explicit DeviceUnderTest(const DeviceChoice& choice) : session(choice) {}
 
-    /// Runs passes 1 to 2d as far as needed. Returns whether any ran.
+    /// Runs passes 1 to 2c as far as needed. Returns whether any ran.
     bool collect(const Scene& scene, const Settings& settings, bool keep_buried = false) {
         cost = {};
-        const bool found = level.provide(scene, settings, keep_buried, cost);
-        const bool shadowed = drawer.provide_shadows(level, scene, settings, cost);
-        return found || shadowed;
+        return level.provide(scene, settings, keep_buried, cost);
     }
     void draw(const Scene& scene, const Camera& camera, const Settings& settings, const glm::ivec2& size,
               std::uint32_t payload, const glm::dvec2& offset = {0, 0}) {
@@ -58,7 +56,7 @@ inline DeviceUnderTest& device_under_test() {
     return *state;
 }
 
-/// Why the device cannot draw sheets in layers, and therefore no shadows; empty if it can.
+/// Why the device cannot draw sheets in layers; empty if it can.
 inline const std::string& layers_obstacle() {
     return device_under_test().device().layers_obstacle();
 }

@@ -66,13 +66,10 @@ std::vector<FoldedCase> folded_cases() {
     PassScene surfaces = traced_scenes()[2];
     surfaces.settings.opaque = OpaqueMatter::Surfaces;
     cases.push_back({surfaces, {80, 60}});
-    if (layers_obstacle().empty()) {
-        PassScene shaded = pass_scenes()[0];
-        shaded.scene.lights = {directional_light({0.3, -1, 0.5})};
-        shaded.scene.lights[0].shadows = true;
-        shaded.scene.effects.shadows = {.resolution = 64, .layers = 8};
-        cases.push_back({shaded, {40, 30}});
-    }
+    PassScene shaded = pass_scenes()[0];
+    shaded.scene.lights = {directional_light({0.3, -1, 0.5})};
+    shaded.scene.lights[0].shadows = true;
+    cases.push_back({shaded, {40, 30}});
     return cases;
 }
 
@@ -106,7 +103,6 @@ TEST(FoldedGroups, ChangeNoBitOfAnyPass) {
     const gpu::DeviceProfile& profile = state.device().profile();
     std::set<std::string> expected = line_shaders(profile.side_by_side);
     if (!profile.refines) expected.erase("5_refine_pixels.comp");
-    if (!layers_obstacle().empty()) expected.erase("2d_shadow_splats.comp");
     state.session.pipelines().forget_used();
     for (const auto& [scene, size] : folded_cases()) {
         SCOPED_TRACE(scene.name);

@@ -115,9 +115,6 @@ TEST(Blocks, MatchTheWholeVolumeWithEffects) {
     Shot cut = gyroid_shot();
     cut.scene.effects.clip.keep.push_back({cut.volume->geometry.to_world({129, 0, 0}), {1, 0.2, 0.1}});
     expect_equal(both(cut), "clip");
-    Shot shaded = gyroid_shot();
-    shaded.scene.lights = {{.kind = Light::Kind::Directional, .direction = {0.3, -0.4, 1}, .shadows = true}};
-    expect_equal(both(shaded), "shadows");
     const Pair tau = both(gyroid_shot(), {.tau = true});
     const double range = static_cast<double>(std::ranges::max(tau.whole.tau->pixels));
     EXPECT_GT(range, 1);
@@ -168,9 +165,6 @@ TEST(Blocks, AreAllCollectedIfNeeded) {
     unsaturated.settings.saturation = 1;
     EXPECT_EQ(both(unsaturated).blocks.stats.blocks_held, 5U);
     EXPECT_EQ(both(walled_rod(), {.tau = true}).blocks.stats.blocks_held, 5U);
-    Shot shaded = walled_rod();
-    shaded.scene.lights = {{.kind = Light::Kind::Directional, .direction = {0.3, -0.4, 1}, .shadows = true}};
-    EXPECT_EQ(both(shaded).blocks.stats.blocks_held, 5U);
     Shot clear = walled_rod();
     clear.scene.materials.back().extinction = 0.05;
     EXPECT_EQ(both(clear).blocks.stats.blocks_held, 5U);

@@ -83,7 +83,6 @@ TEST(Outlines, ChangeNothingWithoutAnOutline) {
     Exact scene = exact_scene("ellipsoid");
     // Only the middle of the solid is visible.
     scene.shot.camera.fov_y = 4;
-    scene.shot.settings.opaque = OpaqueMatter::Kernels;  // which outlines are smoothed of
     // Two different shaders, which a compiler may round differently.
     EXPECT_LE(compare_images(render(scene.shot).color, render(smooth(scene.shot)).color).max, 1e-6);
 }

@@ -85,20 +85,20 @@ TEST(Shadows, FallInTheRightPlaceAndDarkenNothingElse) {
     }
 }
 
-TEST(Shadows, AreSweptOnceForAllEyes) {
+TEST(Shadows, AreCastOnceForAllEyes) {
     Shot shot = ball_over_plate_shot();
-    const auto swept = [](const RenderResult& r) {
-        return std::ranges::any_of(r.stats.passes, [](const PassTime& p) { return p.name == "2c_sweep_light"; });
+    const auto cast_now = [](const RenderResult& r) {
+        return std::ranges::any_of(r.stats.passes, [](const PassTime& p) { return p.name == "2c_cast_shadows"; });
     };
     shot.scene.lights[0].direction.x = -0.9;
-    EXPECT_TRUE(swept(render(shot)));
+    EXPECT_TRUE(cast_now(render(shot)));
     shot.camera.eye.x += 20;
     const RenderResult again = render(shot);
-    EXPECT_FALSE(swept(again));
+    EXPECT_FALSE(cast_now(again));
     EXPECT_EQ(again.stats.setup_milliseconds, 0);
     EXPECT_EQ(again.stats.validation_messages, 0U);
     shot.scene.lights[0].direction.x = -0.8;
-    EXPECT_TRUE(swept(render(shot)));
+    EXPECT_TRUE(cast_now(render(shot)));
 }
 
 TEST(Shadows, OfTwoColouredLightsAddUp) {

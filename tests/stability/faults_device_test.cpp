@@ -84,10 +84,6 @@ TEST_F(FaultsDevice, DrawsTilesWithoutLayers) {
     set_old();
     expect_refused(run_failing("layers", 0, std::string(kDeviceRender) + " --sheet-format layers"),
                    "no shaderOutputLayer (each sheet is a layer of the target), expected `tiles`");
-    expect_refused(
-        run_failing("layers", 0,
-                    std::string(kDeviceRender) + " --set 'lights[0].kind=directional' --set 'lights[0].shadows=true'"),
-        "expected lights without shadows");
 }
 
 class FaultsDeviceLost : public FaultsDevice, public testing::WithParamInterface<const char*> {};

@@ -139,10 +139,8 @@ class Shots {
         if (chance(0.2)) e.fog = Fog{.density = real(0, 0.1), .start = real(0, kExtent)};
         if (chance(0.2)) e.silhouette = Silhouette{.strength = real(0, 1)};
         if (chance(0.15)) e.occlusion = AmbientOcclusion{.radius = 0.2 * kExtent};
-        if (chance(0.15)) {
+        if (chance(0.15))
             shot.scene.lights = {Light{.kind = Light::Kind::Directional, .direction = direction(), .shadows = true}};
-            e.shadows = {.resolution = 32, .layers = 16};
-        }
         if (chance(0.2)) e.clip.keep = {Plane{.normal = direction()}};
         if (chance(0.1)) e.clip.remove = {Plane{.normal = direction()}};
         if (chance(0.2)) e.background_top = glm::dvec3(0.1, 0.2, 0.4);

@@ -13,6 +13,7 @@ namespace edgesplat::in_float {
 
 using Real = float;
 using uint = std::uint32_t;
+using vec2 = glm::vec2;
 using vec3 = glm::vec3;
 using Bending = glm::mat3;
 using glm::abs;
@@ -240,13 +241,15 @@ TEST(SurfaceVotes, ShowTheLabelOfMostWeightAndTheMeanLight) {
         SurfacePair labelled = no_surfaces(), plain = no_surfaces();
         for (const std::size_t i : order) {
             hit.weight = weights[i];
-            const Shown shown{static_cast<uint>(i), kinds[i], i == 0 ? 0.2 : 1.0};
+            const Shown shown{static_cast<uint>(i), kinds[i], i == 0 ? 0.2 : 1.0, {1.0, i == 0 ? 0.4 : 0.8}};
             count_vote(labelled, hit, 5, shown, true);
             count_vote(plain, hit, 5, shown, false);
         }
         EXPECT_EQ(labelled.front.kind, 8U);
         EXPECT_EQ(plain.front.number, 0U);
         EXPECT_NEAR(arrives_at(plain.front), 1 - 0.8 * 0.5 / 1.85, 1e-12);
+        EXPECT_EQ(lights_at(plain.front).x, 1);
+        EXPECT_NEAR(lights_at(plain.front).y, 0.8 - 0.4 * 0.5 / 1.85, 1e-12);
     } while (std::ranges::next_permutation(order).found);
 }
 
