@@ -7,7 +7,6 @@
 
 #include "engine/accuracy/metrics.h"
 #include "engine/reference/parallel.h"
-#include "engine/reference/traced_face.h"
 #include "engine/scene/transfer_function.h"
 
 namespace edgesplat::accuracy {
@@ -47,13 +46,9 @@ std::function<double(const glm::dvec3&)> two_tone(const reference::PreparedVolum
     };
     const reference::Field field = prepared.field();
     const double reach = footprints.farthest_reach() + range.reach * glm::length(point.axis);
-    // Traced faces are those that the profile's own ray finds from outside.
-    const glm::dvec3 u = -glm::normalize(point.axis), eye = point.position - reach * u;
     std::vector<Splat> splats;
     const auto add = [&](const reference::VoxelEdge& edge, const glm::dvec3& center) {
-        const double ahead = glm::dot(center - eye, u);
-        const auto met = reference::met_edge(edge, field, eye, u, eye + ahead * u - center, ahead);
-        if (met.matter) splats.push_back({met.edge, center, footprints.reach(met.edge)});
+        splats.push_back({edge, center, footprints.reach(edge)});
     };
     const glm::ivec3 low = glm::max(glm::ivec3(glm::ceil(point.position - reach)), glm::ivec3(0));
     const glm::ivec3 high = glm::min(glm::ivec3(glm::floor(point.position + reach)), field.dims - 1);

@@ -387,14 +387,6 @@ void plan_matter(const Volume& volume, const Scene& scene, FramePlan& plan) {
     p.solid = static_cast<float>(solid_chord(scene, volume.geometry));
 }
 
-/// A material's value interval, half open, scaled like the device's samples.
-glm::vec2 scaled_interval(const Volume& volume, const Scene& scene, std::size_t material) {
-    const auto end = [&](std::size_t j, float none) {
-        return j < scene.iso_values.size() ? static_cast<float>(scaled_iso_value(volume, scene.iso_values[j])) : none;
-    };
-    return {material > 0 ? end(material - 1, -3e38F) : -3e38F, end(material, 3e38F)};
-}
-
 }  // namespace
 
 FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& camera, const Settings& settings,
@@ -484,9 +476,7 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
     plan.variant.antialias = scene.effects.antialias;
     plan.variant.outlines = payload == shader::PAYLOAD_COLOR && smooths_outlines(settings, scene);
     plan.variant.opaque = payload != shader::PAYLOAD_TAU && has_single_piece(settings, scene, geometry);
-    const auto traced = traced_material(settings, scene, geometry);
-    plan.variant.traced = payload != shader::PAYLOAD_TAU && splats.traced && (traced || plan.variant.surfaces);
-    if (plan.variant.traced && traced) p.traced_interval = scaled_interval(volume, scene, *traced);
+    plan.variant.traced = plan.variant.surfaces && splats.traced;
     if (plan.variant.antialias) p.pixel = 2.0F * glm::vec2(p.tan_half_x, p.tan_half_y) / glm::vec2(size * samples);
 
     double nearest = std::numeric_limits<double>::max(), farthest = 0;

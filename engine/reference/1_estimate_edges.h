@@ -23,15 +23,10 @@ struct VoxelEdge {
         glm::dvec3 n{0};
         double D = std::numeric_limits<double>::infinity();
     };
-    Crease crease;  ///< second plane of a face
-    Crease corner;  ///< third plane at a corner, perpendicular to both
-    /// Values inside the material: [low, high).
-    struct Interval {
-        double low = 0, high = 0;
-        bool holds(double value) const { return value >= low && value < high; }
-    };
-    std::optional<Interval> traced;  ///< set if no quadric fits: rays find this interval's surface
-    glm::dmat3 bending{0};           ///< H of the face's quadric: second derivatives, 1/voxel, symmetric
+    Crease crease;          ///< second plane of a face
+    Crease corner;          ///< third plane at a corner, perpendicular to both
+    bool traced = false;    ///< of a surface splat: the face is refused, and rays find the surface
+    glm::dmat3 bending{0};  ///< H of the face's quadric: second derivatives, 1/voxel, symmetric
     bool has_normal = false;
     bool has_edge = false;
     bool border = false;          ///< this surface point lies on the volume's border

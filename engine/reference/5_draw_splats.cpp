@@ -5,7 +5,6 @@
 
 #include "engine/reference/faces.h"
 #include "engine/reference/parallel.h"
-#include "engine/reference/traced_face.h"
 #include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 
@@ -205,16 +204,6 @@ SplatDrawer::SplatDrawer(std::span<const SplatRecord> records, std::span<const S
     }
 }
 
-SplatDrawer::MetSplat SplatDrawer::met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const {
-    SplatRecord record = records_[splat];
-    // A kernel that is fully widened to a pixel is not cut.
-    if (!record.edge.traced || selected_[splat].filter.share == 1) return {record, true};
-    const double ahead = glm::dot(glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index, u);
-    const MetEdge edge = met_edge(record.edge, field_, view_.eye_index, u, p, ahead);
-    record.edge = edge.edge;
-    return {record, edge.matter};
-}
-
 const glm::dvec4& SplatDrawer::ray_of(int x, int y) const {
     return rays_[static_cast<std::size_t>(y) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(x)];
 }
@@ -263,14 +252,7 @@ bool SplatDrawer::in_matter(std::uint32_t splat, const VoxelEdge& edge, int x, i
 }
 
 double SplatDrawer::tau(std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const {
-    const glm::dvec3 u(ray_of(x, y)), v = glm::dvec3(field_.voxel(records_[splat].voxel)) - view_.eye_index;
-    return tau(met(splat, glm::dot(v, u) * u - v, u), splat, x, y, cut);
-}
-
-double SplatDrawer::tau(const MetSplat& met, std::uint32_t splat, int x, int y,
-                        const std::optional<DepthRange>& cut) const {
-    if (!met.matter) return 0;
-    const SplatRecord& record = met.record;
+    const SplatRecord& record = records_[splat];
     const glm::dvec4& ray = ray_of(x, y);
     const glm::dvec3 u(ray);
     const glm::dvec3 v = glm::dvec3(field_.voxel(record.voxel)) - view_.eye_index;
@@ -292,9 +274,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
     const glm::dvec3 u(ray), center(field_.voxel(records_[splat].voxel));
     const double s0 = glm::dot(center - view_.eye_index, u);
     const glm::dvec3 p = view_.eye_index + s0 * u - center;
-    const MetSplat here = met(splat, p, u);
-    if (!here.matter) return glm::dvec4(0);
-    const SplatRecord& record = here.record;
+    const SplatRecord& record = records_[splat];
     const bool faces = draws_faces(settings_);
     const bool plain = selected_[splat].filter.share == 1;  // fully widened kernels are not cut
     const auto quantity_of = [&](const Slice& slice) {
@@ -306,7 +286,7 @@ glm::dvec4 SplatDrawer::contribution(std::uint32_t splat, int x, int y, const gl
         slice = {cut->near / depth_along - s0, cut->far / depth_along - s0};
     }
     if (clip_.empty()) {
-        const double share = tau(here, splat, x, y, cut);
+        const double share = tau(splat, x, y, cut);
         return share > 0 ? share * glm::dvec4(faces ? quantity_of(slice) : own, 1) : glm::dvec4(0);
     }
     slice.low = std::max(slice.low, -s0);
@@ -366,8 +346,7 @@ void SplatDrawer::outline(std::span<const std::uint32_t> splats, std::span<const
                     const double radius = footprints_.kernel().radius;
                     if (!(glm::dot(p, p) < radius * radius)) continue;
                     const double tau = contribution(splat, x, y, glm::dvec3(0), Payload::Distance, cut).w;
-                    const VoxelEdge edge = met(splat, p, u).record.edge;
-                    if (!footprints_.cuts(edge)) continue;
+                    const VoxelEdge& edge = records_[splat].edge;
                     keep_outer(outlines[at], outline_of(drawn_edge(edge, settings_), view_, p, u, ahead, tau));
                 }
             }

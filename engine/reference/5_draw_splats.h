@@ -61,16 +61,7 @@ class SplatDrawer {
 
   private:
     const glm::dvec4& ray_of(int x, int y) const;
-    /// A splat as a ray meets it: its traced face is found.
-    struct MetSplat {
-        SplatRecord record;
-        bool matter = true;  ///< the ray passes through some of its matter
-    };
-    MetSplat met(std::uint32_t splat, const glm::dvec3& p, const glm::dvec3& u) const;
-    /// tau() of the splat as the ray of pixel (x, y) meets it.
-    double tau(const MetSplat& met, std::uint32_t splat, int x, int y, const std::optional<DepthRange>& cut) const;
     /// Integral of the splat's kernel along the ray of pixel (x, y), or along `slice` of it, widened to the pixel.
-    /// `edge`: as the ray meets it.
     double footprint(std::uint32_t splat, const VoxelEdge& edge, int x, int y, const glm::dvec3& p, const glm::dvec3& u,
                      const std::optional<Slice>& slice) const;
     /// Where the ray reaches the voxel's depth, voxels from p.

@@ -9,7 +9,6 @@
 #include "engine/reference/7_resolve.h"
 #include "engine/reference/faces.h"
 #include "engine/reference/splat_cloud.h"
-#include "engine/reference/traced_face.h"
 
 namespace edgesplat::reference {
 
@@ -34,7 +33,6 @@ class RayWalker {
     /// u: unit direction; `mm_per_voxel`: mm per voxel along u. Both in index space.
     RaySum walk(const glm::dvec3& eye, const glm::dvec3& u, double mm_per_voxel) {
         RaySum sum;
-        met_.clear();
         double begin = 0;
         double end = 0;
         if (!cloud_.clip(eye, u, begin, end)) return sum;
@@ -76,7 +74,6 @@ class RayWalker {
                 }
                 const double step = std::min(kPanel, last - t);
                 cloud_.gather(origin + t * u, origin + (t + step) * u, active_);
-                meet(eye, u);
                 light(cut_seen ? piece.face : std::nullopt, origin + (cut_seen ? piece.first : 0) * u, u);
                 if (!active_.empty()) add_pieces(integrator, origin, u, t, t + step);
                 t += kPanel;
@@ -91,27 +88,6 @@ class RayWalker {
     }
 
   private:
-    /// Replaces traced splats by their form on this ray, and removes those without matter on it.
-    void meet(const glm::dvec3& eye, const glm::dvec3& u) {
-        std::erase_if(active_, [&](const ModelSplat*& splat) {
-            if (tau_only_ || !splat->edge->traced) return false;
-            auto [at, fresh] = met_.try_emplace(splat);
-            std::optional<ModelSplat>& here = at->second;
-            if (fresh) {
-                const double ahead = glm::dot(splat->center - eye, u);
-                const MetEdge met =
-                    met_edge(*splat->edge, prepared_.field(), eye, u, eye + ahead * u - splat->center, ahead);
-                if (met.matter) {
-                    here = *splat;
-                    here->record.edge = met.edge;
-                    here->edge = &here->record.edge;
-                }
-            }
-            if (here) splat = &*here;
-            return !here;
-        });
-    }
-
     /// Integrates from `begin` to `end`, in panels that end where a face's piece begins, ends or changes how a kernel
     /// is moved.
     template <typename Integrator>
@@ -169,8 +145,7 @@ class RayWalker {
     double tolerance_;
     bool tau_only_;
     std::vector<const ModelSplat*> active_;
-    std::map<const ModelSplat*, std::optional<ModelSplat>> met_;  ///< traced splats; nullopt: no matter on the ray
-    std::vector<glm::dvec3> emission_;                            ///< per active splat
+    std::vector<glm::dvec3> emission_;  ///< per active splat
     std::vector<double> breaks_;
     std::vector<std::optional<FacePath>> paths_;  ///< per active splat: set if a face cuts its kernel
 };

@@ -8,12 +8,21 @@
 
 #include "engine/reference/creases.h"
 #include "engine/reference/quadrics.h"
-#include "engine/reference/traced_face.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {
 
 namespace {
+
+/// Whether the samples around a voxel have only two values. Then the field between them is not known.
+bool has_two_values(const Field& field, const glm::ivec3& i) {
+    std::array<double, 27> around{};
+    for (int k = 0; k < 27; ++k)
+        around[static_cast<std::size_t>(k)] = field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
+    const auto ends = std::ranges::minmax(around);
+    return std::ranges::all_of(
+        around, [&](double f) { return std::min(f - ends.min, ends.max - f) <= 1e-3 * (ends.max - ends.min); });
+}
 
 using glm::dmat3;
 using glm::dvec3;
@@ -323,8 +332,6 @@ VoxelEdge fit_face(const Field& field, const ScaledScene& scene, const std::vect
     const double off = std::abs(sample(field, dvec3(i) + edge.D * edge.n) - iso);
     if (is_own && beside && !(off < static_cast<double>(shader::MADE_UP) * slope_there))
         return edge_with_normal_only(field, i);
-    if (found && (is_own ? own_wrong : wrong) > static_cast<double>(shader::TRACE_FROM) && !has_two_values(field, i))
-        edge.traced = {scene.lower(m), scene.upper(m)};
     if (foot.real && is_wall) edge.D2 = std::max(-level / steep - edge.D, 0.0);
     if (is_wall) return edge;
     // In a thin layer the samples around lie on both sides of it, perhaps none in it. The fit may find only one face.

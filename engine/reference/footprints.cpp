@@ -100,8 +100,6 @@ bool Footprints::in_matter(const VoxelEdge& edge, const glm::dvec3& p, const glm
 }
 
 double Footprints::reach(const VoxelEdge& edge) const {
-    // Only rays find where the surface cuts the kernel, so the reach is the largest possible.
-    if (edge.traced) return static_cast<double>(shader::TRACE_REACH);
     if (!warped(edge)) return kernel().radius;
     return settings_.warp == WarpFamily::Face ? cut_of(drawn_edge(edge, settings_), kernel()).reach : kPaperReach;
 }

@@ -84,12 +84,8 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
     for (CarriedEdge& carried : carried_) {
         if (quantised) carried.edge = quantise(carried.edge);
         if (!scaled_.transfer.empty()) carried.value = carried_value(field(), scaled_, edges, carried);
-        carried.edge.traced.reset();
     }
     if (quantised) std::transform(edges_.begin(), edges_.end(), edges_.begin(), quantise);
-    if (!traced_material(settings_, scene_, volume.geometry))
-        for (VoxelEdge& edge : edges_)
-            edge.traced.reset();
 }
 
 std::span<const CarriedEdge> PreparedVolume::carried_by(std::size_t voxel) const {
@@ -110,9 +106,6 @@ Image PreparedVolume::render(const Camera& camera, int width, int height, Output
     std::vector<SplatRecord> records = collect_splats(field(), scaled_, edges_, scene_, volume_->geometry, settings_,
                                                       camera.eye, output == Output::Tau, classified_, carried_);
     if (output == Output::Color) find_light(records);
-    // Optical depth includes everything on a ray, so no face is traced.
-    for (SplatRecord& record : records)
-        if (output == Output::Tau) record.edge.traced.reset();
     const int samples = output == Output::Color ? scene_.effects.samples : 1;
     if (scene_.effects.antialias) view.low_pass = 1.0 / samples;
     // Optical depth needs all voxels.

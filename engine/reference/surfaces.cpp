@@ -338,7 +338,6 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
     face.has_edge = face.has_normal = true;
     face.n = {0, 0, 1};
     face.D2 = kNowhere;
-    const VoxelEdge::Interval interval{scene.lower(m), scene.upper(m)};
     const auto around = [&](const ivec3& center, const auto& take) {
         for (int k = 0; k < 125; ++k) {
             const ivec3 j = center + ivec3(k % 5, k / 5 % 5, k / 25) - 2;
@@ -355,7 +354,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
         nearest = s;
         found = true;
     });
-    face.traced = interval;
+    face.traced = true;
     if (!found) return face;
     const dvec3 middle = nearest.at;
     Moments sums;
@@ -392,11 +391,10 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
         face.D2 = thin < 2 ? std::max({geometry::error_of(check), wrong, least}) : kNowhere;
     }
     if (two_values) {
-        VoxelEdge planes = fit_face(field, scene, surfels, i, m);
-        planes.traced.reset();
+        const VoxelEdge planes = fit_face(field, scene, surfels, i, m);
         if (std::isfinite(planes.crease.D)) return planes;
     }
-    if (kept) face.traced.reset();
+    face.traced = !kept;
     return face;
 }
 

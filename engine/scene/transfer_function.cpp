@@ -87,19 +87,6 @@ bool has_single_piece(const Settings& settings, const Scene& scene, const Volume
     return draws_opaque_faces(settings, scene, geometry) && settings.sheets != SheetCut::Sliced;
 }
 
-std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
-                                           const VolumeGeometry& geometry) {
-    if (settings.edges != EdgeEstimator::Cubic || draws_table(settings)) return std::nullopt;
-    if (!draws_opaque_faces(settings, scene, geometry)) return std::nullopt;
-    std::optional<std::size_t> only;
-    for (std::size_t m = 0; m < scene.materials.size(); ++m) {
-        if (!(extinctions_of(scene, m).most > 0)) continue;
-        if (only) return std::nullopt;
-        only = m;
-    }
-    return only;
-}
-
 bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume) {
     const Effects& effects = scene.effects;
     // Light that arrives at splats is unknown where planes cut out a piece: no splat lies there.

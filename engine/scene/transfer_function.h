@@ -46,11 +46,6 @@ double table_depth(const Scene& scene, const VolumeGeometry& geometry);
 /// Whether the longer of two pieces of a ray within a kernel is sufficient: for whole, unclipped, opaque kernels.
 bool has_single_piece(const Settings& settings, const Scene& scene, const VolumeGeometry& geometry);
 
-/// The material whose faces may be found by rays where no quadric fits: the only visible material, unclipped and
-/// opaque, with the `cubic` estimator.
-std::optional<std::size_t> traced_material(const Settings& settings, const Scene& scene,
-                                           const VolumeGeometry& geometry);
-
 /// Whether surface splats draw the scene: all matter is opaque and no sample without data lies in its values, with
 /// settings and effects that allow it.
 bool draws_surfaces(const Settings& settings, const Scene& scene, const Volume& volume);

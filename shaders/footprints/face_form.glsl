@@ -10,8 +10,8 @@ const bool FACES = FOOTPRINTS != ISOTROPIC && WARP == FACE;  // kernels are cut 
 
 layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 
-// Radius of the ball around its voxel in which a ray finds a traced splat's face. `error`: of a surface splat's face.
-float trace_reach(float error) { return SURFACES == 0u ? TRACE_REACH : error < SURFACE_LOST ? SURFACE_REACH : SURFACE_AROUND; }
+// Radius of the ball around its voxel in which a ray finds a surface splat's face. `error`: of the refused face.
+float trace_reach(float error) { return error < SURFACE_LOST ? SURFACE_REACH : SURFACE_AROUND; }
 
 // A face and how it cuts the kernel, or a plain kernel with the normal that it is lit by.
 struct FaceForm {

@@ -111,8 +111,7 @@ struct FrameParams {
     float table_depth;      // depth m of the faces in BIND_TABLE, voxels: points nearer to the face are moved to this depth
     uint chunk_pairs;       // upper bound of pairs in a chunk that the device plans, and of its prepared splats
     uint chunk_slots;       // upper bound of chunks that the device plans
-    vec2 traced_interval;   // values of the field that are matter, half open, scaled; this and the next two only with traced faces
-    Address traced_rays;    // (size.y, size.x, 2) vec4: what each pixel's ray meets (traced_ray.glsl)
+    Address traced_rays;    // (size.y, size.x, 2) vec4: what each pixel's ray meets (traced_ray.glsl); this and the next only if rays search
     Address traced_entries; // uint: a bit for each of MARKED_AT_ONCE entries: it is traced
     Address footprints;     // (splat_count) uvec2: layer and rotation of each drawn splat (selected_footprint.glsl); only with a table
     // Only with surface splats, from here on.
@@ -130,7 +129,7 @@ static_assert(sizeof(edgesplat::shader::DrawCommand) == 20);
 static_assert(offsetof(edgesplat::shader::FrameParams, index_to_world) == 128);
 static_assert(offsetof(edgesplat::shader::FrameParams, materials) == 356);
 static_assert(offsetof(edgesplat::shader::FrameParams, dims) == 900);
-static_assert(sizeof(edgesplat::shader::FrameParams) == 1648);
+static_assert(sizeof(edgesplat::shader::FrameParams) == 1640);
 #else
 layout(buffer_reference, scalar, buffer_reference_align = 8) buffer GroupsRef {
     SheetGroup at[];

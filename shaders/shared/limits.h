@@ -54,13 +54,8 @@ EDGESPLAT_CONSTANT float CREASE_BLUNT_LEFT = 0.2f;  // upper bound of the square
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // voxels: planes further away cut no kernel
 // Faces that rays find (5_trace_faces): if the samples on the wrong side of the best quadric have a larger sum of
 // squared distances, voxels^2.
-EDGESPLAT_CONSTANT float TRACE_FROM = 0.01f;
-EDGESPLAT_CONSTANT float TRACE_REACH = 1.9f;       // voxels: reach of traced kernels, which are narrow ones; a plane at most 1.7 away gives no longer reach
 EDGESPLAT_CONSTANT float TRACE_STEP = 1.0f;       // voxels between samples of a ray
 EDGESPLAT_CONSTANT int TRACE_ROOT_STEPS = 8;      // upper bound of steps towards an end between two samples; stops once a step is below TRACE_NEAR
-EDGESPLAT_CONSTANT float TRACE_NEAR = 1e-3f;      // voxels
-EDGESPLAT_CONSTANT float TRACE_WHOLE = 2.0f;       // voxels to a face that cuts nothing: less than narrow R + depth
-EDGESPLAT_CONSTANT float TRACE_DEEP = 2.5f;       // voxels within opaque matter; everything behind is occluded
 // Surface splats: opaque matter drawn where rays enter it (engine/geometry). Lengths are voxels.
 EDGESPLAT_CONSTANT float SURFACE_REACH = 1.3f;   // from a splat's foot point: its vote weighs nothing further away
 EDGESPLAT_CONSTANT float SURFACE_SHEET = 0.4f;   // least error of a face in a sheet one voxel thick, whose other side has none

@@ -8,7 +8,6 @@ layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
-layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
@@ -16,12 +15,9 @@ layout(constant_id = SPEC_CLIP_KEEP) const uint CLIP_KEEP = 0u;
 layout(constant_id = SPEC_CLIP_REMOVE) const uint CLIP_REMOVE = 0u;
 layout(constant_id = SPEC_ANTIALIAS) const uint ANTIALIAS = 0u;
 layout(constant_id = SPEC_PIECES) const uint FACE_PIECES = 2u;
-const uint OUTLINES = 0u;
 
 layout(early_fragment_tests) in;
 layout(binding = BIND_FRAME, scalar) uniform Frame { FrameParams frame; } params;
-layout(binding = BIND_COEFFICIENTS, r32f) uniform readonly image3D coefficients;
-layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
 layout(binding = BIND_TABLE) uniform sampler2DArray footprint_layers;
 layout(push_constant) uniform Push { uint group; };
 
@@ -46,28 +42,12 @@ layout(location = 0) out vec4 sheet;
 #include "shaders/footprints/face_form.glsl"
 FaceForm face_form;
 uvec2 number_material;
-ivec3 dims;
 vec2 pixels;  // from the voxel's centre to the fragment; only with antialias
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/footprints/selected_footprint.glsl"
 SelectedFootprint selected_footprint;
 
 #include "shaders/splats/splat_value.glsl"
-#include "shaders/common/volume_sampling.glsl"
-#include "shaders/splats/trace_ray.glsl"
-#include "shaders/splats/use_traced.glsl"
-
-// Traces this splat's face on the pixel's ray. False if the ray meets no matter.
-bool meets_traced(vec3 p, vec3 u, float ahead) {
-    Stretch along = kernel_stretch(p, TRACE_REACH, ahead);
-    bool some = true;
-    dims = params.frame.dims;
-    IF_ANY((number_material.y & IS_TRACED) != 0u && along.first < along.last) {
-        TracedRay t = trace_ray(params.frame.anchor + params.frame.eye, u, along, WHOLE_RAY, params.frame.traced_interval);
-        some = use_traced(seen_ray(pieces_texel(t), ends_texel(t)), p, u, ahead);
-    }
-    return some;
-}
 
 void main() {
     number_material = number_and_material;
@@ -82,8 +62,5 @@ void main() {
     vec3 u = normalize(from_eye + offset);
     vec3 p = offset - dot(offset, u) * u;
     if (FACES) volume_piece = piece_in_volume(u);
-    bool some = true;
-    if (TRACED == 1u) some = meets_traced(p, u, dot(from_eye, u));
     sheet = splat_value(p, u, dot(from_eye, u), length(params.frame.index_to_world * u));
-    sheet = some ? sheet : vec4(0.0);
 }

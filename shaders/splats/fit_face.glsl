@@ -57,7 +57,7 @@ struct Face {
     bool creased;
     vec4 crease;
     float corner;  // in the format of pack_crease()
-    bool traced;  // the quadric fits badly: rays must find the surface
+    bool traced;  // of a surface splat: the face is refused, and rays find the surface
     float steep;  // weight of the field's direction at the voxel, 0 to 1
 };
 
@@ -306,8 +306,6 @@ Face fit_face(ivec3 p, uint material) {
             face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
         }
         if (face.creased) return face;
-        face.traced = found && (is_own ? wrong.z : is_wall ? wrong.y : wrong.x) > TRACE_FROM;
-        face.traced = face.traced && !sharp;
         vec3 about = is_own ? vec3(0.0) : middle;
         float scale = foot.real ? 1.0 / length(foot.slope) : 0.0;
         face.edge.n = foot.real ? scale * foot.slope : n;

@@ -50,12 +50,9 @@ float pixels_per_voxel(float depth) {
     return sqrt(longest2) * float(params.frame.size.x) / (2.0 * params.frame.tan_half_x * max(depth, params.frame.near_depth));
 }
 
-// Whether rays find the splat's face in this picture. `depth`: of the voxel, mm. With surface splats only where the
-// error of the fitted face, stored as e.d2, shows.
-bool is_traced_at(uint number, Edge e, float depth) {
-    bool shows = SURFACES == 0u || e.d2 * pixels_per_voxel(depth) > SURFACE_SHOWS;
-    return is_traced(number) && shows;
-}
+// Whether rays find a surface splat's face in this picture: where the error of the fitted face, stored as e.d2, shows.
+// `depth`: of the voxel, mm.
+bool is_traced_at(uint number, Edge e, float depth) { return is_traced(number) && e.d2 * pixels_per_voxel(depth) > SURFACE_SHOWS; }
 
 // How far in front of their sheets surface splats vote, voxels.
 float votes_before() { return SURFACE_REACH + (CREASES == 1u ? SURFACE_CREASE : 0.0); }

@@ -1,6 +1,5 @@
-// Finds where a ray meets the surface of the cubic field, for splats that no quadric fits. The result is the ray's
-// first two pieces in the matter. docs/method.md, 5_trace_faces; mirrored by engine/reference/traced_face.h. The
-// including shader declares `coefficients` and `dims`.
+// Finds where a ray meets the surface of the cubic field, for splats whose face was refused. The result is the ray's first
+// two pieces in the matter. docs/method/tiles.md, 5_trace_faces. The including shader declares `coefficients` and `dims`.
 #ifndef EDGESPLAT_TRACE_RAY_GLSL
 #define EDGESPLAT_TRACE_RAY_GLSL
 #include "shaders/common/volume_ends.glsl"
@@ -36,8 +35,7 @@ float root_of(float f0, float d0, float f1, float d1, float level) {
     return t;
 }
 
-// With surface splats, values of any drawn material are matter; otherwise those of the interval.
-bool is_matter(float f, vec2 interval) { return SURFACES == 1u ? is_drawn(material_of(f)) : f >= interval.x && f < interval.y; }
+bool is_matter(float f) { return is_drawn(material_of(f)); }
 
 // A part of a ray, voxels from the eye; empty if first >= last.
 struct Stretch {
@@ -45,7 +43,6 @@ struct Stretch {
     float last;
 };
 const Stretch NO_STRETCH = Stretch(TRACE_NOWHERE, -TRACE_NOWHERE);
-const Stretch WHOLE_RAY = Stretch(-TRACE_NOWHERE, TRACE_NOWHERE);
 
 // The part of a ray that a kernel may cover. p: the ray's point nearest to the voxel; `ahead`: its distance along u
 // from the eye.
@@ -78,17 +75,14 @@ Passing deepest(float z0, vec3 g0, float z1, vec3 g1, vec3 u, float inward) {
 
 uint outline_of_passing(Passing p, vec3 u) { return outline_word(p.level, rate_across(p.out_of, p.z * dot(params.frame.view_z, u))); }
 
-// Traces the ray along u from `from`, within `kept`; matter is where the field lies in `interval`. Samples lie TRACE_STEP apart, at
+// Traces the ray along u from `from`, within `kept`. Samples lie TRACE_STEP apart, at
 // positions independent of the beginning. An extra sample lies where the field may have an extremum beyond the
-// interval's end. Ends are refined by Newton's method. Stops after the second piece, TRACE_DEEP inside a piece, or at
+// interval's end. Ends are refined by Newton's method. Stops after the second piece, SURFACE_DEEP inside a piece, or at
 // the end of the volume.
-TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interval) {
+TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept) {
     VolumeEnds ends = volume_ends(from, divisible(u), dims);
     Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
     float until = along.last;
-    // Matter at the volume's border begins there, with the border's normal.
-    bool at_border = SURFACES == 0u && whole.first > 0.0 && along.first <= whole.first;
-    uint border = pack_end(out_of_entry(ends, whole.first, u), false);
     whole = Stretch(max(whole.first, kept.first), min(whole.last, kept.last));
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));
     int k = int(floor(along.first / TRACE_STEP)), end = int(ceil(along.last / TRACE_STEP));
@@ -108,7 +102,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         float z = in_search ? guess : probes ? probe : clamp(float(k) * TRACE_STEP, whole.first, whole.last);
         vec4 field = bspline_slope(ivec3(0), from + z * u);
         float slope = dot(field.xyz, u);
-        bool inside = is_matter(field.w, interval);
+        bool inside = is_matter(field.w);
         // Refinement of an end.
         bool nearer = (field.w < level) == rises;
         a = in_search && nearer ? z : a;
@@ -116,7 +110,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         float newton = z - (field.w - level) / (abs(slope) > 1e-9 ? slope : 1e-9);
         float next = newton >= a && newton <= b ? newton : 0.5 * (a + b);
         guess = in_search ? next : guess;
-        searching = in_search ? (abs(next - z) < (SURFACES == 1u ? SURFACE_NEAR : TRACE_NEAR) ? 0 : searching - 1) : searching;
+        searching = in_search ? (abs(next - z) < SURFACE_NEAR ? 0 : searching - 1) : searching;
         bool found = in_search && searching == 0, second = pieces == 2u, enters = found && matter, leaves = found && !matter;
         uint code = pack_end(normalize((upper ? field.xyz : -field.xyz) + vec3(0.0, 0.0, 1e-12)), upper);
         entered = enters ? guess : entered;
@@ -137,7 +131,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         float step = z - before;
         Turn turn = turn_of(value_before, slope_before * step, field.w, slope * step);
         float beyond = turn.value + 0.5 * (turn.value - 0.5 * (value_before + field.w));
-        bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(SURFACES == 1u ? beyond : turn.value, interval) != matter;
+        bool turns = walks && begun && !turned && !probes && inside == matter && turn.there && is_matter(beyond) != matter;
         if (OUTLINES == 1u) {
             vec2 empty = body_around(turn.value);
             float towards = slope_before > 0.0 ? empty.y : empty.x;
@@ -149,7 +143,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         }
         bool takes = walks && !turns, crosses = takes && begun && inside != matter;
         float outer = inside ? value_before : field.w;
-        vec2 body = SURFACES == 1u ? body_around(inside ? field.w : value_before) : interval;
+        vec2 body = body_around(inside ? field.w : value_before);
         upper = crosses ? outer >= body.x : upper;
         level = crosses ? (upper ? body.y : body.x) : level;
         a = crosses ? before : a;
@@ -159,8 +153,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         searching = crosses ? TRACE_ROOT_STEPS : searching;
         bool starts = takes && !begun && inside;
         pieces += starts || (crosses && inside) ? 1u : 0u;
-        t.one.x = starts ? (at_border ? whole.first : -TRACE_NOWHERE) : t.one.x;
-        t.first_end = starts && at_border ? border : t.first_end;
+        t.one.x = starts ? -TRACE_NOWHERE : t.one.x;
         matter = takes ? inside : matter;
         probe = turns ? before + turn.at * step : probe;
         turned = takes ? probes : turned;
@@ -170,7 +163,7 @@ TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept, vec2 interva
         value_before = takes ? field.w : value_before;
         slope_before = takes ? slope : slope_before;
         begun = begun || takes;
-        bool deep = takes && !crosses && matter && z - entered > (SURFACES == 1u ? SURFACE_DEEP : TRACE_DEEP), at_end = takes && !crosses && k > end;
+        bool deep = takes && !crosses && matter && z - entered > SURFACE_DEEP, at_end = takes && !crosses && k > end;
         t.last = at_end ? max(z, until) : takes ? z : t.last;
         looks = !(leaves && second) && !at_end && pieces < 3u && !deep;
     }

@@ -15,7 +15,7 @@ layout(constant_id = SPEC_FOOTPRINTS) const uint FOOTPRINTS = 2u;
 layout(constant_id = SPEC_WARP) const uint WARP = FACE;
 layout(constant_id = SPEC_NARROW) const uint NARROW = 0u;
 layout(constant_id = SPEC_CREASES) const uint CREASES = 1u;
-layout(constant_id = SPEC_TRACED) const uint TRACED = 1u;
+const uint TRACED = 0u;
 layout(constant_id = SPEC_PAYLOAD) const uint PAYLOAD = 0u;
 layout(constant_id = SPEC_SLICED) const uint SLICED = 0u;
 layout(constant_id = SPEC_NODES) const uint NODES = 6u;
@@ -69,9 +69,6 @@ SelectedFootprint selected_footprint;
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
 #include "shaders/tiles/tile_places.glsl"
-#include "shaders/splats/traced_ray.glsl"
-#include "shaders/splats/use_traced.glsl"
-#include "shaders/tiles/traced_pixel.glsl"
 
 // A saturated pixel does not change any more.
 void fold(inout vec4 sum, inout bool open, vec4 sheet) {
@@ -111,8 +108,6 @@ void main() {
         float mm = length(params.frame.index_to_world * u);
         normal_distance = vec4(0.0);
         if (FACES) volume_piece = piece_in_volume(u);
-        SeenRay traced;
-        if (TRACED == 1u) traced = load_seen_ray(held);
         int at = int(params.frame.entries_first + range.x), marks_at = first_mark(range.x) + int(cell_of(pixel));
         vec4 sheet_sum = vec4(0.0);
         uint outline = NO_OUTLINE;
@@ -166,7 +161,6 @@ void main() {
                 float beyond = dot(offset, u);
                 vec3 p = offset - beyond * u;
                 float ahead = h.plane * way_length - beyond;
-                if (TRACED == 1u) color_sigma.a = use_traced(traced, p, u, ahead) ? color_sigma.a : 0.0;
                 vec4 value = splat_value(p, u, ahead, mm);
                 sheet_sum += value;
                 if (OUTLINES == 1u) {

@@ -68,14 +68,14 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
                 uvec2 entry = load_entry(at + int(base) + findLSB(bits));
                 bits &= bits - 1u;
                 vec4 start;
-                float reach = TRACE_REACH;
+                float reach;
                 if (PREPARED == 1u) {
                     start = load_start(entry.x);
-                    if (SURFACES == 1u) reach = load_reach(entry.x);
+                    reach = load_reach(entry.x);
                 } else {
                     PreparedSplat s = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);
                     start = vec4(s.start, s.plane);
-                    if (SURFACES == 1u) reach = s.inputs.color_sigma.w;
+                    reach = s.inputs.color_sigma.w;
                 }
                 vec3 offset = start.xyz + start.w * across;
                 float beyond = dot(offset, u), ahead = start.w * way_length - beyond;
@@ -91,14 +91,12 @@ Stretch traced_stretch(uvec2 range, ivec2 pixel, vec3 across, vec3 u, float way_
 // The ray's first pieces in the matter that clip planes keep.
 TracedRay trace_kept(vec3 u, Stretch along) {
     vec3 from = params.frame.anchor + params.frame.eye;
-    vec2 interval = params.frame.traced_interval;
-    if (SURFACES == 0u) return trace_ray(from, u, along, WHOLE_RAY, interval);
     RayParts parts = ray_parts(u);
-    TracedRay ray = trace_ray(from, u, along, Stretch(parts.before.first, parts.before.last), interval);
+    TracedRay ray = trace_ray(from, u, along, Stretch(parts.before.first, parts.before.last));
     bool goes_on = ray.one.x >= TRACE_NOWHERE && along.last > parts.behind.first;
     if (CLIP_REMOVE > 0u) {
         IF_ANY(goes_on) {
-            TracedRay rest = trace_ray(from, u, along, Stretch(parts.behind.first, parts.behind.last), interval);
+            TracedRay rest = trace_ray(from, u, along, Stretch(parts.behind.first, parts.behind.last));
             if (goes_on) ray = rest;
         }
     }

@@ -161,7 +161,7 @@ inline glm::dmat3 decode_bending(const glm::uvec2& code) {
 }
 
 /// The device's splat list in the reference's format, with second derivatives and classification if the device has
-/// them. Traced splats have no interval yet.
+/// them.
 inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state) {
     std::vector<reference::SplatRecord> records;
     for (const auto& splat : download<shader::Splat>(state, state.lists().splats, state.lists().splat_count)) {
@@ -191,7 +191,7 @@ inline std::vector<reference::SplatRecord> device_records(DeviceUnderTest& state
         }
         edge.bending = decode_bending(traits[i]);
         edge.mixed = (traits[i].x >> 30U & 1U) != 0;
-        if ((traits[i].y >> 30U & 1U) != 0) edge.traced.emplace();
+        edge.traced = (traits[i].y >> 30U & 1U) != 0;
     }
     return records;
 }
@@ -240,19 +240,16 @@ inline DrawnSheets drawn_sheets(DeviceUnderTest& state, const PassScene& s, cons
             state.targets().groups.mapped<shader::SheetGroup>(1)[0].rect};
 }
 
-/// Adds to the records how the scene draws them: traced or not, translucent or opaque.
+/// Adds to the records how the scene draws them: translucent or opaque.
 inline std::vector<reference::SplatRecord> drawn_records(const PassScene& s,
                                                          std::vector<reference::SplatRecord> records) {
-    const bool traces = traced_material(s.settings, s.scene, s.volume.geometry).has_value();
     const reference::ScaledScene scaled = s.scaled();
     for (reference::SplatRecord& record : records) {
         const auto material = static_cast<int>(record.material);
-        if (!traces) record.edge.traced.reset();
         const bool through = scaled.is_translucent[record.material] && draws_faces(s.settings);
         if (through) record.edge.deepest = 0;
         const reference::Field field{s.volume.geometry.dims, {}, {}};
         record.weight = reference::border_weight(field, scaled, s.settings, field.voxel(record.voxel), material);
-        if (record.edge.traced) record.edge.traced = {scaled.lower(material), scaled.upper(material)};
     }
     return records;
 }

@@ -134,8 +134,7 @@ TEST(Surfaces, HaveTheReferencesFaces) {
             ASSERT_EQ(got[i].voxel, expected[i].voxel);
             traced += b.traced ? 1U : 0U;
             creased += std::isfinite(b.crease.D) ? 1U : 0U;
-            bool same =
-                a.traced.has_value() == b.traced.has_value() && std::isfinite(a.crease.D) == std::isfinite(b.crease.D);
+            bool same = a.traced == b.traced && std::isfinite(a.crease.D) == std::isfinite(b.crease.D);
             // A refused face is known by its error alone; one that is never drawn has no other meaning.
             const bool drawn = !b.traced || b.D2 < 1;
             if (drawn) same = same && std::abs(a.D - b.D) < 4e-3 && glm::length(a.n - b.n) < 4e-3;

@@ -37,7 +37,9 @@ bool shows_its_matter(const Image& color, const Image& tau) {
         shown += static_cast<double>(color.pixels[4 * i + 3]);
         there -= std::expm1(-static_cast<double>(tau.pixels[i]));
     }
-    return shown >= 0.5 * there;
+    // A plane through the eye keeps a slice of matter that only rounding makes.
+    constexpr double kRounding = 1e-6;
+    return shown >= 0.5 * there - kRounding * static_cast<double>(tau.pixels.size());
 }
 
 // Defined here, since the header would include Vulkan's headers in every test.

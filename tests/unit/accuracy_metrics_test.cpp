@@ -239,25 +239,6 @@ TEST(AccuracyEdges, SharperModelsRiseFaster) {
     EXPECT_LT(rays.location_mean, 0.1);
 }
 
-TEST(AccuracyEdges, ProfilesUseTracedFaces) {
-    // If noise prevents a quadric, pictures show the traced face that a ray finds.
-    const AnalyticScene analytic = builtin_scene("builtin:vessels:noise=0.05");
-    const Volume volume = sample(analytic);
-    const SurfacePoints points = surface_points(analytic, 200);
-    Scene scene;
-    scene.iso_values = analytic.iso_values;
-    scene.materials = {{}, {{1, 1, 1}, 8}};
-    reference::PreparedVolume prepared(volume, scene, Settings{});
-    const EdgeFigures met = edge_figures(prepared, points.points);
-    for (std::size_t i = 0; i < prepared.edges().size(); ++i) {
-        reference::VoxelEdge edge = prepared.edges()[i];
-        edge.traced.reset();
-        prepared.replace_edge(i, 1, edge);
-    }
-    const EdgeFigures quadrics = edge_figures(prepared, points.points);
-    EXPECT_LT(met.rise_mean, 0.9 * quadrics.rise_mean) << quadrics.rise_mean;
-}
-
 TEST(AccuracyPage, EscapesTextAndEmbedsPictures) {
     EXPECT_EQ(escaped("a<b & \"c\""), "a&lt;b &amp; &quot;c&quot;");
     EXPECT_EQ(base64("Man"), "TWFu");
