@@ -378,12 +378,14 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
                                          middle + foot.at, kReach};
         const double iso = face.upper ? scene.upper(m) : scene.lower(m);
         const geometry::SurfaceCheck check = checked(field, i, own, face.n, iso, face.upper);
-        double wrong = 0;
+        double wrong = 0, low = kNowhere, high = -kNowhere;
         for (int k = 0; k < 27; ++k) {
             const ivec3 o = ivec3(k % 3, k / 3 % 3, k / 9) - 1;
+            low = std::min(low, field.at(i + o));
+            high = std::max(high, field.at(i + o));
             wrong = std::max(wrong, geometry::contradiction(own, dvec3(o), is_matter(field, scene, i + o, m)));
         }
-        const bool agrees = geometry::is_verified(check, noise) && face.D > -0.05 &&
+        const bool agrees = geometry::is_verified(check, noise, high - low) && face.D > -0.05 &&
                             wrong <= kSide + geometry::moved_by_noise(check.steep, noise);
         const int thin = thin_axes(field, scene, i, m);
         kept = thin == 0 && (two_values || agrees);

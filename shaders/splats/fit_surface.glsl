@@ -68,13 +68,16 @@ Face fit_surface(ivec3 p, uint material) {
                 check_point(check, own, at, field.w - iso, upper ? -field.xyz : field.xyz);
             }
         }
-        float wrong = 0.0;
+        float wrong = 0.0, least = 1e9, most = -1e9;
         for (int i = 0; i < 27; ++i) {
             ivec3 o = ivec3(i % 3, i / 3 % 3, i / 9) - 1;
+            float value = voxel(clamp(p + o, ivec3(0), dims - 1));
+            least = min(least, value);
+            most = max(most, value);
             wrong = max(wrong, contradiction(own, vec3(o), is_matter_at(p + o, material)));
         }
         int thin = thin_axes(p, material);
-        bool agrees = is_verified(check, params.scene.noise) && dot(own.foot, up) > -0.05 &&
+        bool agrees = is_verified(check, params.scene.noise, most - least) && dot(own.foot, up) > -0.05 &&
                       wrong <= SURFACE_SIDE + moved_by_noise(check.steep, params.scene.noise);
         // Between samples of only two values the field says nothing.
         kept = real_foot && thin == 0 && (two_values || agrees);
