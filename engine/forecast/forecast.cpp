@@ -106,7 +106,7 @@ bool ends_beside(const Volume& volume, const shader::SceneParams& params, const 
             before[axis] = std::clamp(at[axis] - step, 0, dims[axis] - 1);
             const bool outermost = beside[axis] < 0 || beside[axis] == dims[axis];
             const std::uint32_t there =
-                outermost ? material_of(params, std::max(1.5F * value(at) - 0.5F * value(before), 0.0F))
+                outermost ? material_of(params.iso, std::max(1.5F * value(at) - 0.5F * value(before), 0.0F))
                           : materials[index(beside)];
             if (there != materials[index(at)]) return true;
         }
@@ -122,7 +122,7 @@ SplatCount count_splats(const Volume& volume, const CollectionPlan& plan) {
     const auto nx = static_cast<std::uint64_t>(dims.x), ny = static_cast<std::uint64_t>(dims.y);
     std::vector<std::uint8_t> materials(voxels), splats(voxels), opaque(plan.buried ? voxels : 0);
     for (std::uint64_t i = 0; i < voxels; ++i) {
-        materials[i] = static_cast<std::uint8_t>(material_of(params, scaled_sample(volume, volume.values[i])));
+        materials[i] = static_cast<std::uint8_t>(material_of(params.iso, scaled_sample(volume, volume.values[i])));
         if (!volume.has_data(i)) materials[i] |= kMissing;
     }
     for (std::uint64_t i = 0; i < voxels; ++i) {

@@ -26,6 +26,7 @@ using glm::length;
 using glm::max;
 using glm::min;
 using glm::normalize;
+using glm::sign;
 using glm::sin;
 using glm::sqrt;
 
@@ -35,7 +36,9 @@ using shader::BEGUN_MATTER;
 constexpr Real SURFACE_CHORD = static_cast<Real>(shader::SURFACE_CHORD);
 constexpr Real SURFACE_ERROR = static_cast<Real>(shader::SURFACE_ERROR);
 constexpr Real SURFACE_NOISE = static_cast<Real>(shader::SURFACE_NOISE);
+constexpr Real SURFACE_RIPPLE = static_cast<Real>(shader::SURFACE_RIPPLE);
 constexpr Real SURFACE_RING = static_cast<Real>(shader::SURFACE_RING);
+constexpr Real SURFACE_SMOOTH = static_cast<Real>(shader::SURFACE_SMOOTH);
 constexpr Real SURFACE_SURE = static_cast<Real>(shader::SURFACE_SURE);
 constexpr Real SURFACE_TURN = static_cast<Real>(shader::SURFACE_TURN);
 constexpr Real SURFACE_WINDOW = static_cast<Real>(shader::SURFACE_WINDOW);

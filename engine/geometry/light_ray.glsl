@@ -2,6 +2,7 @@
 // the subset of GLSL that is C++, like surface_votes.glsl.
 #ifndef EDGESPLAT_LIGHT_RAY_GLSL
 #define EDGESPLAT_LIGHT_RAY_GLSL
+#include "engine/geometry/volume_ends.glsl"
 
 const int SHADOW_RAYS = 4;
 
@@ -31,16 +32,9 @@ LightRay light_ray(vec3 p, vec3 u, Real length, int k, ivec3 dims) {
     LightRay ray;
     ray.step = SHADOW_STEP * u;
     ray.start = p + a * axes[0] + b * axes[1] + (Real(k) + 0.5) / Real(SHADOW_RAYS) * ray.step;
-    Real first = 0.0;
-    Real last = length / SHADOW_STEP;
-    for (int i = 0; i < 3; ++i) {
-        Real along = abs(ray.step[i]) > 1e-9 ? ray.step[i] : Real(1e-9);
-        Real low = (-0.5 - ray.start[i]) / along;
-        Real high = (Real(dims[i]) - 0.5 - ray.start[i]) / along;
-        first = max(first, min(low, high));
-        last = min(last, max(low, high));
-    }
-    ray.first = int(ceil(min(first, Real(1e6))));
+    VolumeEnds ends = volume_ends(ray.start, divisible(ray.step), dims);
+    Real last = min(exit_of(ends), length / SHADOW_STEP);
+    ray.first = int(ceil(clamp(entry_of(ends), Real(0.0), Real(1e6))));
     ray.last = int(ceil(clamp(last, Real(0.0), Real(1e6))));
     return ray;
 }

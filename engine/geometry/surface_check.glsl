@@ -52,10 +52,10 @@ void check_point(INOUT(SurfaceCheck) check, SurfaceSplat face, vec3 at, Real off
 Real moved_by_noise(Real steep, Real noise) { return SURFACE_NOISE * noise / max(steep, 1e-6); }
 
 // How far the spline's ripples move a surface, voxels, about: too few samples lie on an edge that is steep for what it
-// rises. An edge with a blur of .7 voxel, which has none, has the share 0.57 a voxel. `rise`: of the samples around.
+// rises. `rise`: of the samples around.
 Real moved_by_ripples(Real steep, Real rise) {
-    Real beyond = max(steep / max(rise, 1e-6) - 0.57, 0.0);
-    return 0.45 * beyond * beyond;
+    Real beyond = max(steep / max(rise, 1e-6) - SURFACE_SMOOTH, 0.0);
+    return SURFACE_RIPPLE * beyond * beyond;
 }
 
 // Whether the face lies no further from the field than the spline's ripples and the noise explain.

@@ -174,6 +174,12 @@ Real window_of(SurfaceVotes votes) { return votes.number >= BEGUN_MATTER ? Real(
 // Mean length of the ray in the matter; it is 0 where it passes by.
 Real mean_chord(SurfaceVotes votes) { return votes.hits > 0.0 ? votes.chord / (votes.hits + votes.misses) : 0.0; }
 
+// Whether matter begins where the ray does, at `first`, and hides all behind: then no splat's vote counts. The mean of
+// certain votes may be off by rounding.
+bool begins_and_hides(SurfaceVotes front, Real first, Real solid) {
+    return front.number >= BEGUN_MATTER && way_to(front) <= first + 1e-3 && mean_chord(front) >= solid;
+}
+
 bool wins(SurfaceVotes votes) { return votes.hits > votes.misses; }
 
 // Whether a surface at most SURFACE_WINDOW behind `way` is seen so far.

@@ -259,15 +259,14 @@ void place_iso_values(const Volume& volume, const Scene& scene, float (&iso)[16]
 
 }  // namespace
 
-std::uint32_t material_of(const shader::SceneParams& params, float scaled) {
-    const std::span values(params.iso, params.iso_count);
-    return static_cast<std::uint32_t>(std::ranges::count_if(values, [&](float iso) { return iso <= scaled; }));
+std::uint32_t material_of(std::span<const float> iso, float scaled) {
+    return static_cast<std::uint32_t>(std::ranges::count_if(iso, [&](float value) { return value <= scaled; }));
 }
 
 bool has_matter_at_border(const Volume& volume, const shader::SceneParams& params) {
     const glm::ivec3 last = volume.geometry.dims - 1;
     const auto value = [&](const glm::ivec3& i) { return scaled_sample(volume, value_at(volume, i)); };
-    const auto is_matter = [&](float f) { return (params.visible_mask >> material_of(params, f) & 1U) != 0; };
+    const auto is_matter = [&](float f) { return (params.visible_mask >> material_of(params.iso, f) & 1U) != 0; };
     const auto in_layer = [&](int axis, bool high) {
         const int across = (axis + 1) % 3, down = (axis + 2) % 3;
         glm::ivec3 i(0);
@@ -288,8 +287,7 @@ bool has_matter_at_border(const Volume& volume, const shader::SceneParams& param
 
 namespace {
 
-/// Whether the field may be matter at a point in the volume (index space): the samples around, widened by twice their
-/// range, reach it.
+/// Whether the field may be matter at a point in the volume (index space), as 5_begin_surfaces asks.
 bool may_be_matter(const Volume& volume, const shader::FrameParams& params, const glm::dvec3& at) {
     const glm::ivec3 last = volume.geometry.dims - 1,
                      cell = glm::clamp(glm::ivec3(glm::floor(at)), glm::ivec3(0), last);
@@ -300,11 +298,9 @@ bool may_be_matter(const Volume& volume, const shader::FrameParams& params, cons
         least = std::min(least, value);
         most = std::max(most, value);
     }
-    const float spread = 2 * (most - least);
-    const auto material = [&](float value) {
-        return std::ranges::count_if(params.iso, [&](float iso) { return iso <= value; });
-    };
-    for (auto m = material(least - spread); m <= material(most + spread); ++m)
+    const float doubt = shader::SURFACE_DOUBT * (most - least);
+    const std::uint32_t last_material = material_of(params.iso, most + doubt);
+    for (std::uint32_t m = material_of(params.iso, least - doubt); m <= last_material; ++m)
         if ((params.visible_mask >> m & 1U) != 0) return true;
     return false;
 }

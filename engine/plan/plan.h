@@ -67,7 +67,7 @@ StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wan
 CollectionPlan plan_collection(const Volume& volume, const Scene& scene, const Settings& settings, bool keep_buried);
 
 /// Material of a scaled sample.
-std::uint32_t material_of(const shader::SceneParams& params, float scaled);
+std::uint32_t material_of(std::span<const float> iso, float scaled);
 
 /// Whether matter of the visible materials may lie at the volume's border, half a voxel beyond the outermost samples,
 /// to which the field continues linearly.

@@ -486,8 +486,8 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                 const dvec3 u = view.ray(x, y);
                 pixel.parts = ray_parts(field, clip, view.eye_index, u);
                 pixel.pair = begun(field, surfaces, pixel.parts, view.eye_index, u);
-                pixel.closed = geometry::mean_chord(pixel.pair.front) >= solid &&
-                               geometry::way_to(pixel.pair.front) <= pixel.parts[0].first;
+                pixel.closed =
+                    !pixel.parts.empty() && geometry::begins_and_hides(pixel.pair.front, pixel.parts[0].first, solid);
             }
         for (const std::uint32_t number : order) {
             const DrawnSplat& s = splats[number];
@@ -502,9 +502,9 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                     if (s.traced && !pixel.pieces)
                         pixel.pieces = pieces_of(field, surfaces.bodies, pixel.parts, view.eye_index, u);
                     const double ahead = glm::dot(from_eye, u);
+                    const dvec3 p = ahead * u - from_eye;
                     geometry::SurfaceVote vote =
-                        vote_on(pixel.pair.front, s, pixel.pieces.value_or(std::vector<Piece>{}), ahead * u - from_eye,
-                                u, ahead);
+                        vote_on(pixel.pair.front, s, pixel.pieces.value_or(std::vector<Piece>{}), p, u, ahead);
                     double way = ahead + vote.z;
                     for (const RayPart& part : pixel.parts) {
                         // A face enters the matter just before the part, within its error.
@@ -527,15 +527,13 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
                     const bool hidden =
                         geometry::wins(pixel.pair.front) &&
                         way > geometry::way_to(pixel.pair.front) + static_cast<double>(shader::SURFACE_WINDOW);
-                    if (smooth && vote.weight > 0 && !hidden && s.traced) {
-                        const double half = std::sqrt(
-                            std::max(s.reach * s.reach - glm::dot(from_eye - ahead * u, from_eye - ahead * u), 0.0));
-                        keep_outer(pixel.outline, searched_outline(field, surfaces.bodies, pixel.parts, *pixel.pieces,
-                                                                   view, u, ahead - half, ahead + half));
-                    }
-                    if (smooth && vote.weight > 0 && !hidden && !s.traced)
+                    if (smooth && vote.weight > 0 && !hidden) {
+                        const double half = std::sqrt(std::max(s.reach * s.reach - glm::dot(p, p), 0.0));
                         keep_outer(pixel.outline,
-                                   outline_of(outlined_face(s), view, ahead * u - from_eye, u, ahead, 1));
+                                   s.traced ? searched_outline(field, surfaces.bodies, pixel.parts, *pixel.pieces, view,
+                                                               u, ahead - half, ahead + half)
+                                            : outline_of(outlined_face(s), view, p, u, ahead, 1));
+                    }
                     glm::dvec2 lights(1);
                     for (std::size_t k = 0; k < shadowing.size(); ++k)
                         lights[static_cast<int>(k)] = s.record->reach.lights[shadowing[k]];

@@ -13,7 +13,7 @@ constexpr int kBorder = shader::BLOCK_BORDER;
 /// Bit mask of all materials from that of range.low to that of range.high.
 std::uint32_t materials_between(const shader::SceneParams& params, const ValueRange& range, const Volume& volume) {
     const auto material = [&](float value) {
-        return material_of(params, static_cast<float>(scaled_value(volume, static_cast<double>(value))));
+        return material_of(params.iso, static_cast<float>(scaled_value(volume, static_cast<double>(value))));
     };
     std::uint32_t mask = 0;
     for (std::uint32_t m = material(range.low); m <= material(range.high); ++m)

@@ -48,9 +48,14 @@ void run_light(DeviceSession& session, const char* name, const LightInputs& in,
 }  // namespace
 
 bool SplatStore::light(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
-    const Scene& seen = lists_.surfaces ? scene_of_bodies(scene) : scene;
-    const bool occluded = occlude(volume, seen, cost);
-    return cast_shadows(volume, seen, cost) || occluded;
+    const bool lit = occludes_ambient(scene) || !shadow_lights(scene).empty();
+    if (lit && lists_.surfaces) return light_matter(volume, scene_of_bodies(scene), cost);
+    return light_matter(volume, scene, cost);
+}
+
+bool SplatStore::light_matter(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
+    const bool occluded = occlude(volume, scene, cost);
+    return cast_shadows(volume, scene, cost) || occluded;
 }
 
 bool SplatStore::occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost) {
@@ -86,9 +91,9 @@ bool SplatStore::cast_shadows(const VolumeStore& volume, const Scene& scene, Set
     lists_.shadows = light_list(session_->device(), &SplatLists::shadows, lists_.splat_count);
     const VolumeGeometry& geometry = volume.volume()->geometry;
     LightInputs in(lists_, geometry, plan.matter, lists_.shadows);
+    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
     for (const Light& light : plan.lights) {
         const bool far = light.kind == Light::Kind::Directional;
-        const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes);
         in.params.light = far ? glm::vec4(glm::normalize(to_index * glm::normalize(light.direction)), 0)
                               : glm::vec4(geometry.to_index(light.position), 1);
         run_light(*session_, "2c_cast_shadows", in, passes::cast_shadows, cost);

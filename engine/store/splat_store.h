@@ -83,6 +83,8 @@ class SplatStore {
     std::uint64_t room() const { return lists_.splats ? lists_.splats.bytes() / sizeof(shader::Splat) : 0; }
 
   private:
+    /// light() of the matter that the splats show.
+    bool light_matter(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     bool occlude(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     bool cast_shadows(const VolumeStore& volume, const Scene& scene, SetupCost& cost);
     void recollect(VolumeStore& volume, const CollectionPlan& wanted, const StaleResults& stale, SetupCost& cost);

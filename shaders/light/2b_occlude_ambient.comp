@@ -30,11 +30,8 @@ float transmittance(vec3 start, vec3 u) {
     int steps = int(clamp(ceil(radius * length(u) - 0.01), 1.0, float(OCCLUSION_STEPS)));
     float dl = radius / float(steps);
     // The part of the ray inside the volume's cells, in steps.
-    vec3 along = mix(u, vec3(1e-9), lessThan(abs(u), vec3(1e-9))) * dl;
-    vec3 low = (vec3(-0.5) - start) / along, high = (vec3(params.scene.dims) - 0.5 - start) / along;
-    vec3 near = min(low, high), far = max(low, high);
-    int first = max(int(ceil(clamp(max(near.x, max(near.y, near.z)) - 0.5, 0.0, 1e6))), 0);
-    int last = min(int(ceil(clamp(min(far.x, min(far.y, far.z)) - 0.5, 0.0, 1e6))), steps);
+    VolumeEnds ends = volume_ends(start, divisible(u) * dl, params.scene.dims);
+    int first = int(ceil(clamp(entry_of(ends) - 0.5, 0.0, 1e6))), last = min(int(ceil(clamp(exit_of(ends) - 0.5, 0.0, 1e6))), steps);
     float tau = 0.0;
     for (int i = first; i < last && tau < DARK; ++i) {
         vec3 p = start + (float(i) + 0.5) * dl * u;

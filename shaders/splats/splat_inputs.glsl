@@ -97,10 +97,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         float matter = warped ? matter_of_voxel(e.d, e.d2, through) : 1.0;
         s.filtered = vec4(f.share, f.of_pixels, f.of_voxels, matter * sqrt(f.of_voxels));
         if (f.share >= 1.0) s.shape.x = -1.0;
-        if (FACES && f.share >= 1.0) {
-            s.face.cut.depth = -1.0;
-            s.number_material.y &= ~IS_TRACED;
-        }
+        if (FACES && f.share >= 1.0) s.face.cut.depth = -1.0;
     }
 
     return s;

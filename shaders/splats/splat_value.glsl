@@ -12,7 +12,8 @@
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip.glsl"
 #include "shaders/common/clip_ray.glsl"
-#include "shaders/common/volume_ends.glsl"
+#define Real float
+#include "engine/geometry/volume_ends.glsl"
 #include "shaders/light/shading.glsl"
 
 // Whether a point lies in a splat's matter: in its kernel, and on the voxel's own side of the plane that warps it. r2:
@@ -70,14 +71,9 @@ VolumePiece volume_piece;
 VolumePiece piece_in_volume(vec3 u) {
     vec3 way = divisible(u);
     VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, way, params.frame.dims);
-    vec3 near = ends.near, far = ends.far;
-    float low = max(near.x, max(near.y, near.z)), high = min(far.x, min(far.y, far.z));
-    vec3 out_of = out_of_entry(ends, low, way);
-    VolumePiece piece = VolumePiece(low, high, normalize(params.frame.normal_to_world * out_of), vec3(0.0));
-    if (FACE_PIECES == 2u) {
-        bool far_x = far.x <= high, far_y = !far_x && far.y <= high;
-        piece.far_normal = normalize(params.frame.normal_to_world * (sign(way) * vec3(far_x, far_y, !far_x && !far_y)));
-    }
+    mat3 to_world = params.frame.normal_to_world;
+    VolumePiece piece = VolumePiece(entry_of(ends), exit_of(ends), normalize(to_world * out_of_entry(ends, way)), vec3(0.0));
+    if (FACE_PIECES == 2u) piece.far_normal = normalize(to_world * out_of_exit(ends, way));
     return piece;
 }
 

@@ -2,7 +2,8 @@
 // two pieces in the matter. docs/method/tiles.md, 5_trace_faces. The including shader declares `coefficients` and `dims`.
 #ifndef EDGESPLAT_TRACE_RAY_GLSL
 #define EDGESPLAT_TRACE_RAY_GLSL
-#include "shaders/common/volume_ends.glsl"
+#define Real float
+#include "engine/geometry/volume_ends.glsl"
 #include "shaders/drivers/if_any.glsl"
 #include "shaders/edges/edge_record.glsl"
 #include "shaders/splats/traced_ray.glsl"
@@ -81,7 +82,7 @@ uint outline_of_passing(Passing p, vec3 u) { return outline_word(p.level, rate_a
 // the end of the volume.
 TracedRay trace_ray(vec3 from, vec3 u, Stretch along, Stretch kept) {
     VolumeEnds ends = volume_ends(from, divisible(u), dims);
-    Stretch whole = Stretch(max(ends.near.x, max(ends.near.y, ends.near.z)), min(ends.far.x, min(ends.far.y, ends.far.z)));
+    Stretch whole = Stretch(entry_of(ends), exit_of(ends));
     float until = along.last;
     whole = Stretch(max(whole.first, kept.first), min(whole.last, kept.last));
     along = Stretch(max(along.first, whole.first), min(along.last, whole.last));

@@ -19,7 +19,8 @@ ivec3 dims;
 #define CLIP_PARAMS params.frame
 #include "shaders/footprints/slice.glsl"
 #include "shaders/common/clip_ray.glsl"
-#include "shaders/common/volume_ends.glsl"
+#define Real float
+#include "engine/geometry/volume_ends.glsl"
 #include "shaders/common/volume_sampling.glsl"
 #include "shaders/common/matter.glsl"
 #include "shaders/tiles/pixel_slopes.glsl"
@@ -44,7 +45,7 @@ BegunMatter begun_at(vec3 p, vec3 u) {
     }
     float spread = most - least;
     BegunMatter begun = BegunMatter(material_of(least), SURFACE_CHORD);
-    bool doubt = material_of(least - 2.0 * spread) != material_of(most + 2.0 * spread);
+    bool doubt = material_of(least - SURFACE_DOUBT * spread) != material_of(most + SURFACE_DOUBT * spread);
     IF_ANY(doubt) {
         vec4 field = bspline_slope(ivec3(0), p);
         vec2 body = body_around(field.w);

@@ -45,7 +45,8 @@ FaceForm face_form;
 #include "shaders/tiles/outline.glsl"
 #define CLIP_PARAMS params.frame
 #include "shaders/common/clip_ray.glsl"
-#include "shaders/common/volume_ends.glsl"
+#define Real float
+#include "engine/geometry/volume_ends.glsl"
 #include "shaders/tiles/ray_parts.glsl"
 #include "shaders/tiles/tile_marks.glsl"
 #include "shaders/tiles/marked_entries.glsl"
@@ -124,9 +125,8 @@ void main() {
             uvec4 words = marks_from(marks_at, base, length);
             while (has_marks(words) && open) {
                 uvec2 entry = load_entry(at + int(base + take_mark(words)));
-                // Nothing lies in front of matter that begins where the ray does.
-                bool begun = way_to(pair.front) <= parts.before.first && mean_chord(pair.front) >= params.frame.solid;
-                open = !begun && !is_decided(pair, way_before(ways, entry.y), params.frame.solid);
+                bool hidden_all = begins_and_hides(pair.front, parts.before.first, params.frame.solid);
+                open = !hidden_all && !is_decided(pair, way_before(ways, entry.y), params.frame.solid);
                 PreparedSplat h;
                 if (PREPARED == 1u) load_kernel(entry.x, h);
                 else h = prepared_splat(UintsRef(params.frame.order).at[entry.x], entry.y);

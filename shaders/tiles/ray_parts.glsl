@@ -1,5 +1,5 @@
 // The parts of a pixel's ray that lie in the volume and that clip planes keep. Matter may begin at their ends, where no
-// surface is. Include after shaders/common/clip_ray.glsl and volume_ends.glsl.
+// surface is. Include after shaders/common/clip_ray.glsl and engine/geometry/volume_ends.glsl.
 
 // Distances from the eye, voxels; empty if first >= last. n: normal of the border or the plane where the part begins,
 // index space, away from the part; 0: it begins at the eye.
@@ -27,8 +27,8 @@ bool is_in_part(RayPart part, float way) { return way >= part.first - 1e-3 && wa
 
 RayParts ray_parts(vec3 u) {
     VolumeEnds ends = volume_ends(params.frame.anchor + params.frame.eye, divisible(u), params.frame.dims);
-    float first = max(ends.near.x, max(ends.near.y, ends.near.z)), last = min(ends.far.x, min(ends.far.y, ends.far.z));
-    RayPart whole = RayPart(max(first, 0.0), last, first > 0.0 ? out_of_entry(ends, first, u) : vec3(0.0));
+    float first = entry_of(ends);
+    RayPart whole = RayPart(max(first, 0.0), exit_of(ends), first > 0.0 ? out_of_entry(ends, u) : vec3(0.0));
     RayParts parts = RayParts(whole, RayPart(1e9, -1e9, vec3(0.0)));
     if (CLIP_KEEP + CLIP_REMOVE > 0u) {
         Kept kept = kept_pieces(params.frame.eye, u, 0.0);

@@ -5,6 +5,7 @@
 
 #include "footprints/kernel.h"
 #include "tests/passes/pass_fixture.h"
+#include "tests/properties/measuring.h"
 
 namespace edgesplat::test {
 namespace {
@@ -22,12 +23,7 @@ double band(const Settings& settings) {
 PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm::dvec3&)>& f, double extinction,
                    double radius) {
     PassScene s;
-    s.volume.geometry.dims = dims;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x)
-                s.volume.values.push_back(static_cast<float>(f({x, y, z})));
-    finish_volume(s.volume);
+    s.volume = *sampled(dims, f);
     s.scene.iso_values = {0.5};
     s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, extinction}};
     s.scene.effects.occlusion = AmbientOcclusion{.strength = 1, .radius = radius};

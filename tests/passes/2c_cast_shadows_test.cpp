@@ -5,6 +5,7 @@
 
 #include "footprints/kernel.h"
 #include "tests/passes/pass_fixture.h"
+#include "tests/properties/measuring.h"
 
 namespace edgesplat::test {
 namespace {
@@ -31,12 +32,7 @@ Light lamp(const glm::dvec3& position) {
 /// A volume of f(index) in [0, 1]: transparent below 1/4, haze of `haze` per mm up to 3/4, opaque above.
 PassScene scene_of(const glm::ivec3& dims, const std::function<double(const glm::dvec3&)>& f, double haze) {
     PassScene s;
-    s.volume.geometry.dims = dims;
-    for (int z = 0; z < dims.z; ++z)
-        for (int y = 0; y < dims.y; ++y)
-            for (int x = 0; x < dims.x; ++x)
-                s.volume.values.push_back(static_cast<float>(f({x, y, z})));
-    finish_volume(s.volume);
+    s.volume = *sampled(dims, f);
     s.scene.iso_values = {0.25, 0.75};
     s.scene.materials = {{{0, 0, 0}, 0}, {{1, 1, 1}, haze}, {{1, 1, 1}, 5}};
     return s;
