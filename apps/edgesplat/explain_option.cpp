@@ -35,10 +35,13 @@ ordered_json to_json(const edgesplat::FrameDescription& d) {
     ordered_json passes = ordered_json::array(), resources = ordered_json::array(), record = ordered_json::array(),
                  effects = ordered_json::object(), left_out = ordered_json::array();
     for (const auto& pass : d.passes) {
+        ordered_json variants = ordered_json::array();
+        for (const auto& pipeline : pass.pipelines)
+            variants.push_back(edgesplat::text_of(pipeline));
         passes.push_back({{"for", pass.draw},
                           {"name", pass.name},
                           {"reason", pass.reason},
-                          {"variants", pass.variants},
+                          {"variants", variants},
                           {"estimated_ms", pass.estimated_milliseconds},
                           {"measured_ms", number_or_null(pass.measured_milliseconds)}});
     }

@@ -6,8 +6,8 @@
 #include <random>
 
 #include "engine/accuracy/metrics.h"
-#include "engine/reference/parallel.h"
 #include "engine/scene/transfer_function.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::accuracy {
 namespace {
@@ -117,7 +117,7 @@ template <typename ValuesAt>
 EdgeFigures figures_of(std::span<const SurfacePoint> points, const ProfileRange& range, const ValuesAt& values_at) {
     std::vector<std::optional<ProfileEdge>> edges(points.size());
     const int half = static_cast<int>(std::lround(range.reach / range.step));
-    reference::parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
+    parallel_for(static_cast<int>(points.size()), [&](int begin, int end) {
         for (auto i = static_cast<std::size_t>(begin); i < static_cast<std::size_t>(end); ++i) {
             const auto value_at = values_at(points[i]);
             std::vector<double> profile;

@@ -18,6 +18,7 @@ class BrickRuns {
           bricks_((size + kSide - 1) / kSide),
           in_slice_(std::uint64_t(bricks_.x) * std::uint64_t(bricks_.y)) {}
 
+    std::uint64_t bricks() const { return in_slice_ * static_cast<std::uint64_t>(bricks_.z); }
     std::uint64_t count() const { return in_slice_ * static_cast<std::uint64_t>(size_.z); }
 
     /// Calls body(box, first_run, stride) for every brick in the order of the splat list: its box of voxels, the number

@@ -6,20 +6,24 @@
 #include <vector>
 
 #include "engine/forecast/effect_table.h"
+#include "engine/gpu/pipelines.h"
 #include "engine/renderer.h"
 
 namespace edgesplat {
 
 /// A pass of a draw; all sheet groups together are one entry.
 struct PassDescription {
-    std::string draw;                   ///< "setup", "colour", or the extra output that this draw is for
-    std::string name;                   ///< stem, e.g. "5_draw_splats"
-    std::string reason;                 ///< effects that need the pass
-    std::vector<std::string> variants;  ///< shaders with their specialization constants: "7_resolve.comp PAYLOAD=0"
+    std::string draw;    ///< "setup", "colour", or the extra output that this draw is for
+    std::string name;    ///< stem, e.g. "5_draw_splats"
+    std::string reason;  ///< effects that need the pass
+    std::vector<gpu::PipelineVariant> pipelines;
     double estimated_milliseconds = 0;  ///< on the kind of device described; see `estimate`
     std::optional<double> measured_milliseconds;
     bool depends = false;  ///< may be skipped once splats are known; then removed from a measured frame
 };
+
+/// Shaders with their specialization constants: "7_resolve.comp PAYLOAD=0".
+std::string text_of(const gpu::PipelineVariant& pipeline);
 
 /// An image or a buffer.
 struct ResourceDescription {

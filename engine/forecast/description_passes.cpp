@@ -49,22 +49,21 @@ constexpr std::string_view kPrefix = "SPEC_";
 // Each id is its index: no name is missing or duplicate.
 static_assert(std::ranges::all_of(kConstants, [](const Constant& c) { return &kConstants.at(c.id) == &c; }));
 
-std::string variant(const char* shader, const gpu::Specialization& constants) {
-    std::string text = shader;
-    for (const auto& [id, value] : constants)
-        text += fmt::format(" {}={}", kConstants.at(id).name.substr(kPrefix.size()), value);
-    return text;
+gpu::PipelineVariant variant(const char* shader, const gpu::Specialization& constants) {
+    return {{shader}, constants};
+}
+
+/// Width of a voxel in the depth of the volume's centre, pixels.
+double voxel_width(const FrameRequest& request) {
+    const auto& geometry = request.volume->geometry;
+    const CameraFrame view = camera_frame(request.camera);
+    const double depth = std::max(glm::dot(view.forward, geometry.center() - view.eye), geometry.spacing().x);
+    return geometry.mean_spacing() * request.size.y / (2 * view.tan_half_y * depth);
 }
 
 /// Estimated number of fragments that a draw shades: the splats' squares on the screen, each at most the picture.
 double fragments(const FrameRequest& request, const FramePlan& plan) {
-    const auto& geometry = request.volume->geometry;
-    const CameraFrame view = camera_frame(request.camera);
-    const glm::dvec3 centre = geometry.center();
-    const glm::dvec3 spacing = geometry.spacing();
-    const double depth = std::max(glm::dot(view.forward, centre - view.eye), spacing.x);
-    const double pixels_per_mm = request.size.y / (2 * view.tan_half_y * depth);
-    const double across = 3.2 * geometry.mean_spacing() * pixels_per_mm + 1;
+    const double across = 3.2 * voxel_width(request) + 1;
     const double pixels = static_cast<double>(request.size.x) * request.size.y;
     // A splat is drawn once per sheet that it reaches. About half of the fragments are saturated and not shaded.
     const double slices = 1 + 0.5 * (plan.sheets_per_splat - 1);
@@ -76,8 +75,8 @@ class Passes {
     Passes(const DeviceInfo* device, const gpu::DeviceProfile& profile)
         : milliseconds_per_(on_processor(device) ? 1e-6 : 1e-6 / kGpuFactor), profile_(&profile) {}
 
-    void add(const char* draw, const char* name, double nanoseconds, std::vector<std::string> variants) {
-        out_.push_back({draw, name, "", std::move(variants), nanoseconds * milliseconds_per_ * again_, {}});
+    void add(const char* draw, const char* name, double nanoseconds, std::vector<gpu::PipelineVariant> pipelines) {
+        out_.push_back({draw, name, "", std::move(pipelines), nanoseconds * milliseconds_per_ * again_, {}});
     }
 
     void add_setup(const FrameForecast& f) {
@@ -85,7 +84,7 @@ class Passes {
         const glm::dvec3 dims(plan.dims);
         const double voxels = dims.x * dims.y * dims.z, splats = static_cast<double>(f.splats.extent.count);
         if (plan.buried) {
-            std::vector<std::string> axes;
+            std::vector<gpu::PipelineVariant> axes;
             for (std::uint32_t axis = 0; axis < 3; ++axis)
                 axes.push_back(
                     variant("1a_mark_buried.comp", passes::mark_constants(axis, plan.params.iso_count, plan.clip)));
@@ -99,7 +98,7 @@ class Passes {
                 {variant("1b_estimate_edges.comp", passes::estimate_constants(estimate_inputs(plan)))});
         }
         const passes::CollectSplats collect = collect_inputs(plan);
-        std::vector<std::string> shaders{variant("2_collect_splats.comp", passes::collect_constants(collect))};
+        std::vector<gpu::PipelineVariant> shaders{variant("2_collect_splats.comp", passes::collect_constants(collect))};
         if (collect.edges) shaders.push_back(variant("2a_finish_splats.comp", passes::finish_constants(collect)));
         add("setup", "2_collect_splats", kRates.collect_voxel * voxels + kRates.collect_splat * splats, shaders);
     }
@@ -112,17 +111,17 @@ class Passes {
             .clip = {static_cast<std::uint32_t>(clip.keep.size()), static_cast<std::uint32_t>(clip.remove.size())},
             .surfaces = f.collection.surfaces,
             .transfer = !request.scene.transfer.empty()};
-        const auto add_pass = [&](const char* pass, double milliseconds) {
-            const std::string shader = fmt::format("{}.comp", pass);
-            add("setup", pass, milliseconds, {variant(shader.c_str(), passes::light_constants(in))});
+        const auto add_pass = [&](const char* pass, const char* shader, double milliseconds) {
+            add("setup", pass, milliseconds, {variant(shader, passes::light_constants(in))});
         };
-        if (f.occluded) add_pass("2b_occlude_ambient", kRates.occlude_splat * splats);
+        if (f.occluded) add_pass("2b_occlude_ambient", "2b_occlude_ambient.comp", kRates.occlude_splat * splats);
         if (f.shadow_lights > 0)
-            add_pass("2c_cast_shadows", kRates.shadow_splat * splats * static_cast<double>(f.shadow_lights));
+            add_pass("2c_cast_shadows", "2c_cast_shadows.comp",
+                     kRates.shadow_splat * splats * static_cast<double>(f.shadow_lights));
     }
 
-    std::vector<std::string> sort_sheets_shaders(const passes::DrawVariant& drawn) const {
-        std::vector<std::string> shaders;
+    std::vector<gpu::PipelineVariant> sort_sheets_shaders(const passes::DrawVariant& drawn) const {
+        std::vector<gpu::PipelineVariant> shaders;
         for (const passes::SortStep& step : passes::sort_sheets_steps(drawn, *profile_))
             shaders.push_back(variant(step.shader, step.constants));
         return shaders;
@@ -147,8 +146,10 @@ class Passes {
         add(name, "4_sort_sheets", kRates.sort_entry * (splats + entries) + kRates.sort_sheet * p.sheet_count,
             sort_sheets_shaders(plan.variant));
         if (plan.variant.tiles) {
-            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries,
-                {fmt::format("{}", fmt::join(passes::sort_tiles_shaders(*profile_, plan.refined), ", "))});
+            std::vector<gpu::PipelineVariant> sorting;
+            for (const char* shader : passes::sort_tiles_shaders(*profile_, plan.refined))
+                sorting.push_back(variant(shader, {}));
+            add(name, "4_sort_tiles", kRates.sort_entry * 2 * entries, sorting);
             add(name, "4_prepare_splats", kRates.draw_entry * entries,
                 {variant("4g_prepare_splats.comp", passes::draw_constants(plan.variant))});
             add(name, "4_mark_pixels", kRates.draw_entry * entries,
@@ -174,7 +175,7 @@ class Passes {
             }
             // The pass is skipped if the splats turn out to be small.
             if (plan.refined) {
-                std::vector<std::string> steps;
+                std::vector<gpu::PipelineVariant> steps;
                 for (std::uint32_t step = shader::REFINE_STEP; step > 1; step /= 2)
                     steps.push_back(variant("5_refine_pixels.comp", passes::refine_constants(step)));
                 add(name, "5_refine_pixels", kRates.composite_pixel * pixels, steps);
@@ -182,10 +183,10 @@ class Passes {
             }
         } else {
             add(name, "5_draw_splats", drawing,
-                {"group_rect.vert, 5a_clear_sheets.frag",
-                 variant("5b_draw_splats.vert, 5b_draw_splats.frag", passes::draw_constants(plan.variant))});
+                {{{"group_rect.vert", "5a_clear_sheets.frag"}, {}},
+                 {{"5b_draw_splats.vert", "5b_draw_splats.frag"}, passes::draw_constants(plan.variant)}});
             add(name, "6_composite_sheet", kRates.composite_pixel * pixels * p.sheet_count / 2,
-                {variant("group_rect.vert, 6_composite_sheet.frag", {{shader::SPEC_PAYLOAD, plan.variant.payload}})});
+                {{{"group_rect.vert", "6_composite_sheet.frag"}, {{shader::SPEC_PAYLOAD, plan.variant.payload}}}});
         }
         add(name, "7_resolve", kRates.resolve_pixel * pixels,
             {variant("7_resolve.comp", passes::resolve_constants(plan.variant, plan.gradient))});
@@ -210,6 +211,27 @@ std::vector<PassDescription> described_passes(const FrameRequest& request, const
     for (const ForecastDraw& draw : forecast.draws)
         passes.add_draw(request, draw);
     return passes.take();
+}
+
+std::vector<gpu::PipelineVariant> pipelines_of(const FrameRequest& request, FrameForecast forecast) {
+    // Only wide splats are refined (should_refine); the splats' sizes are not known yet.
+    for (ForecastDraw& draw : forecast.draws)
+        draw.plan.refined &= voxel_width(request) >= shader::REFINE_STEP;
+    std::vector<gpu::PipelineVariant> pipelines;
+    for (const PassDescription& pass : described_passes(request, forecast, nullptr))
+        pipelines.insert(pipelines.end(), pass.pipelines.begin(), pass.pipelines.end());
+    // These depend on which splats are in view.
+    std::erase_if(pipelines, [](const gpu::PipelineVariant& pipeline) {
+        return std::ranges::any_of(pipeline.constants, [](const auto& c) { return c.first == shader::SPEC_CULLED; });
+    });
+    return pipelines;
+}
+
+std::string text_of(const gpu::PipelineVariant& pipeline) {
+    std::string text = fmt::format("{}", fmt::join(pipeline.shaders, ", "));
+    for (const auto& [id, value] : pipeline.constants)
+        text += fmt::format(" {}={}", kConstants.at(id).name.substr(kPrefix.size()), value);
+    return text;
 }
 
 std::string estimate_basis(const DeviceInfo* device) {

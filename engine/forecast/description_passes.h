@@ -10,6 +10,9 @@ namespace edgesplat {
 std::vector<PassDescription> described_passes(const FrameRequest& request, const FrameForecast& forecast,
                                               const DeviceInfo* device);
 
+/// Pipelines that the picture will use, in order of use. Whether pixels are refined is a guess.
+std::vector<gpu::PipelineVariant> pipelines_of(const FrameRequest& request, FrameForecast forecast);
+
 /// Basis of the estimated times, a sentence.
 std::string estimate_basis(const DeviceInfo* device);
 

@@ -67,8 +67,8 @@ std::string to_text(const FrameDescription& d) {
     }
     text += passes.text() + "  " + d.estimate + "\n\npipeline variants\n";
     for (const PassDescription& pass : d.passes)
-        for (const std::string& variant : pass.variants)
-            text += fmt::format("  {}: {}\n", pass.draw, variant);
+        for (const gpu::PipelineVariant& pipeline : pass.pipelines)
+            text += fmt::format("  {}: {}\n", pass.draw, text_of(pipeline));
 
     text += "\nmemory\n";
     Table memory({true, false, false, false, false, false, false, false});

@@ -39,7 +39,7 @@ std::vector<Effect> settings_effects() {
          },
          .turn_on = cut_at_faces,
          .passes = {"1_estimate_edges"},
-         .resources = {"edge field", "splat traits"},
+         .resources = {"edge field", "listed bricks", "splat traits"},
          .resized = {"prepared splats", "tile entries", "marks of tile entries"},
          .record = {{"bending", 8}},
          .constants = {{shader::SPEC_ESTIMATOR, "SPEC_ESTIMATOR"},

@@ -72,7 +72,7 @@ void PictureDrawer::draw_planned(const LevelStore& level) {
 
 bool PictureDrawer::draw_front_first(const LevelStore& level, const passes::TileDraw& how) {
     const auto& collected = level.splats.collected();
-    if (!session_->profile().front_first || !collected || !collected->buried) return false;
+    if (!session_->profile().front_first || !collected || !(collected->buried || collected->surfaces)) return false;
     const SplatLists& splats = level.splats.lists();
     const TargetResources& targets = targets_.resources();
     gpu::Commands& commands = session_->commands();

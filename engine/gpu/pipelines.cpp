@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <array>
+#include <chrono>
 
 #include "engine/gpu/shader.h"
 #include "shaders/shared/bindings.h"
@@ -73,12 +74,8 @@ vk::raii::ShaderModule Pipelines::load(const char* shader) const {
     return {device_->handle(), vk::ShaderModuleCreateInfo({}, words.size_bytes(), words.data())};
 }
 
-vk::Pipeline Pipelines::use(Made& made) {
-    made.used = true;
-    return *made.pipeline;
-}
-
 std::vector<PipelineVariant> Pipelines::used() const {
+    const std::lock_guard lock(mutex_);
     std::vector<PipelineVariant> variants;
     for (const auto& [key, made] : made_)
         if (made.used) variants.push_back(made.variant);
@@ -86,15 +83,9 @@ std::vector<PipelineVariant> Pipelines::used() const {
 }
 
 void Pipelines::forget_used() {
+    const std::lock_guard lock(mutex_);
     for (auto& [key, made] : made_)
         made.used = false;
-}
-
-void Pipelines::count_creation(std::chrono::steady_clock::time_point start) {
-    ++creation_.count;
-    cache_.mark_changed();
-    creation_.milliseconds +=
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
 Specialization Pipelines::with_drivers(Specialization constants) const {
@@ -103,25 +94,87 @@ Specialization Pipelines::with_drivers(Specialization constants) const {
     return constants;
 }
 
-vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
-    const std::string key = key_of(shader, constants);
-    if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
-    const auto start = std::chrono::steady_clock::now();
+vk::raii::Pipeline Pipelines::create_compute(const char* shader, const Specialization& constants) const {
     const auto module = load(shader);
     const SpecializationData data(with_drivers(constants));
     const vk::PipelineShaderStageCreateInfo stage({}, vk::ShaderStageFlagBits::eCompute, *module, "main", &data.info);
-    vk::raii::Pipeline made(device_->handle(), cache_.handle(), vk::ComputePipelineCreateInfo({}, stage, *layout_));
-    count_creation(start);
-    return use(made_.emplace(key, Made{std::move(made), {{shader}, constants}}).first->second);
+    return {device_->handle(), cache_.handle(), vk::ComputePipelineCreateInfo({}, stage, *layout_)};
+}
+
+template <typename Create>
+vk::Pipeline Pipelines::provide(const std::string& key, const PipelineVariant& variant, const Create& create) {
+    std::unique_lock lock(mutex_);
+    work_done_.wait(lock, [&] { return !in_work_.contains(key); });
+    auto found = made_.find(key);
+    if (found == made_.end()) {
+        lock.unlock();
+        const auto start = std::chrono::steady_clock::now();
+        Made made{create(), variant};
+        made.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        lock.lock();
+        found = made_.emplace(key, std::move(made)).first;
+    }
+    Made& made = found->second;
+
+    if (made.error) {
+        const std::exception_ptr error = made.error;
+        made_.erase(found);
+        std::rethrow_exception(error);
+    }
+    if (!made.counted) {
+        ++creation_.count;
+        creation_.milliseconds += made.milliseconds;
+        cache_.mark_changed();
+    }
+    made.counted = made.used = true;
+    return *made.pipeline;
+}
+
+vk::Pipeline Pipelines::compute(const char* shader, const Specialization& constants) {
+    return provide(key_of(shader, constants), {{shader}, constants}, [&] { return create_compute(shader, constants); });
+}
+
+void Pipelines::create_ahead_now(const std::stop_token& stop, const std::vector<PipelineVariant>& variants) {
+    for (const PipelineVariant& variant : variants) {
+        if (variant.shaders.size() != 1) continue;
+
+        const char* const shader = variant.shaders.front();
+        const std::string key = key_of(shader, variant.constants);
+        {
+            const std::lock_guard lock(mutex_);
+            if (stop.stop_requested()) return;
+            if (made_.contains(key) || !in_work_.insert(key).second) continue;
+        }
+        const auto start = std::chrono::steady_clock::now();
+        Made made{nullptr, variant};
+        try {
+            made.pipeline = create_compute(shader, variant.constants);
+        } catch (...) {
+            made.error = std::current_exception();
+        }
+        made.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        {
+            const std::lock_guard lock(mutex_);
+            made_.emplace(key, std::move(made));
+            in_work_.erase(key);
+        }
+        work_done_.notify_all();
+    }
+}
+
+void Pipelines::create_ahead(std::vector<PipelineVariant> variants) {
+    ahead_ = std::jthread(
+        [this, wanted = std::move(variants)](const std::stop_token& stop) { create_ahead_now(stop, wanted); });
 }
 
 vk::Pipeline Pipelines::draw(const DrawState& state) {
     const std::string key = key_of(state.fragment, state.constants) +
                             fmt::format(" {} {} {} {}", state.vertex, vk::to_string(state.color),
                                         vk::to_string(state.depth), static_cast<int>(state.blend));
-    if (const auto found = made_.find(key); found != made_.end()) return use(found->second);
+    return provide(key, {{state.vertex, state.fragment}, state.constants}, [&] { return create_draw(state); });
+}
 
-    const auto start = std::chrono::steady_clock::now();
+vk::raii::Pipeline Pipelines::create_draw(const DrawState& state) const {
     const auto vertex = load(state.vertex), fragment = load(state.fragment);
     const SpecializationData data(with_drivers(state.constants));
     const std::array stages{
@@ -151,10 +204,7 @@ vk::Pipeline Pipelines::draw(const DrawState& state) {
     vk::GraphicsPipelineCreateInfo info({}, stages, &no_vertices, &assembly, nullptr, &viewport, &raster, &samples,
                                         &depth, &blend, &dynamic, *layout_);
     info.pNext = &rendering;
-    Made made{vk::raii::Pipeline(device_->handle(), cache_.handle(), info),
-              {{state.vertex, state.fragment}, state.constants}};
-    count_creation(start);
-    return use(made_.emplace(key, std::move(made)).first->second);
+    return {device_->handle(), cache_.handle(), info};
 }
 
 }  // namespace edgesplat::gpu

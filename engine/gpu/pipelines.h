@@ -1,10 +1,15 @@
-// Creates pipelines on first use and keeps them, by shader name and specialization constants.
+// Creates pipelines on first use, or ahead of it on a thread, and keeps them, by shader name and specialization
+// constants.
 #pragma once
 
-#include <chrono>
+#include <condition_variable>
 #include <cstdint>
+#include <exception>
 #include <map>
+#include <mutex>
+#include <set>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 #include <vulkan/vulkan_raii.hpp>
@@ -33,7 +38,7 @@ struct PipelineVariant {
     Specialization constants;          ///< the same for all stages
 };
 
-/// Number of pipelines created so far, and the time that took.
+/// Number of pipelines used so far, and the time that their creation took; ahead of their use, time of another thread.
 struct PipelineCreation {
     std::uint64_t count = 0;
     double milliseconds = 0;
@@ -46,6 +51,9 @@ class Pipelines {
 
     vk::Pipeline compute(const char* shader, const Specialization& constants);
     vk::Pipeline draw(const DrawState& state);
+    /// Starts to create compute pipelines that will be used, in this order, while the caller does other work. Variants
+    /// for draws are ignored. An error is thrown when the pipeline is used.
+    void create_ahead(std::vector<PipelineVariant> variants);
     /// Every variant used since forget_used.
     std::vector<PipelineVariant> used() const;
     void forget_used();
@@ -59,19 +67,30 @@ class Pipelines {
     vk::raii::ShaderModule load(const char* shader) const;
     /// Adds the constants that the device's profile sets.
     Specialization with_drivers(Specialization constants) const;
+    struct Made {
+        vk::raii::Pipeline pipeline = nullptr;
+        PipelineVariant variant;
+        double milliseconds = 0;   ///< of its creation
+        std::exception_ptr error;  ///< of a creation ahead
+        bool counted = false, used = false;
+    };
+    /// The pipeline of that key, which `create` makes unless there is one or another thread is making it.
+    template <typename Create>
+    vk::Pipeline provide(const std::string& key, const PipelineVariant& variant, const Create& create);
+    vk::raii::Pipeline create_compute(const char* shader, const Specialization& constants) const;
+    vk::raii::Pipeline create_draw(const DrawState& state) const;
+    void create_ahead_now(const std::stop_token& stop, const std::vector<PipelineVariant>& variants);
+
     const Device* device_;
     PipelineCache cache_;
     vk::raii::DescriptorSetLayout set_layout_ = nullptr;
     vk::raii::PipelineLayout layout_ = nullptr;
-    struct Made {
-        vk::raii::Pipeline pipeline;
-        PipelineVariant variant;
-        bool used = true;
-    };
-    static vk::Pipeline use(Made& made);
-    void count_creation(std::chrono::steady_clock::time_point start);
-    std::map<std::string, Made> made_;
     PipelineCreation creation_;
+    mutable std::mutex mutex_;  ///< of what both threads use: the next two
+    std::map<std::string, Made> made_;
+    std::set<std::string> in_work_;      ///< keys of pipelines that a thread is making
+    std::condition_variable work_done_;  ///< a key left in_work_
+    std::jthread ahead_;                 ///< last: ends before the other members are destroyed
 };
 
 }  // namespace edgesplat::gpu

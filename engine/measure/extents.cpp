@@ -8,12 +8,12 @@
 
 #include "engine/error.h"
 #include "engine/measure/field_lines.h"
-#include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/viewer/contour.h"
 #include "engine/volume/filters.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::measure {
 namespace {
@@ -88,7 +88,7 @@ class Measurement {
             const int fast = axis == 0 ? 1 : 0, slow = axis == 2 ? 1 : 2;
             const int rows = geometry_.dims[slow] * kLines;
             std::vector<std::vector<Sums>> of_row(static_cast<std::size_t>(rows));
-            reference::parallel_for(rows, [&](int begin, int end) {
+            parallel_for(rows, [&](int begin, int end) {
                 FieldLine line(field, axis);
                 const viewer::Samples samples(volume_);
                 for (int row = begin; row < end; ++row) {

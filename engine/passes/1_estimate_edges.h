@@ -17,11 +17,13 @@ gpu::Specialization mark_constants(std::uint32_t axis, std::uint32_t iso_count, 
 struct EdgeRegion {
     glm::ivec3 dims{0};                    ///< size of the image
     glm::ivec3 core_low{0}, core_size{0};  ///< as in SceneParams; the whole image if it has no border
+    std::uint32_t bricks = 0;              ///< SceneParams::brick_count
 };
 
 struct EstimateEdges {
     EdgeEstimator estimator = EdgeEstimator::Cubic;
     bool skip_buried = true;  ///< voxels marked by mark_buried get no edge
+    bool surfaces = false;    ///< for surface splats: voxels without an edge need no normal
     std::uint32_t iso_count = 1;
 };
 

@@ -6,8 +6,8 @@ namespace edgesplat::passes {
 namespace {
 
 void dispatch_collect(gpu::Commands& commands, const CollectSplats& in, bool write) {
-    commands.dispatch("2_collect_splats.comp", collect_constants(in), write ? 1U : 0U,
-                      commands.groups_for(collect_runs(in.core_size), 64));
+    const std::uint64_t runs = in.bricks > 0 ? std::uint64_t{in.bricks} * shader::BRICK : collect_runs(in.core_size);
+    commands.dispatch("2_collect_splats.comp", collect_constants(in), write ? 1U : 0U, commands.groups_for(runs, 64));
     commands.barrier();
 }
 

@@ -8,7 +8,8 @@
 namespace edgesplat::passes {
 
 struct CollectSplats {
-    glm::ivec3 core_size;  ///< voxels that become splats, along each axis
+    glm::ivec3 core_size;      ///< voxels that become splats, along each axis
+    std::uint32_t bricks = 0;  ///< SceneParams::brick_count
     std::uint32_t iso_count = 1;
     bool edges = true;                               ///< the edge field exists
     bool buried = true;                              ///< the buried mask exists: `mark_buried` has run
@@ -29,7 +30,7 @@ gpu::Specialization finish_constants(const CollectSplats& in);
 /// (engine/culling/brick_runs.h).
 std::uint64_t collect_runs(const glm::ivec3& core_size);
 
-/// Writes the number of splats of each run to SceneParams::run_offsets.
+/// Writes the number of splats of each run to SceneParams::run_offsets; nothing for runs of bricks that are not listed.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
 /// Writes the records, brick by brick; then, with an edge field, finishes `count` splats. Precondition: run_offsets

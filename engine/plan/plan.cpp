@@ -223,8 +223,9 @@ bool same_edges(const CollectionPlan& a, const CollectionPlan& b) {
     // Beside which materials a voxel lies is stored with a surfel, else only if there is translucent matter.
     const bool surfels = b.estimator == EdgeEstimator::March || b.estimator == EdgeEstimator::Cubic;
     return same_intervals(a, b) && a.estimator == b.estimator && a.edge_field == b.edge_field &&
-           a.skip_buried == b.skip_buried && a.params.estimate_mask == b.params.estimate_mask &&
-           a.params.band == b.params.band && a.params.reach == b.params.reach &&
+           a.skip_buried == b.skip_buried && a.surfaces == b.surfaces &&
+           a.params.estimate_mask == b.params.estimate_mask && a.params.band == b.params.band &&
+           a.params.reach == b.params.reach &&
            (surfels || (a.params.translucent_mask != 0) == (b.params.translucent_mask != 0));
 }
 
@@ -234,9 +235,8 @@ StaleResults stale_results(const CollectionPlan& held, const CollectionPlan& wan
     StaleResults stale;
     stale.mask = !same_mask(held, wanted);
     stale.edges = !same_edges(held, wanted) || (wanted.skip_buried && stale.mask);
-    stale.lists = stale.mask || stale.edges || held.faces != wanted.faces || held.surfaces != wanted.surfaces ||
-                  held.two_values != wanted.two_values || held.labels != wanted.labels ||
-                  held.params.visible_mask != wanted.params.visible_mask ||
+    stale.lists = stale.mask || stale.edges || held.faces != wanted.faces || held.two_values != wanted.two_values ||
+                  held.labels != wanted.labels || held.params.visible_mask != wanted.params.visible_mask ||
                   held.params.translucent_mask != wanted.params.translucent_mask ||
                   support_of(held.transfer) != support_of(wanted.transfer);
     stale.transfer = !std::ranges::equal(held.transfer, wanted.transfer);
@@ -330,13 +330,13 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
         params.opaque_mask |= 1U << m;
         farthest = std::max(farthest, bury_distance(least * shortest_step(volume.geometry), radius));
     }
-    plan.buried =
-        settings.cull_buried && !keep_buried && params.opaque_mask != 0 && farthest <= shader::MAX_BURY_DISTANCE;
+    // No surface splat is buried.
+    plan.buried = settings.cull_buried && !keep_buried && !plan.surfaces && params.opaque_mask != 0 &&
+                  farthest <= shader::MAX_BURY_DISTANCE;
     plan.skip_buried = plan.buried && std::has_single_bit(params.opaque_mask);
     params.bury_distance = plan.buried ? farthest : 0;
     if (!plan.buried) params.opaque_mask = 0;
-    // Planes cut rays, not surface splats.
-    if (plan.buried && !plan.surfaces)
+    if (plan.buried)
         plan.clip =
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));

@@ -39,6 +39,11 @@ struct CollectionPlan {
     bool surfaces = false;    ///< only voxels beside a surface become splats, with faces that agree with the field
     /// Whether edges are estimated on the B-spline through the samples.
     bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }
+    /// Whether passes 1b and 2 process a list of bricks (BrickRanges): if surfels are searched in the volume as a
+    /// whole.
+    bool lists_bricks() const {
+        return !blocks && edge_field && (estimator == EdgeEstimator::Cubic || estimator == EdgeEstimator::March);
+    }
     bool labels = false;  ///< every splat gets the label of its voxel (Volume::shown_labels)
     /// Clip planes; none unless `buried`. With `buried`, clipped voxels occlude nothing and are culled. Otherwise the
     /// splat list does not depend on the planes: they move without a new collection.

@@ -95,10 +95,10 @@ const std::array kVolumeImages{
 };
 
 const std::array kFieldImages{
-    row<VolumeImageRow<SplatLists>>(text("edge field", "(z, y, x) normal, distances, flags", "1", "2"), &L::edges,
-                                    shader::BIND_EDGES,
-                                    volume_of(vk::Format::eR32G32Uint, Usage::eStorage | Usage::eTransferSrc),
-                                    [](const CollectionPlan& p) { return p.edge_field; }),
+    row<VolumeImageRow<SplatLists>>(
+        text("edge field", "(z, y, x) normal, distances, flags", "1", "2"), &L::edges, shader::BIND_EDGES,
+        volume_of(vk::Format::eR32G32Uint, Usage::eStorage | Usage::eTransferSrc | Usage::eTransferDst),
+        [](const CollectionPlan& p) { return p.edge_field; }),
     row<VolumeImageRow<SplatLists>>(text("buried mask", "(z, y, x) 0 or 1", "1a", "1, 2"), &L::buried,
                                     shader::BIND_BURIED,
                                     volume_of(vk::Format::eR8Uint, Usage::eStorage | Usage::eTransferSrc),
@@ -112,6 +112,10 @@ const std::array kCollectionBuffers{
     row<CollectionBufferRow>(
         text("run offsets", "(runs + 3) uint", "2, host", "2, host"), &L::run_offsets,
         [](const CollectionPlan&, const glm::ivec3& core) { return (passes::collect_runs(core) + 3) * kWord; }),
+    row<CollectionBufferRow>(text("listed bricks", "(bricks) uint", "host", "1, 2"), &L::listed_bricks,
+                             [](const CollectionPlan& p, const glm::ivec3& core) {
+                                 return p.lists_bricks() ? BrickRuns(core).bricks() * kWord : 0;
+                             }),
     row<CollectionBufferRow>(text("transfer function", "(rows) TransferRow", "host", "2, 5"), &L::transfer,
                              [](const CollectionPlan& p, const glm::ivec3&) {
                                  return p.transfer.size() * std::uint64_t{sizeof(shader::TransferRow)};

@@ -22,7 +22,7 @@ struct VolumeImages {
 /// Resources that last until the volume, the scene's materials or the edge settings change; rows likewise.
 struct SplatLists {
     gpu::GpuImage edges, buried;
-    gpu::Buffer scene, run_offsets, transfer;
+    gpu::Buffer scene, run_offsets, listed_bricks, transfer;
     gpu::Buffer splats, traits, values, labels, occlusion, shadows;
     bool surfaces = false;  ///< CollectionPlan::surfaces
     bool border = true;     ///< has_matter_at_border; only with surface splats

@@ -7,7 +7,7 @@
 
 #include "engine/reference/creases.h"
 #include "engine/reference/faces.h"
-#include "engine/reference/parallel.h"
+#include "engine/volume/parallel.h"
 #include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 

@@ -4,10 +4,10 @@
 #include <cmath>
 
 #include "engine/reference/faces.h"
-#include "engine/reference/parallel.h"
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/parallel.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "engine/reference/faces.h"
-#include "engine/reference/parallel.h"
+#include "engine/volume/parallel.h"
 #include "footprints/kernel.h"
 #include "shaders/shared/limits.h"
 

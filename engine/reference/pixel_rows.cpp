@@ -5,7 +5,7 @@
 #include <numeric>
 #include <thread>
 
-#include "engine/reference/parallel.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::reference {
 

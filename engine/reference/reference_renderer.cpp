@@ -7,11 +7,11 @@
 #include "engine/reference/2c_cast_shadows.h"
 #include "engine/reference/6_composite_sheet.h"
 #include "engine/reference/7_resolve.h"
-#include "engine/reference/parallel.h"
 #include "engine/reference/pixel_rows.h"
 #include "engine/reference/surfaces.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/filters.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::reference {
 

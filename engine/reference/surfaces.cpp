@@ -8,9 +8,9 @@
 #include "engine/geometry/in_double.h"
 #include "engine/reference/faces.h"
 #include "engine/reference/outlines.h"
-#include "engine/reference/parallel.h"
 #include "engine/reference/volume_piece.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/parallel.h"
 #include "shaders/shared/limits.h"
 
 namespace edgesplat::reference {

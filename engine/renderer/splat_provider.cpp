@@ -5,6 +5,7 @@
 
 #include "engine/clock.h"
 #include "engine/error.h"
+#include "engine/forecast/description_passes.h"
 
 namespace edgesplat {
 
@@ -85,6 +86,7 @@ std::optional<MemoryNeed> SplatProvider::memory_shortfall(const FrameRequest& re
         forecast = forecast_frame(request, wanted, count_splats(*request.volume, wanted), reach, session_->profile());
         need = memory_need(session_->device(), forecast, options_->memory_budget);
     }
+    session_->pipelines().create_ahead(pipelines_of(request, forecast));
     checked_ = std::move(needed);
     checked_need_ = need.fits() ? std::nullopt : std::optional(std::move(need));
     return checked_need_;

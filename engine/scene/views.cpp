@@ -12,6 +12,7 @@
 #include "engine/scene/clip_planes.h"
 #include "engine/scene/transfer_function.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat {
 namespace {
@@ -61,22 +62,28 @@ std::vector<glm::dvec3> points_of_boxes(const Volume& volume, const Scene& scene
                         return false;
         return clip.empty() || !clip.cuts_away(glm::dvec3(x, y, z) + middle);
     };
-    std::vector<glm::dvec3> points;
-    for (int z = 0; z <= ends.z; ++z)
-        for (int y = 0; y <= ends.y; ++y) {
-            int first = 0, last = ends.x;
-            while (first <= last && !seen(first, y, z))
-                ++first;
-            while (last > first && !seen(last, y, z))
-                --last;
-            if (first > last) continue;
-            for (const int far : {0, side.z})
-                for (const int up : {0, side.y}) {
-                    points.emplace_back(first - 0.5, y + up - 0.5, z + far - 0.5);
-                    points.emplace_back(last + side.x - 0.5, y + up - 0.5, z + far - 0.5);
-                }
-        }
-    return points;
+    std::vector<std::vector<glm::dvec3>> of_slices(static_cast<std::size_t>(std::max(ends.z + 1, 0)));
+    parallel_for(ends.z + 1, [&](int begin, int end) {
+        for (int z = begin; z < end; ++z)
+            for (int y = 0; y <= ends.y; ++y) {
+                int first = 0, last = ends.x;
+                while (first <= last && !seen(first, y, z))
+                    ++first;
+                while (last > first && !seen(last, y, z))
+                    --last;
+                if (first > last) continue;
+                std::vector<glm::dvec3>& points = of_slices[static_cast<std::size_t>(z)];
+                for (const int far : {0, side.z})
+                    for (const int up : {0, side.y}) {
+                        points.emplace_back(first - 0.5, y + up - 0.5, z + far - 0.5);
+                        points.emplace_back(last + side.x - 0.5, y + up - 0.5, z + far - 0.5);
+                    }
+            }
+    });
+    std::vector<glm::dvec3> all;
+    for (const std::vector<glm::dvec3>& points : of_slices)
+        all.insert(all.end(), points.begin(), points.end());
+    return all;
 }
 
 /// Points (index space of `volume`) with the same convex hull as the visible matter. Only cubes of eight voxels count,
@@ -116,24 +123,39 @@ struct Meeting {
     glm::dvec3 normal{0};  ///< unit normal of the surface towards the eye; world
 };
 
+/// The distances (mm) at which a ray enters the volume and leaves it; empty if it misses.
+glm::dvec2 ends_in_volume(const glm::dvec3& from, const glm::dvec3& along, const glm::ivec3& dims) {
+    glm::dvec2 ends(0, std::numeric_limits<double>::infinity());
+    for (int axis = 0; axis < 3; ++axis) {
+        const double low = -0.5 - from[axis], high = dims[axis] - 0.5 - from[axis];
+        if (along[axis] == 0) {
+            if (low > 0 || high < 0) return {0, -1};
+            continue;
+        }
+        const auto [near, far] = std::minmax({low / along[axis], high / along[axis]});
+        ends = {std::max(ends.x, near), std::min(ends.y, far)};
+    }
+    return ends;
+}
+
+/// Examines the samples nearest to places half a voxel apart.
 std::optional<Meeting> first_surface(const glm::dvec3& eye, const glm::dvec3& direction, const ViewRequest& request) {
     const Volume& volume = *request.volume;
     const VolumeGeometry& geometry = volume.geometry;
     const glm::dvec3 spacing = geometry.spacing();
     const double step = 0.5 * std::min({spacing.x, spacing.y, spacing.z});
-    const double end = 2 * glm::length(geometry.center() - eye);
-    const auto count = static_cast<std::int64_t>(end / step);
     const IndexClip clip = index_clip(request.scene->effects.clip, geometry);
     const glm::ivec3 last = geometry.dims - 1;
-    const glm::dmat3 to_normal = glm::transpose(glm::inverse(geometry.index_to_world_axes));
-    bool in_volume = false;  // whether the previous position was in the volume
-    for (std::int64_t i = 0; i <= count; ++i) {
+    const glm::dmat3 to_index = glm::inverse(geometry.index_to_world_axes), to_normal = glm::transpose(to_index);
+    const glm::dvec3 from = geometry.to_index(eye), along = to_index * direction;
+    const glm::dvec2 ends = ends_in_volume(from, along, geometry.dims);
+    const auto first = static_cast<std::int64_t>(std::ceil(ends.x / step));
+    for (std::int64_t i = first; static_cast<double>(i) * step <= ends.y; ++i) {
         const double t = static_cast<double>(i) * step;
-        const glm::dvec3 place = geometry.to_index(eye + t * direction);
-        const glm::ivec3 index(glm::round(place));
-        const bool at_border = i > 0 && !in_volume;
-        in_volume = glm::all(glm::greaterThanEqual(index, glm::ivec3(0))) && glm::all(glm::lessThanEqual(index, last));
-        if (!in_volume || clip.cuts_away(place) || !volume.has_data(index) ||
+        const glm::dvec3 place = from + t * along;
+        const glm::ivec3 index = glm::clamp(glm::ivec3(place + 0.5), glm::ivec3(0), last);
+        const bool at_border = i > 0 && i == first;
+        if ((!clip.empty() && clip.cuts_away(place)) || !volume.has_data(index) ||
             !shows(*request.scene, static_cast<double>(value_at(volume, index))))
             continue;
         glm::dvec3 gradient(0);
@@ -183,22 +205,26 @@ double shape_score(const Camera& camera, const ViewRequest& request) {
     const CameraFrame frame = camera_frame(camera);
     const double aspect = static_cast<double>(request.width) / request.height;
     std::array<double, kBins * kBins> faced{};
-    double met = 0;
     const auto place = [](int i, int count) { return 2 * (i + 0.5) / count - 1; };
     const auto bin = [](double cosine) { return std::clamp(static_cast<int>((cosine + 1) / 2 * kBins), 0, kBins - 1); };
-    for (int y = 0; y < kRays; ++y)
-        for (int x = 0; x < kRays; ++x) {
+    std::array<std::optional<Meeting>, kRays * kRays> meetings;
+    parallel_for(kRays * kRays, [&](int begin, int end) {
+        for (int i = begin; i < end; ++i) {
             const glm::dvec3 direction =
-                glm::normalize(frame.forward + place(x, kRays) * frame.tan_half_y * aspect * frame.right +
-                               place(y, kRays) * frame.tan_half_y * frame.up);
-            const auto found = first_surface(camera.eye, direction, request);
-            if (!found) continue;
-            const int column = bin(glm::dot(found->normal, frame.right)), row = bin(glm::dot(found->normal, frame.up));
-            // the distance between rays is proportional to their length
-            const double area = found->distance * found->distance;
-            faced[static_cast<std::size_t>(row * kBins + column)] += area;
-            met += area;
+                glm::normalize(frame.forward + place(i % kRays, kRays) * frame.tan_half_y * aspect * frame.right +
+                               place(i / kRays, kRays) * frame.tan_half_y * frame.up);
+            meetings.at(static_cast<std::size_t>(i)) = first_surface(camera.eye, direction, request);
         }
+    });
+    double met = 0;
+    for (const std::optional<Meeting>& found : meetings) {
+        if (!found) continue;
+        const int column = bin(glm::dot(found->normal, frame.right)), row = bin(glm::dot(found->normal, frame.up));
+        // the distance between rays is proportional to their length
+        const double area = found->distance * found->distance;
+        faced.at(static_cast<std::size_t>(row * kBins + column)) += area;
+        met += area;
+    }
     double entropy = 0;
     for (const double area : faced)
         if (area > 0) entropy -= area / met * std::log(area / met);

@@ -30,7 +30,7 @@ std::uint64_t voxels_that_depend_on(const VoxelBox& changed, const glm::ivec3& d
 }  // namespace
 
 passes::EstimateEdges estimate_inputs(const CollectionPlan& plan) {
-    return {plan.estimator, plan.skip_buried, plan.params.iso_count};
+    return {plan.estimator, plan.skip_buried, plan.surfaces, plan.params.iso_count};
 }
 
 passes::CollectSplats collect_inputs(const CollectionPlan& plan) {
@@ -92,6 +92,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole, stale);
+    list_bricks(wanted, volume.ranges());
     lists_.border = wanted.surfaces && has_matter_at_border(*volume.volume(), wanted.params);
     auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
@@ -107,6 +108,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     lists_.shadows = {};
     const CollectionBlock whole = whole_block(plan.dims);
     lists_.border = plan.surfaces && has_matter_at_border(*volume.volume(), plan.params);
+    list_bricks(plan, volume.ranges());
     clear_counts();
     bind(volume);
     place_block(plan, whole);
@@ -122,6 +124,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
         const VoxelBox core = changed.widened(shader::CHANGE_MARGIN - shader::ESTIMATE_MARGIN);
         params.core_low = core.low;
         params.core_size = core.size();
+        params.brick_count = 0;
         const passes::EdgeRegion region{plan.dims, params.core_low, params.core_size};
         run([&] {
             commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
@@ -129,10 +132,22 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
         cost.voxels_estimated += voxels_that_depend_on(changed, plan.dims);
     }
     place_block(plan, whole);
-    run([&] { count_block(collect_inputs(plan)); });
+    run([&] { count_block(block_inputs(plan, whole)); });
     auto list = list_block(plan, whole, true, kMostSplats, cost);
     hold_list(*list);
     collected_ = plan;
+}
+
+void SplatStore::list_bricks(const CollectionPlan& plan, const BrickRanges& ranges) {
+    bricks_listed_ = 0;
+    if (!plan.lists_bricks()) return;
+    const std::span iso(plan.params.iso, plan.params.iso_count);
+    const std::vector<std::uint32_t> bricks = ranges.list(iso, plan.surfaces);
+    // Without any, one brick is processed: 0 stands for all.
+    bricks_listed_ = std::max(static_cast<std::uint32_t>(bricks.size()), 1U);
+    const auto listed = lists_.listed_bricks.mapped<std::uint32_t>(bricks_listed_);
+    listed[0] = 0;
+    std::ranges::copy(bricks, listed.begin());
 }
 
 void SplatStore::clear_counts() {
@@ -141,6 +156,7 @@ void SplatStore::clear_counts() {
 }
 
 void SplatStore::prepare(const CollectionPlan& plan, const CollectionBlock& largest, const StaleResults& stale) {
+    bricks_listed_ = 0;
     // Free old resources before allocating new ones, so that both never exist at once.
     for (const SplatListRow& row : splat_list_rows())
         lists_.*row.list = {};
@@ -201,6 +217,8 @@ void SplatStore::place_block(const CollectionPlan& plan, const CollectionBlock& 
     place_planes(params.clip_keep, block.low);
     place_planes(params.clip_remove, block.low);
     params.run_offsets = lists_.run_offsets.address();
+    if (bricks_listed_ > 0) params.bricks = lists_.listed_bricks.address();
+    params.brick_count = bricks_listed_;
     for (const SplatListRow& row : splat_list_rows())
         params.*row.collected = before.*row.collected;
     if (lists_.transfer) params.transfer = lists_.transfer.address();
@@ -213,8 +231,16 @@ void SplatStore::mark_block(const CollectionPlan& plan, const CollectionBlock& b
                   [&] { passes::mark_buried(commands, block.size, plan.params.iso_count, plan.clip); });
 }
 
+passes::CollectSplats SplatStore::block_inputs(const CollectionPlan& plan, const CollectionBlock& block) const {
+    passes::CollectSplats collect = collect_inputs(plan);
+    collect.core_size = block.core_size;
+    collect.bricks = bricks_listed_;
+    return collect;
+}
+
 void SplatStore::count_block(const passes::CollectSplats& collect) {
     gpu::Commands& commands = session_->commands();
+    std::ranges::fill(lists_.run_offsets.mapped<std::uint32_t>(passes::collect_runs(collect.core_size)), 0U);
     commands.span("2_collect_splats", [&] { passes::count_splats(commands, collect); });
 }
 
@@ -246,8 +272,7 @@ void SplatStore::scan_runs(const CollectionBlock& block, CollectedBlock& collect
 
 std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan, const CollectionBlock& block,
                                                      bool exact, std::uint64_t most_splats, SetupCost& cost) {
-    passes::CollectSplats collect = collect_inputs(plan);
-    collect.core_size = block.core_size;
+    const passes::CollectSplats collect = block_inputs(plan, block);
     CollectedBlock out;
     scan_runs(block, out);
     const std::uint64_t total = out.first + out.count;
@@ -285,18 +310,23 @@ void SplatStore::hold_list(CollectedBlock& collected) {
 std::optional<CollectedBlock> SplatStore::collect_block(const CollectionPlan& plan, const CollectionBlock& block,
                                                         bool exact, std::uint64_t most_splats, SetupCost& cost,
                                                         const StaleResults& stale) {
-    passes::CollectSplats collect = collect_inputs(plan);
-    collect.core_size = block.core_size;
     place_block(plan, block);
     gpu::Commands& commands = session_->commands();
     const bool estimates = plan.edge_field && stale.edges;
     commands.run([&] {
         if (stale.mask) mark_block(plan, block);
         if (estimates) {
-            const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size};
-            commands.span("1_estimate_edges", [&] { passes::estimate_edges(commands, region, estimate_inputs(plan)); });
+            const passes::EdgeRegion region{block.size, block.core_low - block.low, block.core_size, bricks_listed_};
+            commands.span("1_estimate_edges", [&] {
+                // Bricks that are not listed have no edges.
+                if (plan.surfaces) {
+                    commands.clear(lists_.edges);
+                    commands.barrier();
+                }
+                passes::estimate_edges(commands, region, estimate_inputs(plan));
+            });
         }
-        count_block(collect);
+        count_block(block_inputs(plan, block));
     });
     add_times(cost.times, commands.span_times());
     auto out = list_block(plan, block, exact, most_splats, cost);

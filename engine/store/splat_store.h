@@ -97,6 +97,9 @@ class SplatStore {
     void reserve(const CollectionPlan& plan, std::uint64_t count);
     /// Writes the passes' parameters for a block. The lists' addresses stay.
     void place_block(const CollectionPlan& plan, const CollectionBlock& block);
+    /// Lists the bricks that passes 1b and 2 process, if the plan needs a list.
+    void list_bricks(const CollectionPlan& plan, const BrickRanges& ranges);
+    passes::CollectSplats block_inputs(const CollectionPlan& plan, const CollectionBlock& block) const;
     void mark_block(const CollectionPlan& plan, const CollectionBlock& block);
     void count_block(const passes::CollectSplats& collect);
     /// Turns the runs' counts into offsets in the list; records the bricks and their bounding box.
@@ -118,6 +121,7 @@ class SplatStore {
 
     DeviceSession* session_;
     SplatLists lists_;
+    std::uint32_t bricks_listed_ = 0;  ///< SceneParams::brick_count
     std::optional<CollectionPlan> collected_;
     std::optional<OcclusionPlan> occluded_;    ///< plan of the stored ambient occlusion
     std::optional<ShadowPlan> shadowed_;       ///< and shadows

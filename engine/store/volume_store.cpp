@@ -16,6 +16,7 @@ bool VolumeStore::hold(std::shared_ptr<const Volume> volume, int level) {
     volume_ = std::move(volume);
     level_ = level;
     images_ = {};
+    ranges_ = {};
     changed_.reset();
     behind_.reset();
     return true;
@@ -25,6 +26,7 @@ bool VolumeStore::hold_in_blocks(bool blocks) {
     if (blocks == in_blocks_) return false;
     in_blocks_ = blocks;
     images_ = {};
+    ranges_ = {};
     return true;
 }
 
@@ -58,6 +60,7 @@ bool VolumeStore::provide() {
         return false;
     }
     behind_.reset();
+    ranges_ = BrickRanges(*volume_);
     return true;
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 
+#include "engine/culling/brick_ranges.h"
 #include "engine/plan/device_session.h"
 #include "engine/volume/changed_box.h"
 #include "engine/volume/volume.h"
@@ -26,6 +27,7 @@ class VolumeStore {
     int level() const { return level_; }  ///< a voxel is 2^level original voxels long
     bool in_blocks() const { return in_blocks_; }
     const VolumeImages& images() const { return images_; }
+    const BrickRanges& ranges() const { return ranges_; }  ///< of the samples on the device; empty in blocks
     /// Box of samples that changed since the splats were collected; only for a volume as a whole.
     const std::optional<VoxelBox>& changed() const { return changed_; }
 
@@ -57,6 +59,7 @@ class VolumeStore {
     int level_ = 0;
     bool in_blocks_ = false;
     VolumeImages images_;
+    BrickRanges ranges_;
     std::optional<VoxelBox> changed_, behind_;  ///< `behind_`: changed samples that are not uploaded yet
 };
 

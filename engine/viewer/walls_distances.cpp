@@ -1,26 +1,15 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
-#include <thread>
 
 #include "engine/viewer/walls_internal.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::viewer {
 namespace {
 
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::size_t kBlock = 16;  // lines at a time: their samples fill a cache line
-
-/// Divides [0, count) into one piece per processor and calls `work(begin, end)` on each, in parallel.
-void in_pieces(std::size_t count, const std::function<void(std::size_t, std::size_t)>& work) {
-    const std::size_t pieces =
-        std::clamp<std::size_t>(std::thread::hardware_concurrency(), 1, std::max<std::size_t>(count, 1));
-    std::vector<std::jthread> threads;
-    for (std::size_t k = 1; k < pieces; ++k)
-        threads.emplace_back([&, k] { work(count * k / pieces, count * (k + 1) / pieces); });
-    work(0, count / pieces);
-}
 
 /// Memory layout of a grid's lines along an axis: `outer` groups of `inner` neighbouring lines.
 struct Lines {
@@ -38,9 +27,9 @@ struct Lines {
     template <typename Work>
     void each_block(const Work& work) const {
         const std::size_t blocks = (inner + kBlock - 1) / kBlock;
-        in_pieces(outer * blocks, [&](std::size_t begin, std::size_t end) {
+        parallel_for(static_cast<int>(outer * blocks), [&](int begin, int end) {
             auto own = work;  // a copy with its own buffers
-            for (std::size_t k = begin; k < end; ++k) {
+            for (auto k = static_cast<std::size_t>(begin); k < static_cast<std::size_t>(end); ++k) {
                 const std::size_t at = k % blocks * kBlock;
                 own(k / blocks * outer_stride + at, std::min(kBlock, inner - at));
             }

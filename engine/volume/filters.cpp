@@ -9,6 +9,7 @@
 #include "engine/error.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/packed_internal.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat {
 namespace {
@@ -30,6 +31,14 @@ Volume like(const Volume& volume) {
 
 using detail::bin_of;
 
+/// Pivots of the equations c[i-1] + 4 c[i] + c[i+1] = 6 f[i] with c = f at both ends, by elimination from the first.
+std::vector<float> spline_pivots(int length) {
+    std::vector<float> pivots(static_cast<std::size_t>(length), 0.0F);
+    for (std::size_t i = 1; i + 1 < pivots.size(); ++i)
+        pivots[i] = 1 / (4 - pivots[i - 1]);
+    return pivots;
+}
+
 /// Interleaved lines: first the first sample of each line, then the second of each, and so on.
 struct Lines {
     float* samples;
@@ -37,25 +46,20 @@ struct Lines {
     std::size_t stride;  ///< between successive samples of a line
 };
 
-/// Replaces samples by the coefficients of the interpolating spline: c[i-1] + 4 c[i] + c[i+1] = 6 f[i], with c = f at
-/// both ends.
-void solve_lines(const Lines& lines, int length) {
-    const int last = length - 1;
-    std::vector<float> kept(static_cast<std::size_t>(length), 0.0F);
-    const auto samples_at = [&](int i) { return lines.samples + static_cast<std::size_t>(i) * lines.stride; };
-    for (int i = 1; i < last; ++i) {
-        const float m = kept[static_cast<std::size_t>(i)] = 1 / (4 - kept[static_cast<std::size_t>(i) - 1]);
-        const float* before = samples_at(i - 1);
-        float* here = samples_at(i);
+/// Replaces samples by the coefficients of the interpolating spline.
+void solve_lines(const Lines& lines, const std::vector<float>& pivots) {
+    const std::size_t last = pivots.size() - 1;
+    for (std::size_t i = 1; i < last; ++i) {
+        const float* const before = lines.samples + (i - 1) * lines.stride;
+        float* const here = lines.samples + i * lines.stride;
         for (std::size_t line = 0; line < lines.count; ++line)
-            here[line] = m * (6 * here[line] - before[line]);
+            here[line] = pivots[i] * (6 * here[line] - before[line]);
     }
-    for (int i = last - 1; i > 0; --i) {
-        const float m = kept[static_cast<std::size_t>(i)];
-        const float* behind = samples_at(i + 1);
-        float* here = samples_at(i);
+    for (std::size_t i = last; i-- > 1;) {
+        const float* const behind = lines.samples + (i + 1) * lines.stride;
+        float* const here = lines.samples + i * lines.stride;
         for (std::size_t line = 0; line < lines.count; ++line)
-            here[line] -= m * behind[line];
+            here[line] -= pivots[i] * behind[line];
     }
 }
 
@@ -102,11 +106,6 @@ Volume threshold(const Volume& volume, double iso_value) {
     return result;
 }
 
-double scaled_value(const Volume& volume, double value) {
-    const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
-    return range > 0 ? (value - low) / range : 0.0;
-}
-
 double scaled_iso_value(const Volume& volume, double iso_value) {
     constexpr double kOutsideTheData = 1e9;
     if (iso_value <= static_cast<double>(volume.min_value)) return -kOutsideTheData;
@@ -136,17 +135,14 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
     return result;
 }
 
-float scaled_sample(const Volume& volume, float value) {
-    if (std::isnan(value)) return kScaledNoData;
-    // Rounding in a packed file may leave the range.
-    return std::max(static_cast<float>(scaled_value(volume, static_cast<double>(value))), 0.0F);
-}
-
 std::vector<float> scaled_field(const Volume& volume) {
     require_samples(volume, "the scaled field");
     std::vector<float> field(volume.values.size());
-    for (std::size_t i = 0; i < field.size(); ++i)
-        field[i] = scaled_sample(volume, volume.sample(i));
+    const std::size_t slice = volume.index_of(0, 0, 1);
+    parallel_for(volume.geometry.dims.z, [&](int begin, int end) {
+        for (std::size_t i = static_cast<std::size_t>(begin) * slice; i < static_cast<std::size_t>(end) * slice; ++i)
+            field[i] = scaled_sample(volume, volume.sample(i));
+    });
     return field;
 }
 
@@ -168,11 +164,19 @@ std::vector<float> bspline_coefficients(const std::vector<float>& field, const g
         fail("B-spline coefficients: {} samples for dims {} x {} x {}", field.size(), dims.x, dims.y, dims.z);
     std::vector<float> coefficients = field;
     const std::size_t row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
-    for (std::size_t at = 0; at < coefficients.size(); at += row)
-        solve_lines({&coefficients[at], 1, 1}, dims.x);
-    for (std::size_t at = 0; at < coefficients.size(); at += slice)
-        solve_lines({&coefficients[at], row, row}, dims.y);
-    solve_lines({coefficients.data(), slice, slice}, dims.z);
+    const std::vector<float> of_x = spline_pivots(dims.x), of_y = spline_pivots(dims.y), of_z = spline_pivots(dims.z);
+    parallel_for(dims.z, [&](int begin, int end) {
+        for (auto z = static_cast<std::size_t>(begin); z < static_cast<std::size_t>(end); ++z) {
+            float* const from = coefficients.data() + z * slice;
+            for (std::size_t at = 0; at < slice; at += row)
+                solve_lines({from + at, 1, 1}, of_x);
+            solve_lines({from, row, row}, of_y);
+        }
+    });
+    parallel_for(dims.y, [&](int begin, int end) {
+        for (auto y = static_cast<std::size_t>(begin); y < static_cast<std::size_t>(end); ++y)
+            solve_lines({coefficients.data() + y * row, row, slice}, of_z);
+    });
     return coefficients;
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -31,13 +32,20 @@ inline constexpr float kScaledNoData = -1e-30F;
 /// The scaled field of docs/method.md: F = (f - f_min) / (f_max - f_min) computed in double, stored as float; 0 if the
 /// volume is constant; kScaledNoData without data. Same order as `Volume::values`.
 std::vector<float> scaled_field(const Volume& volume);
-/// The scaled field of one sample; NaN: without data.
-float scaled_sample(const Volume& volume, float value);
 /// The scaled field of a box of the volume.
 std::vector<float> scaled_box(const Volume& volume, const VoxelBox& box);
 /// The same scaling of one value, e.g. of a transfer point; the result may lie outside [0, 1]. 0 if the volume is
 /// constant.
-double scaled_value(const Volume& volume, double value);
+inline double scaled_value(const Volume& volume, double value) {
+    const double low = static_cast<double>(volume.min_value), range = static_cast<double>(volume.max_value) - low;
+    return range > 0 ? (value - low) / range : 0.0;
+}
+/// The scaled field of one sample; NaN: without data.
+inline float scaled_sample(const Volume& volume, float value) {
+    if (std::isnan(value)) return kScaledNoData;
+    // Rounding in a packed file may leave the range.
+    return std::max(static_cast<float>(scaled_value(volume, static_cast<double>(value))), 0.0F);
+}
 
 /// The same scaling of an iso-value. +-1e9 if all samples lie on one side of it, so that no edge estimator extrapolates
 /// to it.

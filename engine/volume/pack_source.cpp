@@ -8,24 +8,14 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <thread>
 
 #include "engine/volume/analytic_volumes.h"
 #include "engine/volume/io/samples.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat::detail {
 namespace {
-
-/// Calls work(first, last) for parts of 0..count, one per core.
-template <typename Work>
-void in_parallel(int count, const Work& work) {
-    const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, std::max(count, 1));
-    std::vector<std::jthread> pool;
-    for (int i = 1; i < threads; ++i)
-        pool.emplace_back([&work, i, count, threads] { work(count * i / threads, count * (i + 1) / threads); });
-    work(0, count / threads);
-}
 
 class AnalyticSource final : public PackSource {
   public:
@@ -37,7 +27,7 @@ class AnalyticSource final : public PackSource {
             description.geometry.index_to_world_axes[axis][axis] = scene_.spacing[axis];
     }
     void read(const glm::ivec3& low, const glm::ivec3& size, std::span<float> out) const override {
-        in_parallel(size.y * size.z, [&](int first, int last) {
+        parallel_for(size.y * size.z, [&](int first, int last) {
             for (int row = first; row < last; ++row) {
                 float* const to = out.data() + static_cast<std::size_t>(row) * static_cast<std::size_t>(size.x);
                 for (int x = 0; x < size.x; ++x)

@@ -1,5 +1,6 @@
 #include "engine/volume/volume.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -6,8 +6,10 @@
 #include "shaders/edges/edge_record.glsl"
 
 layout(local_size_x = 64) in;
+#include "shaders/common/groups.glsl"
 layout(constant_id = SPEC_ESTIMATOR) const uint ESTIMATOR = 3u;
 layout(constant_id = SPEC_BURIED) const uint BURIED = 1u;
+layout(constant_id = SPEC_SURFACES) const uint SURFACES = 0u;
 const bool SURFELS = ESTIMATOR == MARCH || ESTIMATOR == CUBIC;
 
 layout(binding = BIND_VOLUME, r32f) uniform readonly image3D volume;
@@ -56,51 +58,96 @@ Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
     return e;
 }
 
-// Invisible voxels have no edge.
+bool matter_ends;  // whether matter may end in the brick
+
+bool is_outermost(ivec3 p) {
+    ivec3 at = p + params.scene.block_origin;
+    return any(equal(at, ivec3(0))) || any(equal(at, params.scene.volume_dims - 1));
+}
+
+// Whether samples around a voxel are of other materials than its own, or missing.
+bool ends_around(float value, vec2 around) {
+    uint material = material_of(value);
+    return material_of(around.x) != material || material_of(around.y) != material || (has_data(value) && !has_data(around.x));
+}
+
+// The normal of a voxel without an edge.
+Edge plain_edge(ivec3 p) {
+    vec3 g = voxel_gradient(p);
+    float slope = length(g);
+    return slope >= GRADIENT_MIN ? Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL) : Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+}
+
+void store_edge(ivec3 p, Edge e, uint flags) {
+    uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e) & ~BESIDE_BITS);
+    imageStore(edges, p, uvec4(code.x, code.y | flags, 0u, 0u));
+}
+
+// Whether an edge is searched at voxel p; else stores what is known without. Invisible voxels have no edge. Only surfels
+// end at other voxels; surface splats need no normals of voxels without.
 bool wanted(ivec3 p) {
-    bool visible = in_mask(params.scene.estimate_mask, material_of(voxel(p)));
+    float value = voxel(p);
+    bool visible = in_mask(params.scene.estimate_mask, material_of(value));
     if (BURIED == 1u) visible = visible && imageLoad(buried, p).r == 0u;
-    if (!visible) imageStore(edges, p, uvec4(0u));
-    return visible;
+    bool searched = visible;
+    if (SURFELS) {
+        searched = visible && is_outermost(p);
+        IF_ANY(matter_ends && visible) searched = searched || ends_around(value, values_around(p));
+    }
+    IF_ANY(!searched) {
+        Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+        if (SURFACES == 0u) {
+            IF_ANY(visible && !searched) e = plain_edge(p);
+        }
+        if (!searched) store_edge(p, visible ? e : Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), 0u);
+    }
+    return searched;
 }
 #include "shaders/edges/brick_list.glsl"
 
 void main() {
     dims = params.scene.dims;
-    ivec3 low_voxel = max(params.scene.core_low - ESTIMATE_MARGIN, ivec3(0));
-    uint count = list_brick(low_voxel, min(params.scene.core_low + params.scene.core_size + ESTIMATE_MARGIN, dims));
+    ivec3 first = max(params.scene.core_low - ESTIMATE_MARGIN, ivec3(0));
+    ivec3 end = min(params.scene.core_low + params.scene.core_size + ESTIMATE_MARGIN, dims);
+    uvec3 bricks = uvec3(end - first + BRICK_SIDE - 1) / BRICK;
+    uint number = group_number();
+    matter_ends = true;
+    if (params.scene.brick_count > 0u) {
+        if (number >= params.scene.brick_count) return;
+        uint entry = UintsRef(params.scene.bricks).at[number];
+        matter_ends = (entry & BRICK_ENDS) != 0u;
+        number = entry & ~BRICK_ENDS;
+    }
+    if (number >= bricks.x * bricks.y * bricks.z) return;
+    first += BRICK_SIDE * ivec3(number % bricks.x, number / bricks.x % bricks.y, number / bricks.x / bricks.y);
+    uint count = list_brick(first, end);
     for (uint i = gl_LocalInvocationIndex; i < count; i += 64u) {
-        ivec3 p = listed_voxel(low_voxel, i);
+        ivec3 p = first + brick_voxel(brick_voxels[i]);
         float value = voxel(p);
         uint material = material_of(value);
         float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
         float high = params.scene.iso[material];
         Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
         if (ESTIMATOR == TAYLOR) e = extrapolate(p, value, low, high, params.scene.band);
-        Beside beside = Beside(0u, 0u);
+        uint flags = 0u;
         if (SURFELS || params.scene.translucent_mask != 0u) {
             vec2 around = values_around(p);
             uint lowest = material_of(around.x);
             // Matter of a missing sample's own material is not there.
             bool missing = has_data(value) && !has_data(around.x);
             IF_ANY(missing) lowest = missing ? min(lowest + 1u, material_of(least_data_around(p))) : lowest;
-            beside = Beside(material - lowest, material_of(around.y) - material);
+            flags = pack_beside(Beside(material - lowest, material_of(around.y) - material));
             if (SURFELS) e = find_surfel(p, value, low, high, around);
         }
-        if (e.state == EDGE_NONE) {
-            vec3 g = voxel_gradient(p);
-            float slope = length(g);
-            if (slope >= GRADIENT_MIN) e = Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL);
+        IF_ANY(e.state == EDGE_NONE) {
+            if (e.state == EDGE_NONE) e = plain_edge(p);
         }
-        uint border = 0u;
         if (SURFELS) {
             vec3 out_of = border_beside(p);
-            bool ends = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
-            if (ends) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);
-            border = ends ? EDGE_BORDER : 0u;
+            bool cut = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);
+            if (cut) e = Edge(out_of, 0.5, 1e9, EDGE_LOWER);
+            flags |= cut ? EDGE_BORDER : 0u;
         }
-        uvec2 code = e.state == EDGE_NONE ? uvec2(0u) : uvec2(pack_normal(e.n), pack_edge(e) & ~BESIDE_BITS | border);
-        code.y |= pack_beside(beside);
-        imageStore(edges, p, uvec4(code, 0u, 0u));
+        store_edge(p, e, flags);
     }
 }

@@ -96,6 +96,7 @@ EDGESPLAT_CONSTANT int MAX_BURY_DISTANCE = 10;
 EDGESPLAT_CONSTANT int BLOCK_BORDER = 24;
 EDGESPLAT_CONSTANT int CHANGE_MARGIN = 11;  // voxels around a changed sample in which edges may change
 EDGESPLAT_CONSTANT uint BRICK = 8u;  // voxels along each side of a brick
+EDGESPLAT_CONSTANT uint BRICK_ENDS = 1u << 31;  // in a list of bricks: matter may end in the brick
 EDGESPLAT_CONSTANT uint SPLAT_BATCH = 64u;  // splats of visible bricks that 3_select_footprints processes together
 EDGESPLAT_CONSTANT uint SORT_BLOCKS = 512u;   // columns of the sort histogram: serial inside, stable across
 EDGESPLAT_CONSTANT uint QUADS_PER_INSTANCE = 64u;  // gives the most even vertex cost on lavapipe in near and far views

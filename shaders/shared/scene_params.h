@@ -23,6 +23,7 @@ struct SceneParams {
     Address transfer;      // (TRANSFER_ROWS + 1) TransferRow; only with a transfer function
     Address values;        // (splat_count) float: classified value of each splat, scaled; only with a transfer function
     Address labels;        // (splat_count) uint: label of each splat from 1 on, 0: none; only with labels
+    Address bricks;        // (brick_count) uint: numbers of bricks of the images, x fastest, with BRICK_ENDS
     ivec3 core_low;          // first voxel that becomes a splat
     ivec3 core_size;         // number of these voxels along each axis
     ivec3 block_origin;      // position of the images' first voxel in the volume
@@ -30,6 +31,7 @@ struct SceneParams {
     uint list_first;         // first splat that 2a_finish_splats finishes
     uint list_count;
     uint edge_count_at;      // index in run_offsets of the number of splats with an edge
+    uint brick_count;        // 0: all bricks
     float noise;             // standard deviation of the samples' noise, scaled; only with surface splats
 };
 
@@ -50,7 +52,7 @@ EDGESPLAT_CONSTANT uint EDGE_BORDER = 1u << 28;   // in the edge field only: the
 EDGESPLAT_SHARED_END
 
 #ifdef __cplusplus
-static_assert(sizeof(edgesplat::shader::SceneParams) == 476);
+static_assert(sizeof(edgesplat::shader::SceneParams) == 488);
 static_assert(offsetof(edgesplat::shader::SceneParams, visible_mask) == 80);
 static_assert(offsetof(edgesplat::shader::SceneParams, run_offsets) == 96);
 static_assert(sizeof(edgesplat::shader::Splat) == 12);

@@ -52,6 +52,12 @@ void main() {
     ivec3 size = params.scene.core_size;
     uvec3 runs = uvec3(uvec2(size.xy) + BRICK - 1u, uint(size.z)) / uvec3(BRICK, BRICK, 1u);
     uint run = invocation_number();
+    if (params.scene.brick_count > 0u) {
+        uint slice = run / params.scene.brick_count;
+        if (slice >= BRICK) return;
+        uint brick = UintsRef(params.scene.bricks).at[run % params.scene.brick_count] & ~BRICK_ENDS, layer = runs.x * runs.y;
+        run = brick % layer + layer * (brick / layer * BRICK + slice);
+    }
     if (run >= runs.x * runs.y * runs.z) return;
     ivec3 low = ivec3(run % runs.x * BRICK, run / runs.x % runs.y * BRICK, run / runs.x / runs.y);
     ivec2 extent = min(size.xy - low.xy, ivec2(BRICK));

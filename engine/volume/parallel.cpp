@@ -1,4 +1,4 @@
-#include "engine/reference/parallel.h"
+#include "engine/volume/parallel.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace edgesplat::reference {
+namespace edgesplat {
 
 void parallel_for(int count, const std::function<void(int, int)>& work) {
     const int threads = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, std::max(count, 1));
@@ -35,4 +35,4 @@ void parallel_for(int count, const std::function<void(int, int)>& work) {
     if (failure) std::rethrow_exception(failure);
 }
 
-}  // namespace edgesplat::reference
+}  // namespace edgesplat
