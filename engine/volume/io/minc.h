@@ -2,26 +2,20 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "engine/files/sample_type_internal.h"
+#include "engine/volume/io/classic_netcdf.h"
 
 namespace edgesplat::detail {
-
-/// Attributes of a variable: texts without white space at their ends, numbers as double.
-struct MincAttributes {
-    std::map<std::string, std::string> texts;
-    std::map<std::string, std::vector<double>> numbers;
-};
 
 struct MincDimension {
     std::string name;
     std::size_t length = 0;
-    MincAttributes attributes;
+    VariableAttributes attributes;
 };
 
 struct MincImage {

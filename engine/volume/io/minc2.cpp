@@ -49,8 +49,8 @@ std::string minc2_text(hid_t attribute, hid_t type) {
     return text.substr(0, text.find('\0'));
 }
 
-MincAttributes minc2_attributes(hid_t object) {
-    MincAttributes result;
+VariableAttributes minc2_attributes(hid_t object) {
+    VariableAttributes result;
     for (const char* name :
          {"step", "start", "direction_cosines", "length", "valid_range", "units", "spacing", "alignment", "dimorder"}) {
         if (H5Aexists(object, name) <= 0) continue;
@@ -105,7 +105,7 @@ MincImage minc2_image(const std::string& path) {
     if (!dataset) fail("{}: an HDF5 file without {}: not MINC2", path, kMinc2Image);
     const Hdf5Id type(H5Dget_type(dataset.get()), H5Tclose), data_space(H5Dget_space(dataset.get()), H5Sclose);
     const auto extent = minc2_extent(data_space.get());
-    const MincAttributes own = minc2_attributes(dataset.get());
+    const VariableAttributes own = minc2_attributes(dataset.get());
 
     MincImage image;
     image.type = minc2_type(path, type.get());

@@ -10,6 +10,8 @@
 #include <limits>
 
 #include "engine/volume/io/arrays.h"
+#include "engine/volume/io/binary_file.h"
+#include "engine/volume/io/classic_netcdf.h"
 #include "engine/volume/io/hdf5.h"
 #include "engine/volume/io/readers.h"
 #include "engine/volume/io/samples.h"
@@ -25,7 +27,11 @@ std::string lower(std::string text) {
 // An open file. Hold hdf5_mutex() while it exists: version 4 is stored as HDF5.
 class NetcdfFile {
   public:
-    explicit NetcdfFile(const std::string& path) : path_(path) { check(nc_open(path.c_str(), NC_NOWRITE, &id_)); }
+    explicit NetcdfFile(const std::string& path) : path_(path) {
+        // libnetcdf 4.9 divides by 0 for an unknown type.
+        if (ClassicNetcdf::is_classic(first_unpacked_bytes(path, 4))) (void)read_classic_netcdf(path);
+        check(nc_open(path.c_str(), NC_NOWRITE, &id_));
+    }
     ~NetcdfFile() { nc_close(id_); }
     NetcdfFile(const NetcdfFile&) = delete;
     NetcdfFile& operator=(const NetcdfFile&) = delete;
