@@ -183,9 +183,11 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     out.collection = collection;
     out.splats = splats;
     out.splats.extent.surfaces = collection.surfaces;
-    // Of surface splats, only those between two values have creases.
-    out.splats.extent.creases &= !collection.surfaces || collection.two_values;
-    out.splats.extent.border = collection.surfaces && has_matter_at_border(*request.volume, collection.params);
+    if (splats.from != SplatCount::From::Frame) {
+        // Of surface splats, only those between two values have creases.
+        out.splats.extent.creases &= !collection.surfaces || collection.two_values;
+        out.splats.extent.border = collection.surfaces && has_matter_at_border(*request.volume, collection.params);
+    }
     for (const std::uint32_t payload : payloads_of(request.outputs)) {
         out.draws.push_back(
             {payload_name(payload), plan_frame(*request.volume, request.scene, request.camera, out.settings,
