@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/volume/parallel.h"
 
 namespace edgesplat {
 namespace {
@@ -20,6 +21,9 @@ constexpr std::size_t kManyLabels = 256;
 // Of many labels: least share of voxels whose next voxel along x has the same label, and least mean difference of the
 // others' ranks, relative to the number of labels.
 constexpr double kLeastAlike = 0.5, kLeastApart = 0.03;
+// Least distance of a drawn label's samples from the iso-value, on their own side; and of parts one voxel thick, so
+// that they remain that thick.
+constexpr float kLabelSide = 0.05F, kThinLabelSide = 0.2F;
 // Largest magnitude of a whole number that is a label: floats represent smaller ones exactly.
 constexpr float kLargestNumber = 16777216.0F;
 
@@ -152,6 +156,98 @@ std::size_t background_label(const Volume& volume, const LabelTable& table) {
     return static_cast<std::size_t>(std::ranges::max_element(count) - count.begin());
 }
 
+namespace {
+
+std::size_t label_offset(const glm::ivec3& dims, const glm::ivec3& i) {
+    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
+               static_cast<std::size_t>(dims.x) +
+           static_cast<std::size_t>(i.x);
+}
+
+/// The mean with weights 1, 2, 1 along each axis; the outermost samples are repeated.
+void blur(std::vector<float>& field, const glm::ivec3& dims) {
+    const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
+    for (int axis = 0; axis < 3; ++axis) {
+        const auto length = static_cast<std::size_t>(dims[axis]), stride = axis == 0 ? 1 : axis == 1 ? row : slice;
+        // Lines that lie next to each other form a group.
+        const std::size_t together = axis == 0 ? 1 : row, apart = axis == 1 ? slice : row;
+        const auto groups = static_cast<int>(field.size() / (length * together));
+        parallel_for(groups, [&](int begin, int end) {
+            std::vector<float> before(together), here(together);
+            for (auto group = static_cast<std::size_t>(begin); group < static_cast<std::size_t>(end); ++group) {
+                float* const first = field.data() + group * apart;
+                std::copy_n(first, together, before.begin());
+                for (std::size_t i = 0; i < length; ++i) {
+                    float* const at = first + i * stride;
+                    const float* const behind = i + 1 < length ? at + stride : at;
+                    std::copy_n(at, together, here.begin());
+                    for (std::size_t k = 0; k < together; ++k)
+                        at[k] = 0.25F * (before[k] + behind[k]) + 0.5F * here[k];
+                    before.swap(here);
+                }
+            }
+        });
+    }
+}
+
+/// Removes the stairs of whole voxels; shrinks what is larger than they are less than an average does.
+void smooth(std::vector<float>& mask, const glm::ivec3& dims) {
+    const auto twice = [&](std::vector<float>& field) {
+        blur(field, dims);
+        blur(field, dims);
+    };
+    twice(mask);
+    std::vector<float> again = mask;
+    twice(again);
+    for (std::size_t i = 0; i < mask.size(); ++i)
+        mask[i] = 2 * mask[i] - again[i];
+}
+
+/// Whether a voxel is in a cube of 2 x 2 x 2 voxels on its side of the mask.
+bool is_thick(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
+    const bool shown = labels[label_offset(dims, p)] > 0;
+    const auto in_cube = [&](const glm::ivec3& way) {
+        for (int i = 1; i < 8; ++i) {
+            const glm::ivec3 there = p + way * glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+            if ((labels[label_offset(dims, glm::clamp(there, glm::ivec3(0), dims - 1))] > 0) != shown) return false;
+        }
+        return true;
+    };
+    for (int i = 0; i < 8; ++i)
+        if (in_cube(2 * glm::ivec3(i & 1, i >> 1 & 1, i >> 2) - 1)) return true;
+    return false;
+}
+
+/// Whether a voxel belongs to a sheet, a strand or a speck: neither it nor a neighbour on its side is thick.
+bool is_thin(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
+    if (is_thick(labels, dims, p)) return false;
+    const bool shown = labels[label_offset(dims, p)] > 0;
+    for (int i = 0; i < 6; ++i) {
+        glm::ivec3 beside = p;
+        beside[i >> 1] = std::clamp(p[i >> 1] + 2 * (i & 1) - 1, 0, dims[i >> 1] - 1);
+        if ((labels[label_offset(dims, beside)] > 0) == shown && is_thick(labels, dims, beside)) return false;
+    }
+    return true;
+}
+
+/// Moves each sample of the smoothed mask to the side of the iso-value on which its voxel is.
+void keep_sides(std::vector<float>& mask, const std::vector<std::uint32_t>& labels, const glm::ivec3& dims) {
+    parallel_for(dims.z, [&](int begin, int end) {
+        for (int z = begin; z < end; ++z)
+            for (int y = 0; y < dims.y; ++y)
+                for (int x = 0; x < dims.x; ++x) {
+                    const glm::ivec3 p(x, y, z);
+                    const std::size_t at = label_offset(dims, p);
+                    const float way = labels[at] > 0 ? 1.0F : -1.0F, within = way * (mask[at] - 0.5F);
+                    if (within >= kThinLabelSide) continue;
+                    const float side = is_thin(labels, dims, p) ? kThinLabelSide : kLabelSide;
+                    mask[at] = 0.5F + way * std::max(within, side);
+                }
+    });
+}
+
+}  // namespace
+
 Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown) {
     Volume result = volume;
     std::vector<std::uint32_t> labels(volume.values.size());
@@ -169,6 +265,8 @@ Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> tabl
         any = any || labels[at] > 0;
     }
     if (!any) fail("{}: no voxel has a label that is shown", volume.name);
+    smooth(result.values, volume.geometry.dims);
+    keep_sides(result.values, labels, volume.geometry.dims);
     result.no_data = nullptr;
     result.labels = std::move(table);
     result.shown_labels = sorted_labels(std::move(labels));
@@ -199,16 +297,6 @@ Volume drawn_labels(const Volume& volume) {
     shown[background_label(volume, *table)] = false;
     return drawn_labels(volume, std::move(table), shown);
 }
-
-namespace {
-
-std::size_t label_offset(const glm::ivec3& dims, const glm::ivec3& i) {
-    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(dims.y) + static_cast<std::size_t>(i.y)) *
-               static_cast<std::size_t>(dims.x) +
-           static_cast<std::size_t>(i.x);
-}
-
-}  // namespace
 
 std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims,
                                          const glm::ivec3& low, const glm::ivec3& size) {

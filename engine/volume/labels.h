@@ -30,9 +30,9 @@ std::size_t place_of_label(const LabelTable& table, float sample);
 /// there.
 std::size_t background_label(const Volume& volume, const LabelTable& table);
 
-/// The volume that is drawn for a segmentation: 1 where a label is shown, else 0, with `labels` = `table` and
-/// `shown_labels`. `shown`: per place in the table. Samples without data show nothing. Throws Error if no voxel has a
-/// shown label.
+/// The volume that is drawn for a segmentation, with `labels` = `table` and `shown_labels`: the mask of the voxels that
+/// have a shown label, smoothed, and above 0.5 at just these voxels (docs/method/shading.md, Labels). `shown`: per
+/// place in the table. Samples without data show nothing. Throws Error if no voxel has a shown label.
 Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown);
 
 /// The same with all labels but the background. Throws Error if `labels_of` finds none.

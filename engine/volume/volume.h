@@ -81,8 +81,7 @@ struct Volume {
     /// values. Scenes, `min_value`, and everything in the engine use the samples' unit.
     double value_scale = 1;
     std::shared_ptr<const LabelTable> labels;  ///< set by load_volume if the samples are labels (labels_of)
-    /// Only of drawn_labels(). `values` is then 1 where a label is shown, else 0; its range counts as 0 to 1 even if
-    /// all are equal.
+    /// Only of drawn_labels(). `values` is then above 0.5 where a label is shown; its range counts as 0 to 1.
     std::shared_ptr<const ShownLabels> shown_labels;
     std::string geometry_source;     ///< the header's fields that define the geometry, e.g. "sform"; "none" if assumed
     std::string length_unit;         ///< the file's unit of length as its header names it; empty: none, mm are assumed

@@ -94,7 +94,7 @@ TEST(Labels, AreDrawnAsMask) {
     };
     for (const glm::ivec3& p : {glm::ivec3(0), glm::ivec3(22, 15, 10), glm::ivec3(15, 15, 10), glm::ivec3(35, 1, 10)}) {
         EXPECT_EQ(label(drawn, p), raw.at(p.x, p.y, p.z));
-        EXPECT_EQ(drawn.at(p.x, p.y, p.z), raw.at(p.x, p.y, p.z) > 0 ? 1 : 0);
+        EXPECT_EQ(drawn.at(p.x, p.y, p.z) > 0.5F, raw.at(p.x, p.y, p.z) > 0);
     }
     EXPECT_EQ(drawn.shown_labels->largest.size(), 3U);
     EXPECT_EQ(drawn.labels->labels[drawn.shown_labels->largest.front() - 1].value, 3);
@@ -103,10 +103,74 @@ TEST(Labels, AreDrawnAsMask) {
     EXPECT_EQ(label(part, {5, 5, 5}), 7);
     EXPECT_EQ(label(halved(drawn), {7, 7, 5}), 7);
     const Volume without = edgesplat::drawn_labels(raw, drawn.labels, {false, true, false, true});
-    EXPECT_EQ(without.at(15, 15, 10), 0);
+    EXPECT_LT(without.at(15, 15, 10), 0.5F);
     EXPECT_EQ(label(without, {22, 15, 10}), 3);
     EXPECT_THROW(edgesplat::drawn_labels(raw, drawn.labels, {false, false, false, false}), edgesplat::Error);
     EXPECT_THROW(edgesplat::drawn_labels(sampled([](const glm::dvec3& p) { return p.x / 3; })), edgesplat::Error);
+}
+
+/// Labels 0 and 1.
+Volume drawn_mask(bool (*inside)(const glm::dvec3&)) {
+    Volume volume;
+    volume.geometry.dims = glm::ivec3(31);
+    for (int z = 0; z < 31; ++z)
+        for (int y = 0; y < 31; ++y)
+            for (int x = 0; x < 31; ++x)
+                volume.values.push_back(inside(glm::dvec3(x, y, z)) ? 1.0F : 0.0F);
+    finish_volume(volume);
+    auto table = std::make_shared<edgesplat::LabelTable>();
+    table->labels = {{0, 0, {}, {}}, {1, 1, {}, {}}};
+    return edgesplat::drawn_labels(volume, table, {false, true});
+}
+
+TEST(Labels, KeepEveryVoxelOnItsSide) {
+    // Noise: sheets, strands, specks and gaps of one voxel.
+    const auto noise = [](const glm::dvec3& p) {
+        const auto word = static_cast<std::uint32_t>(p.x + 31 * (p.y + 31 * p.z)) * 2654435761U;
+        return (word >> 16 & 3U) == 0;
+    };
+    const Volume drawn = drawn_mask(noise);
+    for (int z = 0; z < 31; ++z)
+        for (int y = 0; y < 31; ++y)
+            for (int x = 0; x < 31; ++x) {
+                const float sample = drawn.at(x, y, z);
+                ASSERT_EQ(sample > 0.5F, noise(glm::dvec3(x, y, z))) << x << ' ' << y << ' ' << z;
+                ASSERT_GE(std::abs(sample - 0.5F), 0.049F);
+            }
+}
+
+TEST(Labels, KeepTheirThickness) {
+    const Volume sheet = drawn_mask([](const glm::dvec3& p) { return p.x == 15; });
+    const double inside = static_cast<double>(sheet.at(15, 15, 15)), beside = static_cast<double>(sheet.at(14, 15, 15));
+    EXPECT_NEAR(2 * (inside - 0.5) / (inside - beside), 0.955, 0.01);
+    const Volume strand = drawn_mask([](const glm::dvec3& p) { return p.x == p.y && std::abs(p.z - p.x) < 0.1; });
+    EXPECT_NEAR(static_cast<double>(strand.at(15, 15, 15)), 0.7, 1e-6);
+    // A face of thick matter is a sum of binomials: 2 * (1 + 4 + 6) / 16 - (1 + 8 + 28 + 56 + 70) / 256.
+    const Volume half = drawn_mask([](const glm::dvec3& p) { return p.x < 15; });
+    EXPECT_FLOAT_EQ(half.at(14, 15, 15), 0.73828125F);
+    EXPECT_FLOAT_EQ(half.at(15, 15, 15), 0.26171875F);
+}
+
+TEST(Labels, AreBallsInsteadOfStairs) {
+    constexpr double kRadius = 11.3;
+    const glm::dvec3 middle(15.2, 14.7, 15.1);
+    const Volume ball =
+        drawn_mask([](const glm::dvec3& p) { return glm::distance(p, glm::dvec3(15.2, 14.7, 15.1)) < kRadius; });
+    double off = 0, off_of_mask = 0;
+    int count = 0;
+    for (int z = 0; z < 31; ++z)
+        for (int y = 0; y < 31; ++y)
+            for (int x = 0; x + 1 < 31; ++x) {
+                const auto a = static_cast<double>(ball.at(x, y, z)), b = static_cast<double>(ball.at(x + 1, y, z));
+                if ((a > 0.5) == (b > 0.5)) continue;
+                const auto away = [&](double at) { return glm::distance(glm::dvec3(x + at, y, z), middle) - kRadius; };
+                off += std::pow(away((0.5 - a) / (b - a)), 2);
+                off_of_mask += std::pow(away(0.5), 2);
+                ++count;
+            }
+    EXPECT_GT(count, 600);
+    EXPECT_LT(std::sqrt(off / count), 0.1);
+    EXPECT_GT(std::sqrt(off_of_mask / count), 0.18);
 }
 
 TEST(Labels, HaveZeroAsBackgroundIfItIsAtTheSides) {
