@@ -18,7 +18,7 @@ class Parser {
     ClassicNetcdf parse() {
         ClassicNetcdf file;
         const std::string magic = take(4);
-        version_ = magic[3];
+        version_ = static_cast<unsigned char>(magic[3]);
         if (!ClassicNetcdf::is_classic(magic) || (version_ != 1 && version_ != 2 && version_ != 5))
             fail("{}: not a classic netCDF file: it does not begin with CDF and the version 1, 2 or 5", path_);
         count();  // number of records
