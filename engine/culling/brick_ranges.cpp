@@ -27,46 +27,41 @@ Window window_of(int number, int size) {
 BrickRanges::BrickRanges(const Volume& volume) {
     const glm::ivec3 dims = volume.geometry.dims, last = dims - 1, bricks = (dims + kSide - 1) / kSide;
     const auto nx = static_cast<std::size_t>(bricks.x), ny = static_cast<std::size_t>(bricks.y);
-    const auto value = [&](int x, int y, int z) {
-        return scaled_sample(volume, volume.sample(volume.index_of(x, y, z)));
-    };
-    const auto add = [](Range& range, float sample) {
-        range.least = std::min(range.least, sample);
-        range.most = std::max(range.most, sample);
-    };
     const auto merge = [](Range& range, const Range& other) {
         range.least = std::min(range.least, other.least);
         range.most = std::max(range.most, other.most);
+    };
+    const auto value = [&](const glm::ivec3& i) {
+        return scaled_sample(volume, volume.sample(volume.index_of(i.x, i.y, i.z)));
+    };
+    // Of a voxel, with the border beside it.
+    const auto at = [&](const glm::ivec3& i) {
+        const float here = value(i);
+        Range range{here, here};
+        for (int axis = 0; axis < 3; ++axis) {
+            if (i[axis] != 0 && i[axis] != last[axis]) continue;
+            glm::ivec3 before = i;
+            before[axis] = std::clamp(i[axis] == 0 ? 1 : i[axis] - 1, 0, last[axis]);
+            const float beyond = scaled_at_border(here, value(before));
+            merge(range, {beyond, beyond});
+        }
+        return range;
     };
     constexpr Range kNone{3e38F, -3e38F};
     // Of each brick within one slice of voxels; then of its slices.
     std::vector<Range> in_slices(nx * ny * static_cast<std::size_t>(dims.z), kNone);
     parallel_for(dims.z, [&](int begin, int end) {
-        std::vector<float> row(static_cast<std::size_t>(dims.x));
+        std::vector<Range> row(static_cast<std::size_t>(dims.x));
         std::vector<Range> of_row(nx);
         for (int z = begin; z < end; ++z)
             for (int y = 0; y < dims.y; ++y) {
                 for (int x = 0; x < dims.x; ++x)
-                    row[static_cast<std::size_t>(x)] = value(x, y, z);
-                const auto extend = [&](Range& range, int x) {
-                    const float here = row[static_cast<std::size_t>(x)];
-                    // At the border, half a voxel beyond the outermost samples, the field is linear.
-                    const glm::ivec3 at(x, y, z);
-                    for (int axis = 0; axis < 3; ++axis) {
-                        if (at[axis] != 0 && at[axis] != last[axis]) continue;
-                        glm::ivec3 before = at;
-                        before[axis] = std::clamp(at[axis] == 0 ? 1 : at[axis] - 1, 0, last[axis]);
-                        add(range, std::max(1.5F * here - 0.5F * value(before.x, before.y, before.z), 0.0F));
-                    }
-                };
+                    row[static_cast<std::size_t>(x)] = at({x, y, z});
                 for (int b = 0; b < bricks.x; ++b) {
                     const auto [first, final] = window_of(b, dims.x);
                     Range range = kNone;
                     for (int x = first; x <= final; ++x)
-                        add(range, row[static_cast<std::size_t>(x)]);
-                    const bool outermost = y == 0 || y == last.y || z == 0 || z == last.z;
-                    for (int x = first; x <= final; ++x)
-                        if (outermost || x == 0 || x == last.x) extend(range, x);
+                        merge(range, row[static_cast<std::size_t>(x)]);
                     of_row[static_cast<std::size_t>(b)] = range;
                 }
                 for (int b = 0; b < bricks.y; ++b) {

@@ -105,9 +105,8 @@ bool ends_beside(const Volume& volume, const shader::SceneParams& params, const 
             beside[axis] += step;
             before[axis] = std::clamp(at[axis] - step, 0, dims[axis] - 1);
             const bool outermost = beside[axis] < 0 || beside[axis] == dims[axis];
-            const std::uint32_t there =
-                outermost ? material_of(params.iso, std::max(1.5F * value(at) - 0.5F * value(before), 0.0F))
-                          : materials[index(beside)];
+            const std::uint32_t there = outermost ? material_of(params.iso, scaled_at_border(value(at), value(before)))
+                                                  : materials[index(beside)];
             if (there != materials[index(at)]) return true;
         }
     return false;

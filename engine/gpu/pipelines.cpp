@@ -102,20 +102,25 @@ vk::raii::Pipeline Pipelines::create_compute(const char* shader, const Specializ
 }
 
 template <typename Create>
+Pipelines::Made Pipelines::timed(const PipelineVariant& variant, const Create& create) {
+    const auto start = std::chrono::steady_clock::now();
+    Made made{create(), variant};
+    made.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    return made;
+}
+
+template <typename Create>
 vk::Pipeline Pipelines::provide(const std::string& key, const PipelineVariant& variant, const Create& create) {
     std::unique_lock lock(mutex_);
     work_done_.wait(lock, [&] { return !in_work_.contains(key); });
     auto found = made_.find(key);
     if (found == made_.end()) {
         lock.unlock();
-        const auto start = std::chrono::steady_clock::now();
-        Made made{create(), variant};
-        made.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+        Made made = timed(variant, create);
         lock.lock();
         found = made_.emplace(key, std::move(made)).first;
     }
     Made& made = found->second;
-
     if (made.error) {
         const std::exception_ptr error = made.error;
         made_.erase(found);
@@ -137,7 +142,6 @@ vk::Pipeline Pipelines::compute(const char* shader, const Specialization& consta
 void Pipelines::create_ahead_now(const std::stop_token& stop, const std::vector<PipelineVariant>& variants) {
     for (const PipelineVariant& variant : variants) {
         if (variant.shaders.size() != 1) continue;
-
         const char* const shader = variant.shaders.front();
         const std::string key = key_of(shader, variant.constants);
         {
@@ -145,14 +149,12 @@ void Pipelines::create_ahead_now(const std::stop_token& stop, const std::vector<
             if (stop.stop_requested()) return;
             if (made_.contains(key) || !in_work_.insert(key).second) continue;
         }
-        const auto start = std::chrono::steady_clock::now();
-        Made made{nullptr, variant};
+        Made made;
         try {
-            made.pipeline = create_compute(shader, variant.constants);
+            made = timed(variant, [&] { return create_compute(shader, variant.constants); });
         } catch (...) {
             made.error = std::current_exception();
         }
-        made.milliseconds = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
         {
             const std::lock_guard lock(mutex_);
             made_.emplace(key, std::move(made));

@@ -74,6 +74,8 @@ class Pipelines {
         std::exception_ptr error;  ///< of a creation ahead
         bool counted = false, used = false;
     };
+    template <typename Create>
+    static Made timed(const PipelineVariant& variant, const Create& create);
     /// The pipeline of that key, which `create` makes unless there is one or another thread is making it.
     template <typename Create>
     vk::Pipeline provide(const std::string& key, const PipelineVariant& variant, const Create& create);

@@ -92,7 +92,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole, stale);
-    list_bricks(wanted, volume.ranges());
+    list_bricks(wanted, volume);
     lists_.border = wanted.surfaces && has_matter_at_border(*volume.volume(), wanted.params);
     auto list = collect_block(wanted, whole, true, kMostSplats, cost, stale);
     hold_list(*list);
@@ -108,7 +108,7 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     lists_.shadows = {};
     const CollectionBlock whole = whole_block(plan.dims);
     lists_.border = plan.surfaces && has_matter_at_border(*volume.volume(), plan.params);
-    list_bricks(plan, volume.ranges());
+    list_bricks(plan, volume);
     clear_counts();
     bind(volume);
     place_block(plan, whole);
@@ -138,11 +138,11 @@ void SplatStore::collect_changes(VolumeStore& volume, SetupCost& cost) {
     collected_ = plan;
 }
 
-void SplatStore::list_bricks(const CollectionPlan& plan, const BrickRanges& ranges) {
+void SplatStore::list_bricks(const CollectionPlan& plan, VolumeStore& volume) {
     bricks_listed_ = 0;
     if (!plan.lists_bricks()) return;
     const std::span iso(plan.params.iso, plan.params.iso_count);
-    const std::vector<std::uint32_t> bricks = ranges.list(iso, plan.surfaces);
+    const std::vector<std::uint32_t> bricks = volume.ranges().list(iso, plan.surfaces);
     // Without any, one brick is processed: 0 stands for all.
     bricks_listed_ = std::max(static_cast<std::uint32_t>(bricks.size()), 1U);
     const auto listed = lists_.listed_bricks.mapped<std::uint32_t>(bricks_listed_);

@@ -98,7 +98,7 @@ class SplatStore {
     /// Writes the passes' parameters for a block. The lists' addresses stay.
     void place_block(const CollectionPlan& plan, const CollectionBlock& block);
     /// Lists the bricks that passes 1b and 2 process, if the plan needs a list.
-    void list_bricks(const CollectionPlan& plan, const BrickRanges& ranges);
+    void list_bricks(const CollectionPlan& plan, VolumeStore& volume);
     passes::CollectSplats block_inputs(const CollectionPlan& plan, const CollectionBlock& block) const;
     void mark_block(const CollectionPlan& plan, const CollectionBlock& block);
     void count_block(const passes::CollectSplats& collect);

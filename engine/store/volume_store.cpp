@@ -35,6 +35,7 @@ void VolumeStore::change(std::shared_ptr<const Volume> next, const VoxelBox& box
     // Equal samples keep their spline coefficients, which rays may need for every picture.
     if (box.empty()) return;
     release_coefficients();
+    ranges_ = {};
     for (std::optional<VoxelBox>* boxes : {&changed_, &behind_}) {
         if (!*boxes) boxes->emplace();
         (*boxes)->add(box);
@@ -44,6 +45,11 @@ void VolumeStore::change(std::shared_ptr<const Volume> next, const VoxelBox& box
 void VolumeStore::make(gpu::GpuImage VolumeImages::*image, const glm::ivec3& size) {
     const auto& row = row_of(image);
     images_.*image = gpu::GpuImage(session_->device(), row.shape(size), row.text.name);
+}
+
+const BrickRanges& VolumeStore::ranges() {
+    if (ranges_.empty()) ranges_ = BrickRanges(*volume_);
+    return ranges_;
 }
 
 bool VolumeStore::provide() {
@@ -60,7 +66,6 @@ bool VolumeStore::provide() {
         return false;
     }
     behind_.reset();
-    ranges_ = BrickRanges(*volume_);
     return true;
 }
 

@@ -27,7 +27,8 @@ class VolumeStore {
     int level() const { return level_; }  ///< a voxel is 2^level original voxels long
     bool in_blocks() const { return in_blocks_; }
     const VolumeImages& images() const { return images_; }
-    const BrickRanges& ranges() const { return ranges_; }  ///< of the samples on the device; empty in blocks
+    /// Of a volume as a whole; computed on first use.
+    const BrickRanges& ranges();
     /// Box of samples that changed since the splats were collected; only for a volume as a whole.
     const std::optional<VoxelBox>& changed() const { return changed_; }
 

@@ -8,6 +8,7 @@
 
 #include "engine/error.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/lines_internal.h"
 #include "engine/volume/packed_internal.h"
 #include "engine/volume/parallel.h"
 
@@ -39,25 +40,18 @@ std::vector<float> spline_pivots(int length) {
     return pivots;
 }
 
-/// Interleaved lines: first the first sample of each line, then the second of each, and so on.
-struct Lines {
-    float* samples;
-    std::size_t count;
-    std::size_t stride;  ///< between successive samples of a line
-};
-
 /// Replaces samples by the coefficients of the interpolating spline.
-void solve_lines(const Lines& lines, const std::vector<float>& pivots) {
-    const std::size_t last = pivots.size() - 1;
+void solve_lines(const detail::Lines& lines, const std::vector<float>& pivots) {
+    const std::size_t last = lines.length - 1;
     for (std::size_t i = 1; i < last; ++i) {
-        const float* const before = lines.samples + (i - 1) * lines.stride;
-        float* const here = lines.samples + i * lines.stride;
+        const float* const before = lines.sample(i - 1);
+        float* const here = lines.sample(i);
         for (std::size_t line = 0; line < lines.count; ++line)
             here[line] = pivots[i] * (6 * here[line] - before[line]);
     }
     for (std::size_t i = last; i-- > 1;) {
-        const float* const behind = lines.samples + (i + 1) * lines.stride;
-        float* const here = lines.samples + i * lines.stride;
+        const float* const behind = lines.sample(i + 1);
+        float* const here = lines.sample(i);
         for (std::size_t line = 0; line < lines.count; ++line)
             here[line] -= pivots[i] * behind[line];
     }
@@ -163,20 +157,10 @@ std::vector<float> bspline_coefficients(const std::vector<float>& field, const g
             static_cast<std::size_t>(dims.x) * static_cast<std::size_t>(dims.y) * static_cast<std::size_t>(dims.z))
         fail("B-spline coefficients: {} samples for dims {} x {} x {}", field.size(), dims.x, dims.y, dims.z);
     std::vector<float> coefficients = field;
-    const std::size_t row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
-    const std::vector<float> of_x = spline_pivots(dims.x), of_y = spline_pivots(dims.y), of_z = spline_pivots(dims.z);
-    parallel_for(dims.z, [&](int begin, int end) {
-        for (auto z = static_cast<std::size_t>(begin); z < static_cast<std::size_t>(end); ++z) {
-            float* const from = coefficients.data() + z * slice;
-            for (std::size_t at = 0; at < slice; at += row)
-                solve_lines({from + at, 1, 1}, of_x);
-            solve_lines({from, row, row}, of_y);
-        }
-    });
-    parallel_for(dims.y, [&](int begin, int end) {
-        for (auto y = static_cast<std::size_t>(begin); y < static_cast<std::size_t>(end); ++y)
-            solve_lines({coefficients.data() + y * row, row, slice}, of_z);
-    });
+    for (int axis = 0; axis < 3; ++axis) {
+        const std::vector<float> pivots = spline_pivots(dims[axis]);
+        detail::along_axis(coefficients, dims, axis, [&](const detail::Lines& lines) { solve_lines(lines, pivots); });
+    }
     return coefficients;
 }
 

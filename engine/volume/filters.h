@@ -47,6 +47,12 @@ inline float scaled_sample(const Volume& volume, float value) {
     return std::max(static_cast<float>(scaled_value(volume, static_cast<double>(value))), 0.0F);
 }
 
+/// The scaled field at the volume's border, half a voxel beyond an outermost sample `here`: linear from the sample
+/// before it.
+inline float scaled_at_border(float here, float before) {
+    return std::max(1.5F * here - 0.5F * before, 0.0F);
+}
+
 /// The same scaling of an iso-value. +-1e9 if all samples lie on one side of it, so that no edge estimator extrapolates
 /// to it.
 double scaled_iso_value(const Volume& volume, double iso_value);

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "engine/error.h"
+#include "engine/volume/lines_internal.h"
 #include "engine/volume/parallel.h"
 
 namespace edgesplat {
@@ -164,37 +165,24 @@ std::size_t label_offset(const glm::ivec3& dims, const glm::ivec3& i) {
            static_cast<std::size_t>(i.x);
 }
 
-/// The mean with weights 1, 2, 1 along each axis; the outermost samples are repeated.
-void blur(std::vector<float>& field, const glm::ivec3& dims) {
-    const auto row = static_cast<std::size_t>(dims.x), slice = row * static_cast<std::size_t>(dims.y);
-    for (int axis = 0; axis < 3; ++axis) {
-        const auto length = static_cast<std::size_t>(dims[axis]), stride = axis == 0 ? 1 : axis == 1 ? row : slice;
-        // Lines that lie next to each other form a group.
-        const std::size_t together = axis == 0 ? 1 : row, apart = axis == 1 ? slice : row;
-        const auto groups = static_cast<int>(field.size() / (length * together));
-        parallel_for(groups, [&](int begin, int end) {
-            std::vector<float> before(together), here(together);
-            for (auto group = static_cast<std::size_t>(begin); group < static_cast<std::size_t>(end); ++group) {
-                float* const first = field.data() + group * apart;
-                std::copy_n(first, together, before.begin());
-                for (std::size_t i = 0; i < length; ++i) {
-                    float* const at = first + i * stride;
-                    const float* const behind = i + 1 < length ? at + stride : at;
-                    std::copy_n(at, together, here.begin());
-                    for (std::size_t k = 0; k < together; ++k)
-                        at[k] = 0.25F * (before[k] + behind[k]) + 0.5F * here[k];
-                    before.swap(here);
-                }
-            }
-        });
+/// The mean with weights 1, 2, 1 along each line; the outermost samples are repeated.
+void blur_lines(const detail::Lines& lines) {
+    std::vector<float> before(lines.samples, lines.samples + lines.count), here = before;
+    for (std::size_t i = 0; i < lines.length; ++i) {
+        float* const at = lines.sample(i);
+        const float* const behind = lines.sample(std::min(i + 1, lines.length - 1));
+        std::copy_n(at, lines.count, here.begin());
+        for (std::size_t k = 0; k < lines.count; ++k)
+            at[k] = 0.25F * (before[k] + behind[k]) + 0.5F * here[k];
+        before.swap(here);
     }
 }
 
 /// Removes the stairs of whole voxels; shrinks what is larger than they are less than an average does.
 void smooth(std::vector<float>& mask, const glm::ivec3& dims) {
     const auto twice = [&](std::vector<float>& field) {
-        blur(field, dims);
-        blur(field, dims);
+        for (int pass = 0; pass < 6; ++pass)
+            detail::along_axis(field, dims, pass % 3, blur_lines);
     };
     twice(mask);
     std::vector<float> again = mask;

@@ -32,10 +32,6 @@ struct Outermost {
 
     template <typename Before>
     void add(float value, const Before& before) {
-        if (known == 2 && value == values[0]) {  // most samples of a background
-            ++counts[0];
-            return;
-        }
         int place = 0;
         while (place < known && before(values[static_cast<std::size_t>(place)], value))
             ++place;

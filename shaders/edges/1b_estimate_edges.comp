@@ -46,7 +46,7 @@ vec4 field_slope(ivec3 origin, vec3 p) {
 
 // One step along the voxel's own gradient (paper; Levoy 1988).
 Edge extrapolate(ivec3 p, float value, float low, float high, float band) {
-    Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    Edge e = no_edge();
     vec3 g = voxel_gradient(p);
     float slope = length(g);
     if (!(slope >= GRADIENT_MIN)) return e;
@@ -75,7 +75,7 @@ bool ends_around(float value, vec2 around) {
 Edge plain_edge(ivec3 p) {
     vec3 g = voxel_gradient(p);
     float slope = length(g);
-    return slope >= GRADIENT_MIN ? Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL) : Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    return slope >= GRADIENT_MIN ? Edge(-g / slope, 1e9, 1e9, EDGE_NORMAL) : no_edge();
 }
 
 void store_edge(ivec3 p, Edge e, uint flags) {
@@ -95,11 +95,9 @@ bool wanted(ivec3 p) {
         IF_ANY(matter_ends && visible) searched = searched || ends_around(value, values_around(p));
     }
     IF_ANY(!searched) {
-        Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
-        if (SURFACES == 0u) {
-            IF_ANY(visible && !searched) e = plain_edge(p);
-        }
-        if (!searched) store_edge(p, visible ? e : Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), 0u);
+        Edge e = no_edge();
+        IF_ANY(SURFACES == 0u && visible) e = plain_edge(p);
+        store_edge(p, e, 0u);
     }
     return searched;
 }
@@ -127,7 +125,7 @@ void main() {
         uint material = material_of(value);
         float low = material == 0u ? -3e38 : params.scene.iso[material - 1u];
         float high = params.scene.iso[material];
-        Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+        Edge e = no_edge();
         if (ESTIMATOR == TAYLOR) e = extrapolate(p, value, low, high, params.scene.band);
         uint flags = 0u;
         if (SURFELS || params.scene.translucent_mask != 0u) {
@@ -139,9 +137,7 @@ void main() {
             flags = pack_beside(Beside(material - lowest, material_of(around.y) - material));
             if (SURFELS) e = find_surfel(p, value, low, high, around);
         }
-        IF_ANY(e.state == EDGE_NONE) {
-            if (e.state == EDGE_NONE) e = plain_edge(p);
-        }
+        IF_ANY(e.state == EDGE_NONE) e = plain_edge(p);
         if (SURFELS) {
             vec3 out_of = border_beside(p);
             bool cut = dot(out_of, out_of) > 0.0 && (e.state < EDGE_LOWER || abs(e.d) > 0.5);

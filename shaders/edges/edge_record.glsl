@@ -11,6 +11,8 @@ struct Edge {
     uint state;    // EdgeState
 };
 
+Edge no_edge() { return Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE); }
+
 // Cigolle et al. 2014, "A Survey of Efficient Representations for Independent Unit Vectors", octahedral map.
 uint pack_normal(vec3 n) {
     vec2 p = n.xy / (abs(n.x) + abs(n.y) + abs(n.z));

@@ -5,7 +5,7 @@
 #include "shaders/edges/values_around.glsl"
 
 Edge find_surfel(ivec3 p, float value, float low, float high, vec2 around) {
-    Edge e = Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE);
+    Edge e = no_edge();
     bvec2 crossed = bvec2(around.x < low, around.y >= high);
     bool upper = crossed.y && (!crossed.x || high - value < value - low);
     float iso = upper ? high : low;

@@ -208,7 +208,7 @@ bool has_two_values(ivec3 p) {
 
 // The face of voxel p's kernel, for its own material or for a material beside it. No edge if no surface is in reach.
 Face fit_face(ivec3 p, uint material) {
-    Face face = Face(Edge(vec3(0.0, 0.0, 1.0), 1e9, 1e9, EDGE_NONE), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE, false, 0.0);
+    Face face = Face(no_edge(), Bending(vec3(0.0), vec3(0.0)), false, false, CREASE_NONE, CORNER_NONE, false, 0.0);
     vec3 middle = vec3(0.0), n = vec3(0.0);
     float nearest = 1e9;
     uint state = EDGE_LOWER;
