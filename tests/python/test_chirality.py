@@ -1,7 +1,8 @@
 """An object with marks at its left, front and top, written in every orientation of every format that defines a patient,
-comes out with its marks in the right places: in the samples, and in a picture from the front."""
+comes out with its marks in the right places: in the samples, in a picture from the front, and where that is measured."""
 
 import itertools
+import json
 import warnings
 
 import numpy as np
@@ -53,6 +54,14 @@ def write_nifti_qform(folder, affine, array):
     image = nibabel.Nifti1Image(array.transpose(2, 1, 0), ras(affine))
     image.set_qform(ras(affine), 1)
     image.set_sform(None, 0)
+    nibabel.save(image, str(folder / "a.nii"))
+    return folder / "a.nii"
+
+
+def write_nifti_2(folder, affine, array):
+    nibabel = pytest.importorskip("nibabel", reason="python3-nibabel is missing")
+    image = nibabel.Nifti2Image(array.transpose(2, 1, 0), ras(affine))
+    image.set_sform(ras(affine), 2)
     nibabel.save(image, str(folder / "a.nii"))
     return folder / "a.nii"
 
@@ -134,15 +143,56 @@ def write_dicom(folder, affine, array):
     return folder
 
 
+def write_enhanced_dicom(folder, affine, array):
+    """One file, whose frames are in no order."""
+    pydicom = pytest.importorskip("pydicom", reason="python3-pydicom is missing")
+    from test_readers_dicom import ENHANCED_CT, frame_groups, new_dataset, save, set_pixels
+
+    data = new_dataset(ENHANCED_CT)
+    order = [(7 * k) % 22 for k in range(22) if (7 * k) % 22 < len(array)]
+    set_pixels(data, array[order])
+    data.NumberOfFrames = len(array)
+    shared = frame_groups(orientation=np.concatenate([affine[:3, 0] / SPACING[0], affine[:3, 1] / SPACING[1]]))
+    measures = pydicom.dataset.Dataset()
+    measures.PixelSpacing, measures.SliceThickness = [float(SPACING[1]), float(SPACING[0])], float(SPACING[2])
+    shared.PixelMeasuresSequence = pydicom.sequence.Sequence([measures])
+    data.SharedFunctionalGroupsSequence = pydicom.sequence.Sequence([shared])
+    data.PerFrameFunctionalGroupsSequence = pydicom.sequence.Sequence(
+        [frame_groups(position=affine[:3, 3] + k * affine[:3, 2]) for k in order]
+    )
+    save(data, folder / "a.dcm")
+    return folder / "a.dcm"
+
+
+def write_minc(folder, affine, array, version=2):
+    from test_readers_minc import Minc
+
+    world = np.argmax(np.abs(affine[:3, :3]), axis=0)[::-1]  # of each axis, slowest first
+    minc = Minc(version, [f"{'xyz'[a]}space" for a in world], array)
+    minc.low, minc.high = np.array(float(array.min())), np.array(float(array.max()))
+    minc.valid_range = [array.min(), array.max()]
+    for axis, a in zip((2, 1, 0), world):
+        minc.dims[f"{'xyz'[a]}space"] = {"step": ras(affine)[a, axis], "start": ras(affine)[a, 3]}
+    return minc.write(folder / "a.mnc")
+
+
+def write_minc_1(folder, affine, array):
+    return write_minc(folder, affine, array, 1)
+
+
 WRITERS = [
     write_nifti,
     write_nifti_qform,
+    write_nifti_2,
     write_mgh,
     write_nrrd_lps,
     write_nrrd_ras,
     write_nrrd_las,
     write_meta,
     write_dicom,
+    write_enhanced_dicom,
+    write_minc,
+    write_minc_1,
 ]
 
 
@@ -164,7 +214,7 @@ def test_marks_are_in_their_places(write, tmp_path):
 
 
 @pytest.mark.parametrize("write", WRITERS, ids=lambda write: write.__name__[6:])
-def test_marks_are_in_their_places_in_pictures(write, tmp_path, renderer):
+def test_marks_are_in_their_places_in_pictures(write, tmp_path, renderer, program):
     colors = {"left": (1, 0, 0), "front": (0, 1, 0), "top": (0, 0, 1)}
     scene = {
         "iso_values": [300, 500, 700],
@@ -182,13 +232,29 @@ def test_marks_are_in_their_places_in_pictures(write, tmp_path, renderer):
             color = renderer.render(path, scene, camera={"view": "front"}, size=(48, 48)).color[..., :3]
         rows, columns = np.mgrid[0:48, 0:48] - 23.5
 
+        def excess(channel):
+            return np.clip(color[..., channel] - color[..., [c for c in range(3) if c != channel]].max(-1), 0, None)
+
         def middle(channel):
-            weight = np.clip(color[..., channel] - color[..., [c for c in range(3) if c != channel]].max(-1), 0, None)
+            weight = excess(channel)
             assert weight.sum() > 3
             return (weight * columns).sum() / weight.sum(), (weight * rows).sum() / weight.sum()
+
+        def pixel(channel):
+            """Column, row: where the mark is seen farthest from its rim."""
+            weight = excess(channel)
+            least = np.min([np.roll(weight, (i, j), (0, 1)) for i in range(-2, 3) for j in range(-2, 3)], axis=0)
+            row, column = np.unravel_index(least.argmax(), least.shape)
+            return f"{column},{row}"
 
         # From the front: the patient's left is at the right of the front mark, the top above it. Rims of all marks have
         # the first colour.
         left, front, top = (np.array(middle(channel)) for channel in range(3))
         assert left[0] - front[0] > 8 and abs(left[1] - front[1]) < 4
         assert front[1] - top[1] > 8 and abs(front[0] - top[0]) < 4
+        # What `measure` finds at the pixels of that picture lies on the marks' surfaces, whose centre is the mark's.
+        asked = [f"--at={pixel(channel)}" for channel in range(3)]
+        view = ["--iso=300,500,700", "--extinction=20,20,20", "--labels=off", "--view=front", "--size=48x48"]
+        said = json.loads(program("measure", path, *view, *asked, "--json=-", "--quiet").stdout)
+        for found, (_, place) in zip(said["places"], MARKS.values()):
+            assert abs(np.linalg.norm(np.subtract(found["world_mm"], place)) - 2.5) < found["uncertainty_mm"]
