@@ -40,8 +40,9 @@ const std::vector<bool>& shown_labels(AppState& state, const edgesplat::Volume& 
     return list.shown;
 }
 
-/// Shows those labels, by the shorter of both lists.
-void show_labels(AppState& state, const LabelTable& table, const std::vector<bool>& shown) {
+/// Shows those labels, by the shorter of both lists. With a segmentation of its own a volume has other matter, too: it
+/// is hidden if `alone`.
+void show_labels(AppState& state, const LabelTable& table, const std::vector<bool>& shown, bool alone) {
     std::vector<std::string> only, hide;
     const std::size_t background = state.editing.labels.background;
     for (std::size_t place = 0; place < shown.size(); ++place) {
@@ -54,19 +55,15 @@ void show_labels(AppState& state, const LabelTable& table, const std::vector<boo
         state.session.say("at least one label must be shown");
         return;
     }
-    const bool by_hiding = !shown[background] && hide.size() <= only.size();
+    const bool of_scan = background >= shown.size();
+    const bool by_hiding = of_scan ? !alone : !shown[background] && hide.size() <= only.size();
     state.session.edit([&](SceneDocument& d) {
         d.volume.only = by_hiding ? std::vector<std::string>{} : only;
         d.volume.hide = by_hiding ? hide : std::vector<std::string>{};
     });
 }
 
-}  // namespace
-
-void labels_panel(AppState& state) {
-    const std::shared_ptr<const edgesplat::Volume> samples = state.session.opened().samples;
-    const auto table = labels_of(*samples);
-    const Scope scope(state, "labels");
+void own_colors(AppState& state) {
     flag(state, "own colours", state.session.document().volume.labels.value_or(false), [](SceneDocument& d, bool on) {
         d.volume.labels = on;
         if (on) {
@@ -78,8 +75,24 @@ void labels_panel(AppState& state) {
         d.volume.only.clear();
         d.volume.hide.clear();
     });
+}
+
+}  // namespace
+
+void labels_panel(AppState& state) {
+    const std::shared_ptr<const edgesplat::Volume> samples = state.session.opened().samples;
+    const auto table = labels_of(*samples);
+    const Scope scope(state, "labels");
+    const bool of_scan = samples->has_segmentation();
+    const bool alone = !state.session.document().volume.only.empty();
+    if (!of_scan) own_colors(state);
     if (!state.session.volume().shown_labels) return;
     const std::vector<bool> shown = shown_labels(state, *samples, *table);
+    if (of_scan) {
+        bool others = !alone;
+        if (ImGui::Checkbox("matter of no label", &others)) show_labels(state, *table, shown, !others);
+        note(state, "others");
+    }
     std::string& wanted = state.editing.labels.search;
     ImGui::InputTextWithHint("##search", "number or name", &wanted);
     note(state, "search");
@@ -93,21 +106,21 @@ void labels_panel(AppState& state) {
         std::vector<bool> next = shown;
         for (const std::size_t place : places)
             next[place] = next[place] || place != state.editing.labels.background;
-        show_labels(state, *table, next);
+        show_labels(state, *table, next, alone);
     }
     ImGui::SameLine();
     if (button(state, "hide")) {
         std::vector<bool> next = shown;
         for (const std::size_t place : places)
             next[place] = false;
-        show_labels(state, *table, next);
+        show_labels(state, *table, next, alone);
     }
     ImGui::SameLine();
     if (button(state, "only these")) {
         std::vector<bool> next(shown.size(), false);
         for (const std::size_t place : places)
             next[place] = place != state.editing.labels.background;
-        show_labels(state, *table, next);
+        show_labels(state, *table, next, true);
     }
     ImGui::BeginChild("list", {0, 16 * static_cast<float>(state.em)}, true);
     const std::vector<glm::dvec3>& colors = state.session.scene().label_colors;
@@ -131,7 +144,7 @@ void labels_panel(AppState& state) {
             if (!clicked) continue;
             std::vector<bool> next = shown;
             next[place] = on;
-            show_labels(state, *table, next);
+            show_labels(state, *table, next, alone);
         }
     ImGui::EndChild();
 }

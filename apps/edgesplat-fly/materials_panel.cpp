@@ -72,7 +72,7 @@ bool iso_value(AppState& state, std::size_t m) {
 void details(AppState& state, std::size_t m) {
     auto& session = state.session;
     const bool materials = session.document().transfer.empty();
-    const bool labels = session.volume().shown_labels != nullptr;
+    const bool labels = session.volume().is_label_mask();
     if (m > 0 && !labels && !iso_value(state, m)) return;
     const edgesplat::Material material = session.scene().materials.at(m);
     if (materials) {
@@ -93,7 +93,7 @@ void details(AppState& state, std::size_t m) {
 void material(AppState& state, std::size_t m) {
     const bool materials = state.session.document().transfer.empty();
     const Scope scope(state, fmt::format("material{}", m));
-    const bool labels = m > 0 && state.session.volume().shown_labels;
+    const bool labels = m > 0 && state.session.volume().is_label_mask();
     if (materials && !labels) {
         color(state, "##colour", state.session.scene().materials[m].color,
               [m](SceneDocument& d, const glm::dvec3& v) { viewer::material_choice(d, m).color = v; });

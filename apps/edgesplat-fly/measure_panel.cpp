@@ -9,11 +9,12 @@ namespace {
 
 /// The label or the value at a picked place.
 std::string value_text(const edgesplat::Volume& volume, const edgesplat::viewer::Pick& pick) {
-    if (!volume.shown_labels) return fmt::format("value {:g}", pick.value);
-    const glm::ivec3 dims = volume.geometry.dims;
-    const glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::round(pick.voxel)), glm::ivec3(0), dims - 1);
-    const std::uint32_t number = edgesplat::label_near(volume.shown_labels->at, dims, voxel);
-    return number == 0 ? "" : "label " + text_of(*volume.labels, volume.labels->labels[number - 1]);
+    const std::string value = volume.is_label_mask() ? "" : fmt::format("value {:g}", pick.value);
+    if (!volume.shown_labels) return value;
+    const std::uint32_t number = edgesplat::label_at(volume, pick.voxel);
+    if (number == 0) return value;
+    return fmt::format("{}{}label {}", value, value.empty() ? "" : ", ",
+                       text_of(*volume.labels, volume.labels->labels[number - 1]));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ void values_panel(AppState& state) {
             d.volume = read;
         });
     });
-    if (state.session.volume().shown_labels) return materials_panel(state);
+    if (state.session.volume().is_label_mask()) return materials_panel(state);
     color_source(state);
     histogram_panel(state);
     if (!state.session.document().transfer.empty()) transfer_panel(state);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iostream>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -66,8 +67,11 @@ void add_labels(nlohmann::json& json, const Volume& volume) {
     const auto table = edgesplat::labels_of(volume);
     if (!table) return;
     std::vector<std::size_t> count(table->labels.size());
-    for (std::size_t at = 0; at < volume.values.size(); ++at)
-        if (!volume.no_data || !(*volume.no_data)[at]) ++count[place_of_label(*table, volume.values[at])];
+    const bool of_scan = volume.has_segmentation();
+    for (std::size_t at = 0; at < volume.values.size(); ++at) {
+        if (of_scan && volume.shown_labels->at[at] > 0) ++count[volume.shown_labels->at[at] - 1];
+        if (!of_scan && volume.has_data(at)) ++count[place_of_label(*table, volume.values[at])];
+    }
     const std::vector<glm::dvec3> colors = edgesplat::label_colors(*table);
     json["labels"] = nlohmann::json::array();
     for (std::size_t place = 0; place < table->labels.size(); ++place) {
@@ -77,28 +81,35 @@ void add_labels(nlohmann::json& json, const Volume& volume) {
         entry["voxels"] = count[place];
         json["labels"].push_back(entry);
     }
-    if (has_ranks(*table) && count.size() > 1) describe_numbers(json, *table, count);
+    if (!of_scan && has_ranks(*table) && count.size() > 1) describe_numbers(json, *table, count);
 }
 
-Json labels_measured(const Volume& volume, const edgesplat::Clip& clip) {
+Json labels_measured(const Volume& volume, const edgesplat::Clip& clip, const edgesplat::VolumeSource& source) {
     Json json{{"labels", Json::array()}};
+    std::set<std::uint64_t> shown;
+    const std::vector<bool> chosen = chosen_labels(volume, *volume.labels, source.only, source.hide);
+    for (std::size_t place = 0; place < chosen.size(); ++place)
+        if (chosen[place]) shown.insert(volume.labels->labels[place].id);
     for (const auto& extent : edgesplat::measure::measure_labels(volume, clip)) {
+        if (volume.has_segmentation() && !shown.contains(extent.label.id)) continue;
         Json entry = described(*volume.labels, extent.label);
         entry["voxels"] = extent.voxels;
         entry["volume_mm3"] = {{"value", extent.volume.value}, {"uncertainty", extent.volume.uncertainty}};
+        if (extent.values) {
+            entry["mean"] = extent.values->x;
+            entry["standard_deviation"] = extent.values->y;
+        }
         json["labels"].push_back(entry);
     }
     return json;
 }
 
-Json label_at(const Volume& volume, const glm::dvec3& world) {
-    const glm::dvec3 index = glm::round(volume.geometry.to_index(world));
+Json described_label_at(const Volume& volume, const glm::dvec3& world) {
+    if (!volume.shown_labels) return nullptr;
+    const glm::dvec3 index = volume.geometry.to_index(world);
     const glm::dvec3 last(volume.geometry.dims - 1);
-    if (!volume.shown_labels || glm::any(glm::lessThan(index, glm::dvec3(-1))) ||
-        glm::any(glm::greaterThan(index, last + 1.0)))
-        return nullptr;
-    const std::uint32_t number = edgesplat::label_near(volume.shown_labels->at, volume.geometry.dims,
-                                                       glm::ivec3(glm::clamp(index, glm::dvec3(0), last)));
+    if (glm::any(glm::lessThan(index, glm::dvec3(-1))) || glm::any(glm::greaterThan(index, last + 1.0))) return nullptr;
+    const std::uint32_t number = edgesplat::label_at(volume, index);
     return number == 0 ? Json(nullptr) : described(*volume.labels, volume.labels->labels[number - 1]);
 }
 

@@ -114,8 +114,8 @@ Json places_measured(const MeasureCommand& command, const SceneDocument& documen
     Json json;
     for (const Place& place : places) {
         Json entry{{"world_mm", {place.world.x, place.world.y, place.world.z}}, {"uncertainty_mm", place.uncertainty}};
-        if (place.iso && !volume.shown_labels) entry["iso_value"] = volume.in_file_unit(*place.iso);
-        if (const Json label = label_at(volume, place.world); !label.is_null()) entry.update(label);
+        if (place.iso && !volume.is_label_mask()) entry["iso_value"] = volume.in_file_unit(*place.iso);
+        if (const Json label = described_label_at(volume, place.world); !label.is_null()) entry.update(label);
         json["places"].push_back(entry);
     }
     for (std::size_t i = 1; i < places.size(); ++i)
@@ -199,8 +199,12 @@ void print(const Json& json) {
     for (const Json& surface : json.value("surfaces", Json::array()))
         std::cout << fmt::format("surface at {}: {} mm^2\n", value(surface["iso_value"]), text(surface["area_mm2"]));
     for (const Json& label : json.value("labels", Json::array()))
-        std::cout << fmt::format("label {}: {} mm^3, {} voxels\n", label_text(label), text(label["volume_mm3"]),
-                                 label["voxels"].get<std::size_t>());
+        std::cout << fmt::format(
+            "label {}: {} mm^3, {} voxels{}\n", label_text(label), text(label["volume_mm3"]),
+            label["voxels"].get<std::size_t>(),
+            label.contains("mean") ? fmt::format(", mean {:.6g}, standard deviation {:.3g}",
+                                                 label["mean"].get<double>(), label["standard_deviation"].get<double>())
+                                   : "");
 }
 
 void run(const MeasureCommand& command) {
@@ -213,11 +217,17 @@ void run(const MeasureCommand& command) {
         constexpr std::array<std::string_view, 1> kJson{".json"};
         edgesplat::check_output_path(command.json, kJson);
     }
+    const edgesplat::VolumeSource chosen = document.volume;
+    // Values of labels are those of the scan before matter of hidden labels is removed.
+    if (command.spots.empty() && !document.volume.segmentation.empty()) {
+        document.volume.only.clear();
+        document.volume.hide.clear();
+    }
     const Volume volume = load_with_progress(document, folders, command.quiet);
     Json json{{"volume", volume.name}};
     const Scene scene = resolve_scene(document, volume);
     json.update(!command.spots.empty() ? places_measured(command, document, volume, scene)
-                : volume.shown_labels  ? labels_measured(volume, scene.effects.clip)
+                : volume.shown_labels  ? labels_measured(volume, scene.effects.clip, chosen)
                                        : extents_measured(command, volume, scene));
     if (command.json.empty())
         print(json);
@@ -253,7 +263,8 @@ void add_measure_command(CLI::App& app) {
     add_volume_options(sub, command->volume);
     sub.footer(
         "Measures the volume of each material between iso-values and the area of each iso-surface, inside the clip\n"
-        "planes; of a segmentation the volume of each label that is shown. The number after ± is the uncertainty from "
+        "planes; of a segmentation the volume of each label that is shown, and with --segmentation the mean of the\n"
+        "volume's values in it. The number after ± is the uncertainty from "
         "rounding, spacing and blur of the samples. It does not\n"
         "include noise or a wrong iso-value.\n"
         "Examples:\n"

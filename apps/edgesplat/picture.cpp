@@ -60,7 +60,7 @@ edgesplat::Volume load(PictureRequest& request) {
         fmt::print(stderr, "edgesplat: warning: {}: {} of {} samples contain no data; they are transparent\n",
                    volume.name, volume.non_finite_count, volume.geometry.voxel_count());
     const auto& materials = request.document.materials;
-    if (volume.shown_labels && !materials.empty() && materials.front().color && !request.quiet)
+    if (volume.is_label_mask() && !materials.empty() && materials.front().color && !request.quiet)
         fmt::print(stderr, "edgesplat: all {} labels have the colour of --color instead of their own\n",
                    volume.shown_labels->largest.size());
     return volume;
@@ -109,10 +109,9 @@ std::string recorded_path(const PictureRequest& request) {
     return std::filesystem::proximate(found, folder.empty() ? "." : folder).string();
 }
 
-/// The file of label names in the same way.
-std::string recorded_names(const PictureRequest& request) {
+/// Another file of the scene in the same way.
+std::string recorded_file(const PictureRequest& request, const std::string& written) {
     namespace fs = std::filesystem;
-    const std::string& written = request.document.volume.label_names;
     if (written.empty() || fs::path(written).is_absolute() || fs::exists(written)) return written;
     const fs::path folder = fs::path(request.document.output.file).parent_path();
     return fs::proximate(edgesplat::find_file(written, request.folders), folder.empty() ? "." : folder).string();
@@ -124,7 +123,8 @@ std::string scene_of_picture(const PictureRequest& request, const edgesplat::Vol
                              const edgesplat::Settings& settings) {
     edgesplat::SceneDocument document = resolved(request.document, volume, scene, camera, settings);
     document.volume.path = recorded_path(request);
-    document.volume.label_names = recorded_names(request);
+    document.volume.label_names = recorded_file(request, request.document.volume.label_names);
+    document.volume.segmentation = recorded_file(request, request.document.volume.segmentation);
     return scene_text(document);
 }
 

@@ -63,8 +63,8 @@ void run_new(const NewOptions& options) {
                                   : edgesplat::find_volume(document.volume.path, folders);
     const fs::path folder = fs::path(options.output).parent_path();
     document.volume.path = path_in_scene(found, folder);
-    if (!document.volume.label_names.empty())
-        document.volume.label_names = path_in_scene(document.volume.label_names, folder);
+    for (std::string* file : {&document.volume.label_names, &document.volume.segmentation})
+        if (!file->empty()) *file = path_in_scene(*file, folder);
     check_path_is_text(document);
     const std::string text = commented_scene_text(document);
     if (options.output.empty()) {

@@ -54,6 +54,11 @@ void add_volume_options(CLI::App& command, VolumeOptions& options) {
     command.add_option("--no-data", options.no_data,
                        "Value of samples without data: transparent, and in no statistics (NaN always is)");
     command
+        .add_option("--segmentation", options.segmentation,
+                    "Segmentation of the same object, on any grid: its labels colour the volume's matter; --only and "
+                    "--hide choose among them")
+        ->type_name("FILE");
+    command
         .add_option("--label-names", options.label_names,
                     "Names and colours of labels: a Slicer colour table, an ITK-SNAP label description, a FreeSurfer "
                     "lookup table, or a table with the columns id and name")
@@ -66,6 +71,7 @@ void apply(const VolumeOptions& options, edgesplat::VolumeSource& source) {
     if (options.level >= 0) source.level = options.level;
     if (!options.series.empty()) source.series = options.series;
     if (!options.raw.empty()) source.raw = options.raw;
+    if (!options.segmentation.empty()) source.segmentation = options.segmentation;
     if (!options.label_names.empty()) source.label_names = options.label_names;
     if (options.resample) source.resample = true;
     if (options.no_data) source.no_data = options.no_data;

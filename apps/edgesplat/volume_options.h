@@ -18,11 +18,12 @@ struct VolumeOptions {
     bool resample = false;          ///< --resample
     std::vector<double> spacing;    ///< --spacing X Y Z, mm; empty: not given
     std::optional<double> no_data;  ///< --no-data
+    std::string segmentation;       ///< --segmentation
     std::string label_names;        ///< --label-names
 };
 
-/// Adds --raw, --component, --frame, --level, --series, --resample, --spacing, --no-data and --label-names to a
-/// command. `options` must outlive the parse.
+/// Adds --raw, --component, --frame, --level, --series, --resample, --spacing, --no-data, --segmentation and
+/// --label-names to a command. `options` must outlive the parse.
 void add_volume_options(CLI::App& command, VolumeOptions& options);
 
 /// Copies the given options into a scene's volume.

@@ -258,7 +258,7 @@ std::vector<Effect> light_effects() {
                     .help = "every label of a segmentation has its own colour",
                     .call = "volume.labels, or --labels on",
                     .reason = [](const FrameRequest& r) -> std::string {
-                        if (!shows_labels(r.scene, *r.volume)) return "";
+                        if (labels_drawn(r.scene, *r.volume) == 0) return "";
                         return fmt::format("the volume has {} labels", r.scene.label_colors.size());
                     },
                     .turn_on = label,

@@ -259,7 +259,7 @@ void count_vote(INOUT(SurfacePair) pair, SurfaceVote vote, Real way, Shown shown
     to.arrives += weight * shown.arrives;
     to.lights += weight * shown.lights;
     if (hit) to.normal += w / max(length(vote.n), 1e-12) * vote.n;
-    bool agrees = labelled && shown.kind == to.kind;
+    bool agrees = labelled && to.largest > 0.0 && shown.kind == to.kind;
     bool takes = !agrees && weight > to.largest;
     if (takes) to.number = shown.number;
     if (takes) to.kind = shown.kind;

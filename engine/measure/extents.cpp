@@ -337,10 +337,13 @@ std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip) 
                                 ? 0
                                 : static_cast<std::uint32_t>(place_of_label(*table, volume.values[at])) + 1);
     }
+    const bool of_scan = volume.has_segmentation();
+    const auto low = static_cast<double>(volume.min_value);
     const std::vector<std::uint32_t>& numbers = volume.shown_labels ? volume.shown_labels->at : drawn;
     struct Count {
         std::size_t voxels = 0;
         double kept = 0, beside_others = 0;
+        double with_data = 0, sum = 0, squares = 0;  // of samples, relative to the volume's smallest
     };
     std::vector<Count> counts(table->labels.size() + 1);
     const IndexClip planes = index_clip(clip, volume.geometry);
@@ -357,6 +360,12 @@ std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip) 
                 Count& count = counts[number];
                 count.kept += kept;
                 if (!planes.cuts_away({x, y, z})) ++count.voxels;
+                if (of_scan && volume.has_data(at)) {
+                    const double value = static_cast<double>(volume.values[at]) - low;
+                    count.with_data += kept;
+                    count.sum += kept * value;
+                    count.squares += kept * value * value;
+                }
                 const bool beside =
                     (x > 0 && numbers[at - 1] != number) || (x + 1 < dims.x && numbers[at + 1] != number) ||
                     (y > 0 && numbers[at - row] != number) || (y + 1 < dims.y && numbers[at + row] != number) ||
@@ -371,7 +380,12 @@ std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip) 
         extents.push_back({label,
                            known ? table->number_of(label) : fmt::format("{}", label.value),
                            count.voxels,
-                           {voxel * count.kept, voxel * count.beside_others / 2}});
+                           {voxel * count.kept, voxel * count.beside_others / 2},
+                           {}});
+        if (!(count.with_data > 0)) continue;
+        const double mean = count.sum / count.with_data;
+        const double deviation = std::sqrt(std::max(count.squares / count.with_data - mean * mean, 0.0));
+        extents.back().values = {volume.in_file_unit(low + mean), volume.in_file_unit(deviation)};
     }
     return extents;
 }

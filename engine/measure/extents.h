@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -43,11 +44,14 @@ struct LabelExtent {
     std::string number;      ///< the file's number
     std::size_t voxels = 0;  ///< voxels whose centre is kept
     Quantity volume;         ///< mm^3; half of the voxels next to another label are uncertain
+    /// Mean and standard deviation of a scan's samples in the label, in the file's unit; not set: no samples with data,
+    /// or a segmentation alone.
+    std::optional<glm::dvec2> values;
 };
 
-/// The labels of a volume from drawn_labels, or all labels of another volume (labels_of; every distinct value if it is
-/// no segmentation), by ascending number; inside `clip`, which cuts voxels. Throws Error for a volume that is not in
-/// memory.
+/// The labels of a volume from drawn_labels or with a segmentation, or all labels of another volume (labels_of; every
+/// distinct value if it is no segmentation), by ascending number; inside `clip`, which cuts voxels. Throws Error for a
+/// volume that is not in memory.
 std::vector<LabelExtent> measure_labels(const Volume& volume, const Clip& clip = {});
 
 }  // namespace edgesplat::measure

@@ -17,7 +17,7 @@ gpu::Specialization collect_constants(const CollectSplats& in) {
     return {{shader::SPEC_ISO_COUNT, in.iso_count},     {shader::SPEC_EDGES, in.edges ? 1 : 0},
             {shader::SPEC_BURIED, in.buried ? 1 : 0},   {shader::SPEC_CLIP_KEEP, in.clip.keep},
             {shader::SPEC_CLIP_REMOVE, in.clip.remove}, {shader::SPEC_TRANSFER, in.transfer ? 1 : 0},
-            {shader::SPEC_LABELS, in.labels ? 1 : 0},   {shader::SPEC_SURFACES, in.surfaces ? 1 : 0}};
+            {shader::SPEC_LABELS, in.labels},           {shader::SPEC_SURFACES, in.surfaces ? 1 : 0}};
 }
 
 gpu::Specialization finish_constants(const CollectSplats& in) {

@@ -15,11 +15,11 @@ struct CollectSplats {
     bool buried = true;                              ///< the buried mask exists: `mark_buried` has run
     EdgeEstimator estimator = EdgeEstimator::Cubic;  ///< selects the field that gradients are taken from
     bool faces = false;                              ///< faces are fitted to the surface around each splat
-    bool surfaces = false;    ///< surface splats: only voxels beside a surface, with verified faces
-    bool two_values = false;  ///< surface splats: the samples have only two values
-    ClipCount clip{};         ///< voxels whose kernels are clipped completely are culled
-    bool transfer = false;    ///< splats are classified by a transfer function
-    bool labels = false;      ///< splats get the label of their voxel
+    bool surfaces = false;     ///< surface splats: only voxels beside a surface, with verified faces
+    bool two_values = false;   ///< surface splats: the samples have only two values
+    ClipCount clip{};          ///< voxels whose kernels are clipped completely are culled
+    bool transfer = false;     ///< splats are classified by a transfer function
+    std::uint32_t labels = 0;  ///< SPEC_LABELS: splats get the label of their voxel
 };
 
 /// Specialization of 2_collect_splats.comp and of 2a_finish_splats.comp.

@@ -20,7 +20,7 @@ gpu::Specialization draw_constants(const DrawVariant& variant) {
             {shader::SPEC_SLICED, variant.sliced ? 1U : 0U},
             {shader::SPEC_NODES, variant.nodes},
             {shader::SPEC_TRANSFER, variant.transfer ? 1U : 0U},
-            {shader::SPEC_LABELS, variant.labels ? 1U : 0U},
+            {shader::SPEC_LABELS, variant.labels},
             {shader::SPEC_RESPONSE, variant.response ? 1U : 0U},
             {shader::SPEC_GLOSS, variant.gloss ? 1U : 0U},
             {shader::SPEC_LIT_EDGES, variant.lit_edges ? 1U : 0U},

@@ -21,7 +21,7 @@ struct DrawVariant {
     std::uint32_t shadows = 0;        ///< number of lights with shadows
     std::uint32_t nodes = kFewNodes;  ///< quadrature nodes per piece of a footprint: 4, 6 or 10
     bool transfer = false;            ///< colour and extinction are from a transfer function
-    bool labels = false;              ///< every label has its own colour
+    std::uint32_t labels = 0;         ///< SPEC_LABELS: every label has its own colour
     bool response = false;            ///< materials have their own light responses
     bool gloss = false;               ///< some materials have highlights
     bool lit_edges = false;           ///< splats without an edge are shaded as if without a normal

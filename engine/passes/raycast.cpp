@@ -28,7 +28,7 @@ void cast_rays(gpu::Commands& commands, const RaycastVariant& variant, const glm
     const gpu::Specialization constants{
         {shader::SPEC_ISO_COUNT, variant.iso_count},     {shader::SPEC_SKIP, variant.skip_empty ? 1 : 0},
         {shader::SPEC_RAY_LIGHT, variant.light},         {shader::SPEC_RAY_FILTER, variant.filter},
-        {shader::SPEC_NO_DATA, variant.no_data ? 1 : 0}, {shader::SPEC_LABELS, variant.labels ? 1 : 0}};
+        {shader::SPEC_NO_DATA, variant.no_data ? 1 : 0}, {shader::SPEC_LABELS, variant.labels}};
     const glm::uvec2 groups = (glm::uvec2(size) + 7U) / 8U;
     commands.dispatch(variant.transfer ? "raycast_transfer.comp" : "raycast.comp", constants, 0, {groups.x, groups.y});
     commands.barrier();

@@ -16,7 +16,7 @@ struct RaycastVariant {
     bool skip_empty = true;    ///< transparent bricks are skipped
     std::uint32_t filter = 0;  ///< RaycastFilter
     bool no_data = false;      ///< rays meet samples without data where the smallest value would be drawn
-    bool labels = false;       ///< every label has its own colour
+    std::uint32_t labels = 0;  ///< SPEC_LABELS: every label has its own colour
     bool transfer = false;     ///< colour and extinction are from a transfer function, else from the material
 };
 

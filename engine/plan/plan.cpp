@@ -178,8 +178,9 @@ std::uint32_t light_code(const Scene& scene) {
     return scene.lights.empty() ? 0U : 1U + static_cast<std::uint32_t>(scene.lights.front().kind);
 }
 
-bool shows_labels(const Scene& scene, const Volume& volume) {
-    return volume.shown_labels && !scene.label_colors.empty();
+std::uint32_t labels_drawn(const Scene& scene, const Volume& volume) {
+    if (!volume.shown_labels || scene.label_colors.empty()) return 0;
+    return volume.has_segmentation() ? shader::LABELS_OF_SCAN : shader::LABELS_OF_MASK;
 }
 
 std::vector<glm::vec3> label_colors(const Scene& scene) {
@@ -344,7 +345,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
     plan.two_values = plan.surfaces && volume.two_values;
     const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
     if (plan.surfaces && range > 0) params.noise = static_cast<float>(volume.noise / range);
-    plan.labels = shows_labels(scene, volume);
+    plan.labels = labels_drawn(scene, volume);
     params.reach = static_cast<float>(kernel_reach(settings));
     params.translucent_mask = materials_carried_beside(settings, scene, volume.geometry);
     // A face is fitted to both sides of a surface, also to a side that is not drawn.
@@ -418,8 +419,8 @@ FramePlan plan_frame(const Volume& volume, const Scene& scene, const Camera& cam
                    std::int64_t{size.x} * size.y <= std::int64_t{shader::REFINE_PIXELS};
     plan.may_refine = plan.refined;
     plan.variant.transfer = !scene.transfer.empty();
-    plan.variant.labels = shows_labels(scene, volume);
-    if (plan.variant.labels) plan.label_colors = label_colors(scene);
+    plan.variant.labels = labels_drawn(scene, volume);
+    if (plan.variant.labels != 0) plan.label_colors = label_colors(scene);
     if (payload == shader::PAYLOAD_COLOR) plan_shading(scene, settings, view.eye, plan);
     if (!draws_warped(settings)) plan.variant.footprints = FootprintMode::Isotropic;
 

@@ -15,8 +15,8 @@ namespace edgesplat {
 /// Whether splats need normals even without edges.
 bool needs_normals(const Scene& scene);
 
-/// Whether the volume's labels are drawn in the scene's colours.
-bool shows_labels(const Scene& scene, const Volume& volume);
+/// SPEC_LABELS: how the volume's labels are drawn in the scene's colours.
+std::uint32_t labels_drawn(const Scene& scene, const Volume& volume);
 
 /// Scene::label_colors for the device.
 std::vector<glm::vec3> label_colors(const Scene& scene);
@@ -44,7 +44,7 @@ struct CollectionPlan {
     bool lists_bricks() const {
         return !blocks && edge_field && (estimator == EdgeEstimator::Cubic || estimator == EdgeEstimator::March);
     }
-    bool labels = false;  ///< every splat gets the label of its voxel (Volume::shown_labels)
+    std::uint32_t labels = 0;  ///< SPEC_LABELS; every splat gets the label of its voxel (Volume::shown_labels)
     /// Clip planes; none unless `buried`. With `buried`, clipped voxels occlude nothing and are culled. Otherwise the
     /// splat list does not depend on the planes: they move without a new collection.
     passes::ClipCount clip{};

@@ -91,7 +91,7 @@ const std::array kVolumeImages{
     row<VolumeImageRow<VolumeImages>>(text("labels", "(z, y, x) label of each voxel", "host", "2"), &V::labels,
                                       shader::BIND_LABELS,
                                       volume_of(vk::Format::eR32Uint, Usage::eStorage | Usage::eTransferDst),
-                                      [](const CollectionPlan& p) { return p.labels; }),
+                                      [](const CollectionPlan& p) { return p.labels != 0; }),
 };
 
 const std::array kFieldImages{
@@ -130,7 +130,7 @@ const std::array kSplatLists{
     row<SplatListRow>(text("classified values", "(splats) float", "2", "5"), &L::values, &S::values, &F::values,
                       [](const CollectionPlan& p) { return p.transfer.empty() ? 0 : kWord; }),
     row<SplatListRow>(text("splat labels", "(splats) uint", "2", "5"), &L::labels, &S::labels, &F::labels,
-                      [](const CollectionPlan& p) { return p.labels ? kWord : 0; }),
+                      [](const CollectionPlan& p) { return p.labels != 0 ? kWord : 0; }),
 };
 
 const std::array kLightLists{

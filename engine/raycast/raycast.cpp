@@ -39,7 +39,7 @@ RaycastPlan plan_raycast(const Volume& volume, const Scene& scene, const Camera&
                     draws_missing_samples(scene, volume),
                     collection.labels,
                     !scene.transfer.empty()};
-    if (collection.labels) plan.label_colors = label_colors(scene);
+    if (collection.labels != 0) plan.label_colors = label_colors(scene);
     plan.transfer = collection.transfer;
     plan.block.scene = collection.params;
     auto& p = plan.block.rays;

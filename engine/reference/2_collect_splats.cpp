@@ -98,7 +98,7 @@ double carried_value(const Field& field, const ScaledScene& scaled, const std::v
 std::optional<TransferPoint> labelled(const Field& field, const ScaledScene& scaled, const Scene& scene,
                                       std::size_t voxel, int material) {
     if (!scaled.labels || material == 0) return std::nullopt;
-    const std::uint32_t label = label_near(scaled.labels->at, field.dims, field.voxel(voxel));
+    const std::uint32_t label = label_near(*scaled.labels, field.dims, field.voxel(voxel));
     const Material& matter = scene.materials[static_cast<std::size_t>(material)];
     return TransferPoint{0, label == 0 ? matter.color : scene.label_colors[label - 1], matter.extinction};
 }

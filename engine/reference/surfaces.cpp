@@ -442,7 +442,7 @@ std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, cons
     std::vector<std::uint32_t> labels(records.size(), 0);
     if (surfaces.materials.labels)
         std::ranges::transform(records, labels.begin(), [&](const SplatRecord& record) {
-            return label_near(surfaces.materials.labels->at, field.dims, field.voxel(record.voxel));
+            return label_near(*surfaces.materials.labels, field.dims, field.voxel(record.voxel));
         });
     std::vector<std::uint32_t> order(splats.size());
     std::iota(order.begin(), order.end(), 0U);

@@ -37,7 +37,7 @@ RenderResult Renderer::raycast_once(const Scene& scene, const Camera& camera, co
     auto start = Clock::now();
     if (self.splats.provide_volume(raycast.filter == RaycastFilter::Cubic))
         stats.setup_milliseconds += milliseconds_since(start);
-    if (shows_labels(scene, *self.splats.original()) && self.splats.provide_labels())
+    if (labels_drawn(scene, *self.splats.original()) != 0 && self.splats.provide_labels())
         stats.setup_milliseconds += milliseconds_since(start);
     const VolumeStore& store = self.splats.level().volume;
     const Volume& volume = *store.volume();

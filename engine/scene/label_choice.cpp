@@ -129,7 +129,8 @@ class Labels {
 std::vector<bool> chosen_labels(const Volume& volume, const LabelTable& table, const std::vector<std::string>& only,
                                 const std::vector<std::string>& hide) {
     std::vector<bool> shown(table.labels.size(), only.empty());
-    if (only.empty()) shown[background_label(volume, table)] = false;
+    const std::size_t background = background_label(volume, table);
+    if (only.empty() && background < shown.size()) shown[background] = false;
     if (only.empty() && hide.empty()) return shown;
     const Labels labels(volume, table);
     for (const std::string& entry : only)

@@ -29,6 +29,7 @@ struct VolumeSource {
     std::optional<double> threshold;                ///< 1 from this value up, else 0
     std::optional<bool> labels;                     ///< draws labels (drawn_labels); not given: see `choose_labels`
     std::vector<std::string> only, hide;            ///< labels that are shown, or hidden (chosen_labels)
+    std::string segmentation;                       ///< whose labels colour the volume (add_segmentation); empty: none
     std::string label_names;                        ///< file with names and colours of labels; empty: none
     bool box_filter = false;                        ///< mean over 3x3x3 voxels
     std::optional<glm::ivec3> crop_low, crop_high;  ///< first and last voxel kept; both or none
@@ -163,7 +164,10 @@ std::filesystem::path find_file(const std::string& path, const std::vector<std::
 
 using LoadProgress = std::function<void(double fraction, std::string_view what)>;
 
-/// Finds and reads the volume, with the names of its labels, without preprocessing. Throws Error.
+/// Whether labels are chosen (`only`, `hide`).
+bool chooses_labels(const VolumeSource& source);
+
+/// Finds and reads the volume, with its segmentation and the names of its labels, without preprocessing. Throws Error.
 Volume read_source(const VolumeSource& source, const std::vector<std::filesystem::path>& folders,
                    const LoadProgress& progress = {});
 
@@ -176,8 +180,12 @@ Volume load_source(const VolumeSource& source, const std::vector<std::filesystem
 /// Throws Error.
 Volume load_scene_volume(SceneDocument& document, const std::vector<std::filesystem::path>& folders,
                          const LoadProgress& progress = {});
-/// The same for a volume that is read already.
+/// The same for a volume that is read already. With a segmentation whose labels are chosen, sets the document's
+/// iso-values first (set_open_iso_values).
 Volume prepared_volume(SceneDocument& document, Volume volume);
+
+/// If the document leaves its iso-values to statistics of the volume, makes those for this volume the document's.
+void set_open_iso_values(SceneDocument& document, const Volume& volume);
 
 /// Names the labels of a volume from a file (read_label_names). Throws Error if it is no segmentation.
 void name_labels(Volume& volume, const std::filesystem::path& path);

@@ -72,6 +72,11 @@ void add_volume(KeyTable& t) {
           {.help = "Labels to show, by number, name, or name with * for any letters",
            .absent = "all but the background"});
     t.add("volume.hide", MEMBER(volume.hide), {.help = "Labels to hide, in the same way", .absent = "none"});
+    t.add(
+        "volume.segmentation", MEMBER(volume.segmentation),
+        {.help = "Segmentation of the same object: its labels colour the volume's matter, and `only` and `hide` choose "
+                 "among them; relative to the scene file",
+         .absent = "none"});
     t.add("volume.label_names", MEMBER(volume.label_names),
           {.help = "File with names and colours of labels: a Slicer colour table, an ITK-SNAP label description, a "
                    "FreeSurfer lookup table, or a table with the columns id and name; relative to the scene file",

@@ -177,7 +177,7 @@ MaterialChoice choice_of(const Material& material) {
 
 void write_out_materials(SceneDocument& document, const Scene& scene, const Volume& volume) {
     document.below = choice_of(scene.materials.front());
-    if (!scene.label_colors.empty()) {
+    if (volume.is_label_mask() && !scene.label_colors.empty()) {
         // Labels keep their own colours and surface.
         MaterialChoice all = choice_of(scene.materials.back());
         all.color = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
@@ -208,19 +208,21 @@ Scene resolve_scene(const SceneDocument& document, const Volume& volume) {
     for (TransferPoint& point : scene.transfer)
         point.value /= volume.value_scale;
     if (iso.empty() && !document.iso_sigmas.empty()) iso = iso_values_of_sigmas(document.iso_sigmas, volume);
-    if (volume.shown_labels) {
+    if (volume.is_label_mask()) {
         if (!iso.empty() || !scene.transfer.empty())
             fail(
                 "{}: is drawn by its labels, which have their own surfaces and colours; set volume.labels to false "
                 "(--labels off) for {} of its numbers",
                 volume.name, iso.empty() ? "a transfer function" : "surfaces");
         iso = {kLabelSurface};
-        scene.label_colors = label_colors(*volume.labels);
+    }
+    if (volume.shown_labels) scene.label_colors = label_colors(*volume.labels);
+    if (volume.is_label_mask()) {
         const auto chosen = document.materials.empty() ? std::nullopt : color_of(document.materials.front());
         if (chosen) std::ranges::fill(scene.label_colors, *chosen);
     }
     if (iso.empty() && scene.transfer.empty()) iso = chosen_iso_values(document, volume);
-    if (!volume.shown_labels) check_iso_values(iso, volume);
+    if (!volume.is_label_mask()) check_iso_values(iso, volume);
     if (!document.materials.empty() && document.materials.size() != iso.size())
         fail("materials (--color, --extinction, --material): given {} times; expected once per iso-value, {} times",
              document.materials.size(), iso.size());

@@ -12,6 +12,7 @@
 #include "engine/volume/label_names.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/load_volume.h"
+#include "engine/volume/segmentation.h"
 
 namespace edgesplat {
 namespace {
@@ -45,6 +46,10 @@ std::vector<fs::path> volume_folders(const fs::path& first) {
     return folders;
 }
 
+bool chooses_labels(const VolumeSource& source) {
+    return !source.only.empty() || !source.hide.empty();
+}
+
 std::string find_volume(const std::string& path, const std::vector<fs::path>& folders) {
     if (is_builtin(path)) return path;
     if (fs::path(path).extension() == ".toml")
@@ -75,6 +80,13 @@ Volume read_source(const VolumeSource& source, const std::vector<fs::path>& fold
     options.progress = progress;
     const std::string path = find_volume(source.path, folders);
     Volume volume = load_volume(path, options);
+    if (!source.segmentation.empty()) {
+        if (source.threshold)
+            fail(
+                "volume.segmentation (--segmentation): colours measured values, but volume.threshold (--threshold) "
+                "makes a mask of them; expected one of them");
+        add_segmentation(volume, load_volume(find_volume(source.segmentation, folders), {}));
+    }
     if (!source.label_names.empty()) name_labels(volume, find_file(source.label_names, folders));
     return volume;
 }
@@ -96,10 +108,37 @@ Volume load_scene_volume(SceneDocument& document, const std::vector<fs::path>& f
     return prepared_volume(document, read_source(document.volume, folders, progress));
 }
 
+void set_open_iso_values(SceneDocument& document, const Volume& volume) {
+    const bool of_presets = document.iso_sigmas.empty() && document.materials.size() > 1;
+    if (!document.iso_values.empty() || of_presets) return;
+    document.iso_values = resolve_scene(document, volume).iso_values;
+    for (double& value : document.iso_values)
+        value = volume.in_file_unit(value);
+    document.iso_sigmas.clear();
+}
+
+namespace {
+
+/// The lowest value of visible matter, in the samples' unit.
+double lowest_matter(const SceneDocument& document, const Volume& volume) {
+    const Scene scene = resolve_scene(document, volume);
+    std::size_t lowest = 0;
+    while (lowest + 1 < scene.iso_values.size() && !(scene.materials[lowest + 1].extinction > 0))
+        ++lowest;
+    return scene.iso_values[lowest];
+}
+
+}  // namespace
+
 Volume prepared_volume(SceneDocument& document, Volume volume) {
     const bool open = !document.volume.labels;
     choose_labels(document, volume);
     VolumeSource& source = document.volume;
+    if (volume.has_segmentation() && chooses_labels(source)) {
+        const std::vector<bool> shown = chosen_labels(volume, *volume.labels, source.only, source.hide);
+        set_open_iso_values(document, volume);
+        volume = with_labels_shown(volume, shown, source.only.empty(), lowest_matter(document, volume));
+    }
     if (open && source.labels.value_or(false) && !source.checksum.empty()) {
         // The checksum may be that of the samples, as `info` prints it.
         VolumeSource as_read = source;
@@ -138,8 +177,10 @@ void put_numbers(Volume& volume) {
 
 Volume preprocessed(Volume volume, const VolumeSource& source) {
     const auto warnings = volume.warnings;
-    const bool chosen = !source.only.empty() || !source.hide.empty();
-    if (source.labels.value_or(chosen)) {
+    const bool chosen = chooses_labels(source);
+    if (volume.has_segmentation()) {
+        // prepared_volume has chosen among its labels.
+    } else if (source.labels.value_or(chosen)) {
         auto table = labels_of(volume);
         if (!table)
             fail("{}: volume.{}: expected a segmentation of 2 to {} whole numbers without transitions", volume.name,
@@ -185,8 +226,19 @@ std::string_view key_of_numbers(const SceneDocument& document) {
 void choose_labels(SceneDocument& document, const Volume& volume) {
     constexpr std::size_t kFewest = 3;  // two labels are a mask, which has one surface
     VolumeSource& source = document.volume;
-    const bool chosen = !source.only.empty() || !source.hide.empty();
+    const bool chosen = chooses_labels(source);
     const std::string_view numbers = key_of_numbers(document);
+    if (volume.has_segmentation()) {
+        if (!document.transfer.empty() || !document.transfer_preset.empty())
+            fail(
+                "volume.segmentation (--segmentation): labels have their own colours, but the scene has a transfer "
+                "function; expected one of them");
+        if (source.labels.value_or(false))
+            fail(
+                "volume.labels (--labels): draws the samples as labels, but volume.segmentation (--segmentation) has "
+                "its own; expected one of them");
+        return;
+    }
     if (!numbers.empty()) {
         if (chosen)
             fail("volume.{0} (--{0}): chooses labels, but {1} draws the numbers themselves; expected one of them",

@@ -29,7 +29,7 @@ void SplatStore::begin_blocks(VolumeStore& volume, std::shared_ptr<const SampleS
     residence_->blocks = blocks_with_splats(*residence_->source, *volume.volume(), wanted);
     residence_->held.resize(residence_->blocks.size());
     const CollectionBlock largest = largest_block(wanted.dims);
-    volume.hold_blocks(largest.size, wanted.takes_coefficients(), wanted.labels);
+    volume.hold_blocks(largest.size, wanted.takes_coefficients(), wanted.labels != 0);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, largest);
     collected_ = wanted;

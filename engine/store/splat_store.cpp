@@ -88,7 +88,7 @@ void SplatStore::recollect(VolumeStore& volume, const CollectionPlan& wanted, co
     lists_.occlusion = {};
     lists_.shadows = {};
     if (wanted.takes_coefficients()) volume.provide_coefficients();
-    if (wanted.labels) volume.provide_labels();
+    if (wanted.labels != 0) volume.provide_labels();
     const CollectionBlock whole = whole_block(wanted.dims);
     session_->bindings().write_volume(volume.images());
     prepare(wanted, whole, stale);

@@ -18,8 +18,8 @@ Opened open_path(const std::string& path, const std::function<void(double fracti
         out.document.volume.path = path;
         out.folders = volume_folders({});
     }
-    std::string& names = out.document.volume.label_names;
-    if (!names.empty()) names = std::filesystem::absolute(find_file(names, out.folders)).string();
+    for (std::string* file : {&out.document.volume.label_names, &out.document.volume.segmentation})
+        if (!file->empty()) *file = std::filesystem::absolute(find_file(*file, out.folders)).string();
     Volume volume = read_source(out.document.volume, out.folders, progress);
     if (labels_of(volume)) out.samples = std::make_shared<const Volume>(volume);
     out.volume = std::make_shared<const Volume>(prepared_volume(out.document, std::move(volume)));

@@ -19,7 +19,7 @@ struct Opened {
     SceneDocument document;
     std::vector<std::filesystem::path> folders;  ///< folders that were searched for the volume
     std::shared_ptr<const Volume> volume;        ///< preprocessed
-    std::shared_ptr<const Volume> samples;       ///< as read, if it is a segmentation; else null
+    std::shared_ptr<const Volume> samples;       ///< as read, if it is a segmentation or has one; else null
 };
 
 /// Reads a volume file, a folder, builtin:NAME or a scene file. Throws Error.

@@ -50,7 +50,7 @@ void Session::open(Opened opened, const glm::ivec2& size) {
     document.remove_box = open.remove_box;
     document.movie = open.movie;
     opened_ = std::move(opened);
-    drawn_source_ = document.volume;
+    drawn_ = document;
     history_.emplace(std::move(document));
     motion_ = Motion();
     motion_.set_home(camera, opened_.volume->geometry.center());
@@ -69,12 +69,18 @@ void Session::open(Opened opened, const glm::ivec2& size) {
 }
 
 std::shared_ptr<const Volume> Session::relabelled(SceneDocument& document) const {
-    VolumeSource &wanted = document.volume, now = drawn_source_;
+    VolumeSource& wanted = document.volume;
+    const VolumeSource& now = drawn_.volume;
     const bool same = wanted.labels.value_or(false) == now.labels.value_or(false) && wanted.only == now.only &&
                       wanted.hide == now.hide;
-    if (same || !opened_.samples) return nullptr;
+    if (!opened_.samples) return nullptr;
+    // Cuts through a scan depend on its iso-values.
+    const bool of_scan = opened_.samples->has_segmentation();
+    const bool cut_alike = !of_scan || !chooses_labels(wanted) || document.iso_values == drawn_.iso_values;
+    if (same && cut_alike) return nullptr;
     wanted.checksum.clear();
-    auto volume = std::make_shared<const Volume>(preprocessed(*opened_.samples, wanted));
+    auto volume = std::make_shared<const Volume>(of_scan ? prepared_volume(document, *opened_.samples)
+                                                         : preprocessed(*opened_.samples, wanted));
     wanted.checksum = fmt::format("{:016x}", volume->checksum);
     return volume;
 }
@@ -83,7 +89,7 @@ void Session::follow_document() {
     SceneDocument document = history_->now();
     if (auto volume = relabelled(document)) {
         opened_.volume = std::move(volume);
-        drawn_source_ = document.volume;
+        drawn_ = document;
     }
     apply(current_scene());
 }
@@ -119,7 +125,7 @@ void Session::edit(const std::function<void(SceneDocument&)>& change, bool finis
     const bool same = document == now, seen = !same && !(with_quality_of(now, document) == now);
     if (volume) {
         opened_.volume = std::move(volume);
-        drawn_source_ = document.volume;
+        drawn_ = document;
     }
     history_->change(std::move(document), finished);
     if (!same) apply(std::move(scene), seen);

@@ -116,7 +116,7 @@ class Session {
 
     bool wait_;
     Opened opened_;
-    VolumeSource drawn_source_;  ///< whose labels `opened_.volume` shows
+    SceneDocument drawn_;  ///< whose labels `opened_.volume` shows
     std::optional<History<SceneDocument>> history_;
     Scene scene_;
     std::uint64_t scene_number_ = 0, view_number_ = 0;  ///< change with every scene or quality; with every scene

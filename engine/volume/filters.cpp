@@ -124,7 +124,8 @@ Volume cropped(const Volume& volume, const glm::ivec3& low, const glm::ivec3& hi
             for (int x = low.x; x <= high.x; ++x)
                 result.values.push_back(volume.sample(volume.index_of(x, y, z)));
     if (volume.shown_labels)
-        result.shown_labels = sorted_labels(labels_in_box(volume.shown_labels->at, dims, low, high - low + 1));
+        result.shown_labels = sorted_labels(labels_in_box(volume.shown_labels->at, dims, low, high - low + 1),
+                                            volume.shown_labels->on_scan);
     finish_volume(result);
     return result;
 }

@@ -141,6 +141,7 @@ std::size_t place_of_label(const LabelTable& table, float sample) {
 }
 
 std::size_t background_label(const Volume& volume, const LabelTable& table) {
+    if (volume.has_segmentation()) return table.labels.size();
     std::vector<std::size_t> count(table.labels.size(), 0);
     const glm::ivec3 dims = volume.geometry.dims;
     for (int z = 0; z < dims.z; ++z)
@@ -236,6 +237,14 @@ void keep_sides(std::vector<float>& mask, const std::vector<std::uint32_t>& labe
 
 }  // namespace
 
+std::vector<float> smoothed_mask(const std::vector<std::uint32_t>& numbers, const glm::ivec3& dims) {
+    std::vector<float> mask(numbers.size());
+    std::ranges::transform(numbers, mask.begin(), [](std::uint32_t number) { return number > 0 ? 1.0F : 0.0F; });
+    smooth(mask, dims);
+    keep_sides(mask, numbers, dims);
+    return mask;
+}
+
 Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown) {
     Volume result = volume;
     std::vector<std::uint32_t> labels(volume.values.size());
@@ -249,12 +258,10 @@ Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> tabl
             number = place < shown.size() && shown[place] ? static_cast<std::uint32_t>(place) + 1 : 0;
         }
         labels[at] = has_data(volume, at) ? number : 0;
-        result.values[at] = labels[at] > 0 ? 1.0F : 0.0F;
         any = any || labels[at] > 0;
     }
     if (!any) fail("{}: no voxel has a label that is shown", volume.name);
-    smooth(result.values, volume.geometry.dims);
-    keep_sides(result.values, labels, volume.geometry.dims);
+    result.values = smoothed_mask(labels, volume.geometry.dims);
     result.no_data = nullptr;
     result.labels = std::move(table);
     result.shown_labels = sorted_labels(std::move(labels));
@@ -262,8 +269,9 @@ Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> tabl
     return result;
 }
 
-std::shared_ptr<const ShownLabels> sorted_labels(std::vector<std::uint32_t> at) {
+std::shared_ptr<const ShownLabels> sorted_labels(std::vector<std::uint32_t> at, bool on_scan) {
     auto shown = std::make_shared<ShownLabels>();
+    shown->on_scan = on_scan;
     std::vector<std::size_t> count;
     for (const std::uint32_t number : at) {
         if (number >= count.size()) count.resize(std::size_t{number} + 1);
@@ -321,11 +329,11 @@ std::vector<std::uint32_t> halved_labels(const std::vector<std::uint32_t>& label
     return out;
 }
 
-std::uint32_t label_near(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p) {
-    const auto at = [&](const glm::ivec3& i) { return labels[label_offset(dims, i)]; };
+std::uint32_t label_near(const ShownLabels& labels, const glm::ivec3& dims, const glm::ivec3& p) {
+    const auto at = [&](const glm::ivec3& i) { return labels.at[label_offset(dims, i)]; };
     std::uint32_t label = at(p);
     if (label > 0) return label;
-    int nearest = std::numeric_limits<int>::max();
+    int nearest = labels.on_scan ? 4 : 13;  // squares of voxels
     for (int i = 0; i < 125; ++i) {
         const glm::ivec3 there = glm::clamp(p + glm::ivec3(i % 5, i / 5 % 5, i / 25) - 2, glm::ivec3(0), dims - 1);
         const glm::ivec3 way = there - p;
@@ -335,6 +343,22 @@ std::uint32_t label_near(const std::vector<std::uint32_t>& labels, const glm::iv
         nearest = distance;
     }
     return label;
+}
+
+std::uint32_t label_at(const Volume& volume, const glm::dvec3& place) {
+    const glm::ivec3 dims = volume.geometry.dims, low(glm::floor(place));
+    std::uint32_t found = 0;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (int i = 0; i < 8; ++i) {
+        const glm::ivec3 voxel = low + glm::ivec3(i & 1, i >> 1 & 1, i >> 2);
+        const double distance = glm::distance(place, glm::dvec3(voxel));
+        if (distance >= nearest) continue;
+        const std::uint32_t number = label_near(*volume.shown_labels, dims, glm::clamp(voxel, glm::ivec3(0), dims - 1));
+        if (number == 0) continue;
+        found = number;
+        nearest = distance;
+    }
+    return found;
 }
 
 }  // namespace edgesplat

@@ -27,23 +27,31 @@ bool has_ranks(const LabelTable& table);
 std::size_t place_of_label(const LabelTable& table, float sample);
 
 /// Place in the table of the background: number 0 if it occurs on the volume's sides, else the most frequent label
-/// there.
+/// there. With a segmentation of its own (segmentation.h) a volume has none: then the number of labels.
 std::size_t background_label(const Volume& volume, const LabelTable& table);
 
+/// 1 where a number is above 0, else 0, averaged so that the surface at 0.5 has no stairs of voxels; each voxel stays
+/// on its own side of it (docs/method/shading.md, Labels).
+std::vector<float> smoothed_mask(const std::vector<std::uint32_t>& numbers, const glm::ivec3& dims);
+
 /// The volume that is drawn for a segmentation, with `labels` = `table` and `shown_labels`: the mask of the voxels that
-/// have a shown label, smoothed, and above 0.5 at just these voxels (docs/method/shading.md, Labels). `shown`: per
-/// place in the table. Samples without data show nothing. Throws Error if no voxel has a shown label.
+/// have a shown label, smoothed (smoothed_mask). `shown`: per place in the table. Samples without data show nothing.
+/// Throws Error if no voxel has a shown label.
 Volume drawn_labels(const Volume& volume, std::shared_ptr<const LabelTable> table, const std::vector<bool>& shown);
 
 /// The same with all labels but the background. Throws Error if `labels_of` finds none.
 Volume drawn_labels(const Volume& volume);
 
 /// Shown labels with those numbers.
-std::shared_ptr<const ShownLabels> sorted_labels(std::vector<std::uint32_t> at);
+std::shared_ptr<const ShownLabels> sorted_labels(std::vector<std::uint32_t> at, bool on_scan = false);
 
-/// The number of the label of voxel p in a volume of drawn_labels: its own, else that of the nearest voxel with one at
-/// most 2 voxels away along each axis; 0 if there is none.
-std::uint32_t label_near(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims, const glm::ivec3& p);
+/// The number of the label of voxel p: its own, else that of the nearest voxel with one, at most 2 voxels away along
+/// each axis, or 1 in a scan; 0 if there is none.
+std::uint32_t label_near(const ShownLabels& labels, const glm::ivec3& dims, const glm::ivec3& p);
+
+/// The number of the label at a place, voxels, which may lie beyond the outermost ones: that of the nearest of the
+/// eight voxels around it that label_near has a label for; 0 if there is none. Only of volumes with shown labels.
+std::uint32_t label_at(const Volume& volume, const glm::dvec3& place);
 
 /// Numbers in a box of the volume: `size` voxels from `low` on, x fastest.
 std::vector<std::uint32_t> labels_in_box(const std::vector<std::uint32_t>& labels, const glm::ivec3& dims,

@@ -104,7 +104,8 @@ Volume halved(const Volume& volume) {
     const auto no_data = volume.no_data ? std::make_shared<std::vector<bool>>() : nullptr;
     if (volume.shown_labels) {
         out.labels = volume.labels;
-        out.shown_labels = sorted_labels(halved_labels(volume.shown_labels->at, volume.geometry.dims));
+        out.shown_labels =
+            sorted_labels(halved_labels(volume.shown_labels->at, volume.geometry.dims), volume.shown_labels->on_scan);
     }
     out.values.reserve(out.geometry.voxel_count());
     const glm::ivec3 last = volume.geometry.dims - 1;

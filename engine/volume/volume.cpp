@@ -110,7 +110,7 @@ void finish_volume(Volume& volume) {
     const bool any = bad < volume.values.size();
     volume.min_value = any ? low : 0.0F;
     volume.max_value = any ? high : 0.0F;
-    if (volume.shown_labels) {
+    if (volume.is_label_mask()) {
         volume.min_value = 0;
         volume.max_value = 1;
     }

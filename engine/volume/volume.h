@@ -60,6 +60,7 @@ struct LabelTable {
 struct ShownLabels {
     std::vector<std::uint32_t> at;       ///< number per sample, in the order of `Volume::values`
     std::vector<std::uint32_t> largest;  ///< numbers that occur, most samples first
+    bool on_scan = false;                ///< they colour the matter of a scan (segmentation.h), whose samples are drawn
 };
 
 /// A scalar volume. Every sample is finite: samples without data are replaced by `min_value`, counted and marked.
@@ -81,7 +82,7 @@ struct Volume {
     /// values. Scenes, `min_value`, and everything in the engine use the samples' unit.
     double value_scale = 1;
     std::shared_ptr<const LabelTable> labels;  ///< set by load_volume if the samples are labels (labels_of)
-    /// Only of drawn_labels(). `values` is then above 0.5 where a label is shown; its range counts as 0 to 1.
+    /// Only of drawn_labels() and of a scan with a segmentation.
     std::shared_ptr<const ShownLabels> shown_labels;
     std::string geometry_source;     ///< the header's fields that define the geometry, e.g. "sform"; "none" if assumed
     std::string length_unit;         ///< the file's unit of length as its header names it; empty: none, mm are assumed
@@ -105,6 +106,9 @@ struct Volume {
     /// The sample, or NaN if it contains no data.
     float sample(std::size_t i) const { return has_data(i) ? values[i] : std::numeric_limits<float>::quiet_NaN(); }
     double in_file_unit(double value) const { return value * value_scale; }
+    /// Of drawn_labels(): `values` is above 0.5 where a label is shown; its range counts as 0 to 1.
+    bool is_label_mask() const { return shown_labels && !shown_labels->on_scan; }
+    bool has_segmentation() const { return shown_labels && shown_labels->on_scan; }
 };
 
 /// An estimate of the standard deviation of the samples' noise, from a difference that is 0 where samples vary

@@ -94,6 +94,8 @@ class Volume:
         nibabel image.
 
     no_data: value of samples without data.
+    segmentation: a segmentation of the same object, on any grid, whose labels colour the volume's matter: a Volume, or
+        anything that Volume accepts. An array has the volume's own grid.
     label_names: file with names and colours of labels, as ``--label-names``.
 
     Samples that are NaN, infinite, masked, or `no_data` contain no data: they are transparent and count in no
@@ -116,8 +118,10 @@ class Volume:
         series: str | int = "",
         raw: str = "",
         no_data: float | None = None,
+        segmentation: Any = None,
         label_names: str | os.PathLike = "",
     ) -> None:
+        own_names = "" if segmentation is not None else os.fspath(label_names)
         lengths = None if spacing is None else _vector(spacing, "spacing")
         if lengths is not None and not np.all(lengths > 0):
             raise Error(f"spacing: {_triple(lengths)}: expected lengths above 0, mm, along x, y, z")
@@ -138,7 +142,7 @@ class Volume:
                 raw,
                 given,
                 no_data,
-                os.fspath(label_names),
+                own_names,
             )
         else:
             for key, value in of_files.items():
@@ -151,9 +155,26 @@ class Volume:
             array, scale = fitted(found.array)
             with np.errstate(over="ignore", invalid="ignore"):  # larger values become infinite; a warning reports them
                 self._core = _core.Volume.from_array(
-                    array, axes, at, in_patient, found.name, scale, no_data, os.fspath(label_names)
+                    array, axes, at, in_patient, found.name, scale, no_data, own_names
                 )
+        if segmentation is not None:
+            labels = self._segmentation(segmentation)
+            self._core = self._core.with_segmentation(labels._core, os.fspath(label_names))
         self._warn()
+
+    def _segmentation(self, given: Any) -> Volume:
+        if isinstance(given, Volume):
+            return given
+        if not isinstance(given, np.ndarray):
+            return Volume(given)
+        return Volume(
+            given,
+            spacing=self.spacing,
+            origin=self.origin,
+            direction=self.direction,
+            patient=self.patient,
+            name="segmentation",
+        )
 
     def _warn(self) -> None:
         if self._core.non_finite_count:
@@ -263,7 +284,11 @@ class Volume:
         """For a segmentation: the volume of each label by its number, mm^3; `labels` has the names. The uncertainty is
         half the volume of the label's voxels that have another label beside them. The values of another volume count
         as labels, too (then keys are float)."""
-        return {number: Quantity(*volume) for number, _, _, volume in self._core.measure_labels()}
+        return {number: Quantity(*volume) for number, _, _, volume, _ in self._core.measure_labels()}
+
+    def measure_values(self) -> dict[int, tuple[float, float]]:
+        """For a volume with a segmentation: mean and standard deviation of its values in each label, by number."""
+        return {number: values for number, _, _, _, values in self._core.measure_labels() if values is not None}
 
     def __repr__(self) -> str:
         z, y, x = self.shape

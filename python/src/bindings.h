@@ -27,6 +27,7 @@ using Triple = std::array<double, 3>;
 struct LatestVersion {
     std::mutex mutex;
     VolumeSource source;
+    std::vector<double> iso_values;  ///< on which the matter of chosen labels depends
     std::shared_ptr<const Volume> volume;
 };
 

@@ -25,6 +25,7 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
     const VolumeSource asked = scene.volume;
     VolumeSource reading = reading_part(asked), none;
     reading.path = none.path = volume.source.path;
+    reading.segmentation = none.segmentation = volume.source.segmentation;
     reading.label_names = none.label_names = volume.source.label_names;
     if (reading != none && reading != volume.source)
         fail(
@@ -34,7 +35,7 @@ SceneDocument checked(const Document& document, const SharedVolume& volume) {
             volume.source.path);
     scene.volume = volume.source;
     scene.volume.threshold = asked.threshold;
-    scene.volume.labels = volume.volume->shown_labels ? true : asked.labels;
+    scene.volume.labels = volume.volume->is_label_mask() ? true : asked.labels;
     scene.volume.only = asked.only;
     scene.volume.hide = asked.hide;
     if (!asked.label_names.empty()) scene.volume.label_names = asked.label_names;

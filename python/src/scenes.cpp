@@ -68,9 +68,12 @@ Document read(const std::string& path) {
     return {read_scene_file(path), volume_folders(std::filesystem::path(path).parent_path())};
 }
 
-/// The volume after the scene's preprocessing: threshold or labels, box filter, crop.
-SharedVolume prepared(const Document& self, const SharedVolume& given) {
+/// The volume after the scene's preprocessing: threshold or labels, box filter, crop. If labels of a scan are chosen,
+/// open iso-values of the scene become those of the whole scan.
+SharedVolume prepared(Document& self, const SharedVolume& given) {
     const py::gil_scoped_release release;
+    if (given.volume->has_segmentation() && chooses_labels(self.scene.volume))
+        set_open_iso_values(self.scene, *given.volume);
     SceneDocument scene = self.scene;
     VolumeSource& asked = scene.volume;
     if (asked.label_names.empty()) asked.label_names = given.source.label_names;
@@ -88,8 +91,9 @@ SharedVolume prepared(const Document& self, const SharedVolume& given) {
     if (!asked.labels) asked.labels = false;
     if (asked == unchanged && !(volume->labels && has_ranks(*volume->labels))) return given;
     const std::lock_guard lock(given.latest->mutex);
-    if (!given.latest->volume || given.latest->source != asked) {
+    if (!given.latest->volume || given.latest->source != asked || given.latest->iso_values != scene.iso_values) {
         given.latest->source = asked;
+        given.latest->iso_values = scene.iso_values;
         asked.labels = open.labels;
         given.latest->volume = std::make_shared<const Volume>(prepared_volume(scene, *volume));
     }

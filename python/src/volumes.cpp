@@ -10,6 +10,7 @@
 #include "engine/volume/load_volume.h"
 #include "engine/volume/no_data.h"
 #include "engine/volume/packed_volume.h"
+#include "engine/volume/segmentation.h"
 #include "python/src/signals.h"
 
 namespace edgesplat::python {
@@ -98,6 +99,19 @@ SharedVolume from_array(const py::array& array, const std::array<Triple, 3>& axe
     return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
 }
 
+/// The volume with the labels of a segmentation (add_segmentation).
+SharedVolume with_segmentation(const SharedVolume& self, const SharedVolume& segmentation,
+                               const std::string& label_names) {
+    const py::gil_scoped_release release;
+    Volume volume = *self.volume;
+    add_segmentation(volume, *segmentation.volume);
+    if (!label_names.empty()) name_labels(volume, label_names);
+    VolumeSource source = self.source;
+    source.segmentation = segmentation.source.path;
+    source.label_names = label_names;
+    return {std::make_shared<const Volume>(std::move(volume)), std::move(source)};
+}
+
 py::array values(const py::object& self) {
     const Volume& volume = *self.cast<const SharedVolume&>().volume;
     require_samples(volume, "Volume.array");
@@ -163,15 +177,17 @@ std::vector<std::tuple<py::object, std::string, Triple>> labels(const SharedVolu
     return all;
 }
 
-/// Each label's number and name, with its number of voxels and its volume, mm^3. A value of a volume that is no
-/// segmentation is its own number.
-std::vector<std::tuple<py::object, std::string, std::size_t, Numbers>> measured_labels(const SharedVolume& self) {
+/// Each label's number and name, with its number of voxels, its volume, mm^3, and the mean and standard deviation of a
+/// scan's values in it. A value of a volume that is no segmentation is its own number.
+std::vector<std::tuple<py::object, std::string, std::size_t, Numbers, std::optional<Numbers>>> measured_labels(
+    const SharedVolume& self) {
     const auto extents = without_lock([&] { return measure::measure_labels(*self.volume); });
     const auto table = labels_of(*self.volume);
-    std::vector<std::tuple<py::object, std::string, std::size_t, Numbers>> all;
+    std::vector<std::tuple<py::object, std::string, std::size_t, Numbers, std::optional<Numbers>>> all;
     for (const measure::LabelExtent& extent : extents)
         all.emplace_back(table ? number_of(*table, extent.label) : py::float_(static_cast<double>(extent.label.value)),
-                         extent.label.name, extent.voxels, Numbers(extent.volume.value, extent.volume.uncertainty));
+                         extent.label.name, extent.voxels, Numbers(extent.volume.value, extent.volume.uncertainty),
+                         extent.values ? std::optional(Numbers(extent.values->x, extent.values->y)) : std::nullopt);
     return all;
 }
 
@@ -187,6 +203,7 @@ VolumeSource reading_part(const VolumeSource& source) {
     part.level = source.level;
     part.spacing = source.spacing;
     part.no_data = source.no_data;
+    part.segmentation = source.segmentation;
     part.label_names = source.label_names;
     return part;
 }
@@ -208,6 +225,7 @@ void add_volumes(py::module_& module) {
         .def_property_readonly("array", values)
         .def("suggest_iso_values", suggestions)
         .def("measure", measured)
+        .def("with_segmentation", with_segmentation)
         .def("measure_labels", measured_labels)
         .def_property_readonly("labels", labels)
         .def_property_readonly("shape",

@@ -126,7 +126,7 @@ void main() {
                 lit_at = here;
                 stale = 0.0;
             }
-            color = vec4(light * (LABELS == 1u ? unlit : material.rgb), 1.0);
+            color = vec4(light * (LABELS != 0u ? unlit : material.rgb), 1.0);
             sum += weight * color;
             alpha_step = opacity(material.a * ray.mm * step);
             entered = pieces > 1;

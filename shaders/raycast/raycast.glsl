@@ -146,7 +146,7 @@ void read_scene() {
 // Unlit colour of a material at p.
 vec3 color_at(uint material, vec3 p) {
     vec3 color = params.rays.materials[material].rgb;
-    if (LABELS == 1u) {
+    if (LABELS != 0u) {
         uint label = material == 0u ? 0u : label_near(ivec3(round(within_samples(p))));
         color = label == 0u ? color : ColorsRef(params.rays.label_colors).at[label - 1u];
     }

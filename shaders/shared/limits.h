@@ -79,6 +79,8 @@ EDGESPLAT_CONSTANT float SURFACE_DOUBT = 2.0f;    // between eight samples, the 
 EDGESPLAT_CONSTANT int SURFACE_PROBES = 8;       // along that length, where matter begins at a plane and may be thin
 EDGESPLAT_CONSTANT float SURFACE_PROBE = 0.25f;   // between them
 EDGESPLAT_CONSTANT float SURFACE_SOLID = 5.0f;    // optical depth behind which nothing is seen
+EDGESPLAT_CONSTANT uint LABELS_OF_MASK = 1u;     // the labels' mask is drawn: label_near() looks 2 voxels along each axis
+EDGESPLAT_CONSTANT uint LABELS_OF_SCAN = 2u;     // a scan is drawn: label_near() looks 1 voxel along each axis
 EDGESPLAT_CONSTANT float SURFACE_CERTAIN = 1e3f;  // weight of matter that begins at the volume's border or at a clip plane
 EDGESPLAT_CONSTANT uint NUMBERED_SPLATS = 0xfffffffu;  // numbers of surface splats in votes lie below this minus MAX_MATERIALS
 EDGESPLAT_CONSTANT uint BEGUN_MATTER = 0xfffffff0u;  // plus a material: stands for a splat's number where matter begins so
@@ -167,7 +169,7 @@ EDGESPLAT_CONSTANT uint SHEET_BITS = 17u;  // bits of a sliced splat's first she
     X(SPEC_TRACED, 42u)       /* 1: rays find some splats' faces */ \
     X(SPEC_NARROW, 43u)       /* 1: narrow kernels */ \
     X(SPEC_NO_DATA, 44u)      /* 1: rays meet samples without data where matter would be drawn */ \
-    X(SPEC_LABELS, 45u)       /* 1: every label has its own colour */ \
+    X(SPEC_LABELS, 45u)       /* every label has its own colour: LABELS_OF_MASK or LABELS_OF_SCAN; 0: none have */ \
     X(SPEC_SURFACES, 46u)     /* 1: splats are surface splats */ \
     X(SPEC_TWO_VALUES, 47u)   /* 1: the samples have only two values */
 #define EDGESPLAT_SPECIALIZATION(name, id) EDGESPLAT_CONSTANT uint name = id;

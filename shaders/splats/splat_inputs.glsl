@@ -37,7 +37,7 @@ SplatInputs splat_inputs(uint number, Splat splat, Edge e, Projection p, vec2 de
         material = transfer_at(TransferRef(params.frame.transfer), ClassifiedRef(params.frame.values).at[number]);
     else
         material = params.frame.materials[splat.edge >> 28];
-    if (LABELS == 1u) {
+    if (LABELS != 0u) {
         uint label = UintsRef(params.frame.labels).at[number];
         material.rgb = label == 0u ? material.rgb : ColorsRef(params.frame.label_colors).at[label - 1u];
     }

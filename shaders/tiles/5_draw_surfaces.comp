@@ -177,7 +177,7 @@ void main() {
                 }
                 uint numbered = number_material.x | number_material.y << 28;
                 Shown shown = Shown(numbered, kind_of(numbered), ambient_reach(number_material.x, false), lights_reach(number_material.x));
-                count_vote(pair, vote, where, shown, LABELS == 1u);
+                count_vote(pair, vote, where, shown, LABELS != 0u);
             }
         }
         IF_ANY(was_open) {

@@ -54,7 +54,7 @@ vec4 seen_of(SurfaceVotes votes, vec3 u) {
         return vec4(depth, begun ? 0.0 : -unpack_edge(splat.normal, splat.edge).d, 0.0, opacity);
     }
     vec3 color = params.frame.materials[material].rgb;
-    if (LABELS == 1u) {
+    if (LABELS != 0u) {
         uint label = begun ? label_near(clamp(ivec3(round(params.frame.anchor + params.frame.eye + way * u)), ivec3(0), dims - 1))
                            : votes.kind;
         color = label == 0u ? color : ColorsRef(params.frame.label_colors).at[label - 1u];

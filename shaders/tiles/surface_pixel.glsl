@@ -8,7 +8,7 @@
 uint splat_of(uint number) { return number & NUMBERED_SPLATS; }
 
 // The label of a splat.
-uint kind_of(uint number) { return LABELS == 1u && number < BEGUN_MATTER ? UintsRef(params.frame.labels).at[splat_of(number)] : 0u; }
+uint kind_of(uint number) { return LABELS != 0u && number < BEGUN_MATTER ? UintsRef(params.frame.labels).at[splat_of(number)] : 0u; }
 
 STORED_PIXELS(BIND_TILE_SHEETS, unfinished, tile_sheets, load_texel, store_texel)
 

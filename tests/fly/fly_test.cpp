@@ -127,6 +127,32 @@ TEST_F(FlyTest, ChoosesLookByName) {
         "builtin:phantom:32");
 }
 
+TEST_F(FlyTest, ShowsAndHidesMatterOfAScan) {
+    std::ofstream labels(folder_ / "labels.nrrd", std::ios::binary), scan(folder_ / "scan.nrrd", std::ios::binary);
+    labels << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n\n";
+    scan << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n\n";
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x) {
+                const double from = std::hypot(x - 11.5, y - 11.5, z - 11.5);
+                scan.put(static_cast<char>(std::lround(std::clamp(40 * (10 - from), 0.0, 120.0))));
+                labels.put(static_cast<char>(from > 10 ? 0 : x < 8 ? 2 : x < 16 ? 5 : 0));
+            }
+    labels.close();
+    scan.close();
+    std::ofstream(folder_ / "both.toml") << "iso_values = [60]\n[volume]\npath = \"scan.nrrd\"\n"
+                                            "segmentation = \"labels.nrrd\"\n";
+    fly("size 640 760\nsettle\nframes 2\npicture all.png\ntap scene.Labels\nframes 2\ntap scene.labels.5\nframes 2\n"
+        "settle\nexpect error == none\npicture some.png\ntap scene.labels.others\nframes 2\nsettle\n"
+        "expect error == none\npicture one.png\nsave one.toml\nkey Ctrl+Z\nframes 2\nkey Ctrl+Z\nframes 2\nsettle\n"
+        "picture again.png\n",
+        "both.toml");
+    EXPECT_THAT(text_of(folder_ / "one.toml"), HasSubstr("only = [\"2\"]"));
+    EXPECT_LT(compare_images(image("all.png"), image("some.png")).psnr, 40);
+    EXPECT_LT(compare_images(image("some.png"), image("one.png")).psnr, 40);
+    EXPECT_GT(compare_images(image("all.png"), image("again.png")).psnr, 60);
+}
+
 TEST_F(FlyTest, ShowsAndHidesLabels) {
     std::ofstream file(folder_ / "labels.nrrd", std::ios::binary);
     file << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 24 24 24\nencoding: raw\n\n";

@@ -2,9 +2,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "engine/reference/reference_renderer.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/segmentation.h"
 #include "tests/properties/scenes.h"
 
 namespace edgesplat::test {
@@ -59,6 +61,13 @@ float most_of(const Image& image, int channel) {
     return most;
 }
 
+double rms_between(const Image& a, const Image& b) {
+    double square = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        square += std::pow(static_cast<double>(a.pixels[i] - b.pixels[i]), 2);
+    return std::sqrt(square / static_cast<double>(a.pixels.size()));
+}
+
 TEST(Labels, NoColourIsShownThatIsNotThere) {
     for (const double extinction : {8.0, 0.3}) {
         const Shot all = label_shot({false, true, true, true}, extinction);
@@ -92,6 +101,62 @@ TEST(Labels, DoNotChangeTheSurface) {
             EXPECT_EQ(colored.at(x, y, 3), plain.at(x, y, 3));
 }
 
+/// A smooth ball whose segmentation has one half and a neighbour outside of it.
+Shot segmented_shot(double extinction) {
+    Volume scan, segmentation;
+    scan.geometry.dims = segmentation.geometry.dims = glm::ivec3(24);
+    for (int z = 0; z < 24; ++z)
+        for (int y = 0; y < 24; ++y)
+            for (int x = 0; x < 24; ++x) {
+                const glm::dvec3 from = glm::dvec3(x, y, z) - glm::dvec3(11.6, 11.3, 11.4);
+                scan.values.push_back(static_cast<float>(1 / (1 + std::exp(2 * (glm::length(from) - 7)))));
+                segmentation.values.push_back(glm::length(from) < 7 && x < 12 ? 1.0F : 0.0F);
+            }
+    finish_volume(segmentation);
+    finish_volume(scan);
+    add_segmentation(scan, segmentation);
+    Shot shot = label_shot({false, true, true, true}, extinction);
+    shot.volume = std::make_shared<const Volume>(std::move(scan));
+    shot.scene.materials[1].color = kBlue;
+    shot.scene.label_colors = {kRed};
+    shot.camera = look(*shot.volume, {13, -18, 18}, {11.5, 11.5, 11.5}, 40, {0, 0, 1});
+    return shot;
+}
+
+TEST(Labels, ColourTheMatterOfScans) {
+    const Shot both = segmented_shot(8);
+    Shot plain = both;
+    plain.scene.label_colors.clear();
+    const auto [image, blue] = std::pair(render(both).color, render(plain).color);
+    const Image rays = cast(both);
+    int red_pixels = 0, blue_pixels = 0, others = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = 0; x < image.width; ++x) {
+            // The surface is the scan's own one, in either colour.
+            EXPECT_EQ(image.at(x, y, 3), blue.at(x, y, 3));
+            EXPECT_EQ(image.at(x, y, 1), 0);
+            EXPECT_EQ(rays.at(x, y, 1), 0);
+            if (image.at(x, y, 3) < 0.99F) continue;
+            (image.at(x, y, 0) > 0.99F ? red_pixels : blue_pixels) += 1;
+            others += (image.at(x, y, 0) > 0.5F) != (rays.at(x, y, 0) > 0.5F) ? 1 : 0;
+        }
+    EXPECT_GT(red_pixels, 300);
+    EXPECT_GT(blue_pixels, 300);
+    EXPECT_LT(others, 60) << "along the line between both colours";
+}
+
+TEST(Labels, OfScansLookAsInTheReference) {
+    for (const double extinction : {8.0, 0.4}) {
+        Shot shot = segmented_shot(extinction);
+        shot.scene.lights = {Light{}};
+        shot.width = shot.height = 20;
+        const Image device = render(shot).color;
+        const Image exact =
+            reference::render(*shot.volume, shot.scene, shot.camera, shot.settings, shot.width, shot.height);
+        EXPECT_LT(rms_between(device, exact), 4e-3) << extinction;
+    }
+}
+
 TEST(Labels, LookAsInTheReference) {
     // Translucent: voxels beside labels have splats, too.
     Shot shot = label_shot({false, true, true, true}, 0.4);
@@ -100,10 +165,7 @@ TEST(Labels, LookAsInTheReference) {
     const Image device = render(shot).color;
     const Image exact =
         reference::render(*shot.volume, shot.scene, shot.camera, shot.settings, shot.width, shot.height);
-    double square = 0;
-    for (std::size_t i = 0; i < device.pixels.size(); ++i)
-        square += std::pow(static_cast<double>(device.pixels[i] - exact.pixels[i]), 2);
-    EXPECT_LT(std::sqrt(square / static_cast<double>(device.pixels.size())), 4e-3);
+    EXPECT_LT(rms_between(device, exact), 4e-3);
 }
 
 TEST(Labels, AreThousands) {

@@ -66,3 +66,58 @@ def test_what_does_not_fit_is_refused(renderer, atlas):
 
 def test_iso_values_are_the_numbers_of_the_labels(renderer, atlas):
     assert renderer.render(Volume(atlas), iso_values=[500], size=(16, 16)).iso_values == [500]
+
+
+@pytest.fixture
+def scan():
+    """A smooth ball that fills the grid of the atlas."""
+    z, y, x = np.meshgrid(*(np.arange(n) - (n - 1) / 2 for n in (12, 12, 18)), indexing="ij")
+    return 100 / (1 + np.exp(2 * (np.sqrt(x**2 / 2 + y**2 + z**2) - 5)))
+
+
+def test_labels_colour_a_scan(renderer, scan, atlas, names, tmp_path):
+    volume = Volume(scan, spacing=(2, 2, 2), segmentation=atlas, label_names=names)
+    assert [label.number for label in volume.labels] == IDS
+    assert np.array_equal(volume.array, scan.astype(np.float32))
+    values = volume.measure_values()
+    for number in IDS:
+        inside = scan[atlas == number]
+        assert values[number] == pytest.approx((inside.mean(), inside.std()), rel=1e-5)
+    assert volume.measure_labels()[IDS[0]].value == 144 * 8
+    assert Volume(scan).measure_values() == {}
+    how = dict(iso_values=[50], lights=[], camera={"direction": (0, 1, 0)}, size=(48, 32))
+    picture = renderer.render(volume, **how)
+    red = picture.color[16, 24]
+    assert red[0] > 0.9 and red[1] < 0.05
+    one = renderer.render(volume, volume={"only": ["visual*"]}, **how)
+    assert one.color[..., 3].sum() < 0.7 * picture.color[..., 3].sum()
+    assert np.abs(one.color[16, 24] - red).max() < 0.05
+    # Another iso-value cuts other matter; without one, that of the whole scan is the scene's.
+    thin = renderer.render(volume, volume={"only": ["visual*"]}, **{**how, "iso_values": [90]})
+    assert thin.color[..., 3].sum() < one.color[..., 3].sum()
+    del how["iso_values"]
+    open_value = renderer.render(volume, volume={"only": ["visual*"]}, **how)
+    assert open_value.scene.get("iso_values") == pytest.approx([volume.suggest_iso_values(1)[0].value])
+
+
+def test_segmentations_may_be_files_and_volumes(renderer, scan, atlas, tmp_path):
+    from conftest import write_nrrd
+
+    path = write_nrrd(tmp_path / "seg.nrrd", (atlas > 0).astype(np.uint8), (2, 2, 2))
+    array = scan.astype(np.float32)
+    write_nrrd(tmp_path / "scan.nrrd", array, (2, 2, 2))
+    pictures = []
+    for source, segmentation in (
+        (array, path),
+        (array, Volume(path)),
+        (tmp_path / "scan.nrrd", path),
+    ):
+        spacing = None if source is not array else (2, 2, 2)
+        volume = Volume(source, spacing=spacing, segmentation=segmentation)
+        pictures.append(renderer.render(volume, iso_values=[50], size=(32, 24), camera={"view": "front"}).color)
+    scene = {"volume": {"path": str(tmp_path / "scan.nrrd"), "segmentation": str(path)}, "iso_values": [50]}
+    pictures.append(renderer.render(scene=scene, size=(32, 24), camera={"view": "front"}).color)
+    for other in pictures[1:]:
+        assert np.array_equal(other, pictures[0])
+    with pytest.raises(Error, match="expected a segmentation"):
+        Volume(scan, segmentation=scan)

@@ -1,10 +1,12 @@
 // Labels on the command line: listed, chosen, named, measured and drawn by their own numbers.
 #include <gmock/gmock.h>
 
+#include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "engine/image/image_file.h"
 #include "engine/scene/scene_file.h"
 #include "tests/unit/cli_program.h"
 
@@ -104,6 +106,47 @@ TEST_F(CliLabels, AreDrawnTheSameFromTheirScene) {
     const SceneDocument document = read_scene_file((folder_ / "scene.toml").string());
     EXPECT_EQ(document.volume.labels, true);
     EXPECT_TRUE(document.iso_values.empty());
+}
+
+/// A ball with a smooth rim around the boxes' middle, in which the atlas has its labels.
+TEST_F(CliLabels, ColourAScan) {
+    std::ofstream file(folder_ / "scan.nrrd", std::ios::binary);
+    file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 30 30 30\nspace: left-posterior-superior\n"
+            "space directions: (1,0,0) (0,1,0) (0,0,1)\nspace origin: (-14.5,-14.5,-14.5)\nendian: little\n"
+            "encoding: raw\n\n";
+    for (int z = 0; z < 30; ++z)
+        for (int y = 0; y < 30; ++y)
+            for (int x = 0; x < 30; ++x) {
+                const auto value =
+                    static_cast<float>(100 / (1 + std::exp(std::hypot(x - 14.5, y - 14.5, z - 14.5) - 11)));
+                file.write(reinterpret_cast<const char*>(&value), sizeof value);
+            }
+    file.close();
+    const std::string both = "scan.nrrd --segmentation atlas.nrrd --label-names names.csv ";
+    const ProgramRun ran = run("measure -q --json - --only root " + both);
+    ASSERT_EQ(ran.status, 0) << ran.err;
+    const json labels = json::parse(ran.out)["labels"];
+    ASSERT_EQ(labels.size(), 1U);
+    EXPECT_EQ(labels[0]["name"], "root");
+    EXPECT_GT(labels[0]["mean"].get<double>(), 10);
+    const ProgramRun at = run("measure -q --json - --at 0,-7,0 --only 'visual*' --iso 50 " + both);
+    ASSERT_EQ(at.status, 0) << at.err;
+    EXPECT_EQ(json::parse(at.out)["places"][0]["name"], "visual area, layer 1");
+    // The scene file keeps the segmentation and, with chosen labels, the iso-value of the whole scan.
+    const ProgramRun made = run("scene new -o a.toml --hide root " + both);
+    ASSERT_EQ(made.status, 0) << made.err;
+    const SceneDocument document = read_scene_file((folder_ / "a.toml").string());
+    EXPECT_EQ(document.volume.segmentation, "atlas.nrrd");
+    EXPECT_EQ(document.iso_values.size(), 1U);
+    ASSERT_EQ(run("render -q --size 32x32 -o a.png a.toml").status, 0);
+    ASSERT_EQ(run("render -q --size 32x32 -o b.png --hide root " + both).status, 0);
+    EXPECT_EQ(read_image((folder_ / "a.png").string()).image.pixels,
+              read_image((folder_ / "b.png").string()).image.pixels);
+    refuses("render -q -o c.png scan.nrrd --segmentation scan.nrrd", "expected a segmentation of 2 to");
+    refuses("render -q -o c.png --transfer ct-lung-airways " + both, "the scene has a transfer function");
+    refuses("render -q -o c.png --labels on " + both, "has its own");
+    refuses("render -q -o c.png --threshold 50 " + both, "makes a mask");
+    refuses("render -q -o c.png scan.nrrd --segmentation none.nrrd", "none.nrrd: no such file");
 }
 
 }  // namespace

@@ -187,11 +187,15 @@ TEST(Labels, BesideVoxelsCount) {
     labels[555] = 3;
     labels[557] = 4;
     const glm::ivec3 dims(10);
-    EXPECT_EQ(edgesplat::label_near(labels, dims, {5, 5, 5}), 3U);
-    EXPECT_EQ(edgesplat::label_near(labels, dims, {4, 5, 5}), 3U);
-    EXPECT_EQ(edgesplat::label_near(labels, dims, {8, 5, 5}), 4U);
-    EXPECT_EQ(edgesplat::label_near(labels, dims, {9, 7, 7}), 4U);
-    EXPECT_EQ(edgesplat::label_near(labels, dims, {0, 0, 0}), 0U);
+    edgesplat::ShownLabels shown{.at = labels, .largest = {}};
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {5, 5, 5}), 3U);
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {4, 5, 5}), 3U);
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {8, 5, 5}), 4U);
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {9, 7, 7}), 4U);
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {0, 0, 0}), 0U);
+    shown.on_scan = true;
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {4, 6, 6}), 3U);
+    EXPECT_EQ(edgesplat::label_near(shown, dims, {3, 5, 5}), 0U);
 }
 
 struct Named {
