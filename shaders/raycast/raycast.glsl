@@ -143,11 +143,28 @@ void read_scene() {
     for (uint j = 0u; j < ISO_COUNT; ++j) iso_values[j] = params.scene.iso[j];
 }
 
+// The nearest of the eight voxels around p that has the material; the nearest of all if none has.
+ivec3 voxel_of(uint material, vec3 p) {
+    ivec3 low = ivec3(floor(p)), found = ivec3(round(p));
+    float nearest = 1e9;
+    for (int i = 0; i < 8; ++i) {
+        ivec3 there = min(low + ivec3(i & 1, i >> 1 & 1, i >> 2), dims - 1);
+        float away = distance(vec3(there), p);
+        bool nearer = away < nearest && material_of(voxel(there)) == material;
+        nearest = nearer ? away : nearest;
+        found = nearer ? there : found;
+    }
+    return found;
+}
+
 // Unlit colour of a material at p.
 vec3 color_at(uint material, vec3 p) {
     vec3 color = params.rays.materials[material].rgb;
     if (LABELS != 0u) {
-        uint label = material == 0u ? 0u : label_near(ivec3(round(within_samples(p))));
+        vec3 inside = within_samples(p);
+        // A surface of a scan has the label of the matter that it bounds.
+        ivec3 at = LABELS == LABELS_OF_SCAN ? voxel_of(material, inside) : ivec3(round(inside));
+        uint label = material == 0u ? 0u : label_near(at);
         color = label == 0u ? color : ColorsRef(params.rays.label_colors).at[label - 1u];
     }
     return color;
