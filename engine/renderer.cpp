@@ -69,6 +69,10 @@ void Renderer::set_patience(double milliseconds) {
     state_->options.patience = milliseconds;
 }
 
+void Renderer::set_progress(std::function<void(double share)> report) {
+    state_->options.progress = std::move(report);
+}
+
 void Renderer::set_interruption(std::function<bool()> wanted) {
     state_->options.interruption = std::move(wanted);
 }

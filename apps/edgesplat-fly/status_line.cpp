@@ -54,6 +54,8 @@ void status_line(AppState& state, double top, double height) {
     if (state.session.is_open()) {
         text = place_text(state);
         if (state.shown) text = picture_text(state) + "   " + text;
+        if (state.drawer && state.drawer->found() < 1)
+            text = fmt::format("finding surfaces {:.0f} % | ", 100 * state.drawer->found()) + text;
     }
     ImGui::TextUnformatted(text.c_str());
     const std::string& message = state.session.message();

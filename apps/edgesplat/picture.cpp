@@ -70,7 +70,7 @@ edgesplat::Volume load(PictureRequest& request) {
 /// first receives the pictures.
 std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, const edgesplat::Settings& settings,
                                          edgesplat::Renderer& renderer, const edgesplat::Volume& volume,
-                                         const edgesplat::Scene& scene, const edgesplat::Camera& camera) {
+                                         const edgesplat::Scene& scene, const edgesplat::Camera& camera, bool quiet) {
     std::vector<RenderedFrame> frames;
     if (output.compare_plain) {
         edgesplat::Settings plain = settings;
@@ -85,11 +85,14 @@ std::vector<RenderedFrame> render_frames(const edgesplat::OutputChoice& output, 
     const std::unique_ptr<edgesplat::PartExchange> exchange = ranks::part_exchange();
     renderer.divide_sheets(exchange.get());
     for (RenderedFrame& frame : frames) {
+        ProgressLine line(quiet);
+        renderer.set_progress([&line](double share) { line.update(share, "finding surfaces"); });
         frame.result = frame.rays || output.renderer == edgesplat::RendererKind::Raycast
                            ? renderer.raycast(scene, camera, frame.settings, raycast_settings(output), size.x, size.y)
                            : renderer.render(scene, camera, frame.settings, size.x, size.y, aovs);
         frame.ranks = gather_reports(frame.result.stats, volume);
     }
+    renderer.set_progress({});
     renderer.divide_sheets(nullptr);
     return frames;
 }
@@ -179,7 +182,7 @@ void make_picture(PictureRequest request) {
         if (ranks::first())
             choice = apply_max_error(max_error, renderer, *volume, scene, camera, output.size, settings, request.quiet);
         ranks::share(std::span(&settings, 1));
-        frames = render_frames(output, settings, renderer, *volume, scene, camera);
+        frames = render_frames(output, settings, renderer, *volume, scene, camera, request.quiet);
         if (request.explain.explain) {
             const auto plan = edgesplat::describe_frame(planned, renderer, &frames.back().result.stats);
             fmt::print("{}\n", edgesplat::to_text(plan));

@@ -70,6 +70,24 @@ void ProgressBar::update(double done, double seconds_left, const std::string& wh
     std::fflush(stderr);
 }
 
+ProgressLine::~ProgressLine() {
+    if (shown_ && isatty(STDERR_FILENO) == 1) std::fputs("\r\033[K", stderr);
+}
+
+void ProgressLine::update(double fraction, std::string_view what) {
+    using namespace std::chrono;
+    const bool terminal = isatty(STDERR_FILENO) == 1;
+    const auto now = Clock::now();
+    if (quiet_ || now - begin_ < seconds(1) || now - last_ < (terminal ? milliseconds(100) : milliseconds(5000))) return;
+    last_ = now;
+    shown_ = true;
+    constexpr int kWidth = 30;
+    const int filled = std::clamp(static_cast<int>(fraction * kWidth), 0, kWidth);
+    fmt::print(stderr, "{}[{:#<{}}{:.<{}}] {:3.0f} % {}{}", terminal ? "\r\033[K" : "", "", filled, "", kWidth - filled,
+               100 * fraction, what, terminal ? "" : "\n");
+    std::fflush(stderr);
+}
+
 StopRequest::StopRequest(const char* last_words) {
     is_stop_requested = 0;
     exit_message = last_words;

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <functional>
 #include <string>
+#include <string_view>
 
 inline constexpr int kStoppedStatus = 130;  ///< exit status that a shell reports for a program ended by Ctrl-C
 
@@ -23,6 +24,23 @@ class ProgressBar {
   private:
     bool shown_ = false, visible_;
     std::chrono::steady_clock::time_point last_;
+};
+
+/// Progress of work that is usually short: shown only if it takes longer than a second, as a bar on a terminal, else as a
+/// few lines. The destructor erases the bar.
+class ProgressLine {
+  public:
+    explicit ProgressLine(bool quiet) : quiet_(quiet) {}
+    ~ProgressLine();
+    ProgressLine(const ProgressLine&) = delete;
+    ProgressLine& operator=(const ProgressLine&) = delete;
+
+    void update(double fraction, std::string_view what);
+
+  private:
+    using Clock = std::chrono::steady_clock;
+    bool quiet_, shown_ = false;
+    Clock::time_point begin_ = Clock::now(), last_ = begin_ - std::chrono::hours(1);
 };
 
 /// While this object exists, the first SIGINT or SIGTERM is only recorded; a second one ends the program at once. With

@@ -1,43 +1,9 @@
 #include "apps/edgesplat/volume_options.h"
 
-#include <unistd.h>
-
-#include <chrono>
 #include <cstdio>
 #include <functional>
 
-namespace {
-
-// Load progress on stderr, shown only if loading takes longer than a second: a bar on a terminal, otherwise a few
-// lines.
-class ProgressLine {
-  public:
-    ~ProgressLine() {
-        if (shown_ && terminal_) std::fprintf(stderr, "\r\033[K");
-    }
-    void update(double fraction, std::string_view what) {
-        using namespace std::chrono;
-        const auto now = steady_clock::now();
-        if (now - begin_ < seconds(1) || now - last_ < (terminal_ ? milliseconds(100) : milliseconds(5000))) return;
-        last_ = now;
-        shown_ = true;
-        constexpr int kWidth = 30;
-        const int filled = static_cast<int>(fraction * kWidth);
-        const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
-                                std::string(static_cast<std::size_t>(kWidth - filled), '.');
-        std::fprintf(stderr, terminal_ ? "\r\033[K[%s] %3.0f %% %.*s" : "[%s] %3.0f %% %.*s\n", bar.c_str(),
-                     100 * fraction, static_cast<int>(what.size()), what.data());
-        std::fflush(stderr);
-    }
-
-  private:
-    bool terminal_ = isatty(STDERR_FILENO) == 1;
-    bool shown_ = false;
-    std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
-    std::chrono::steady_clock::time_point last_ = begin_ - std::chrono::hours(1);
-};
-
-}  // namespace
+#include "apps/edgesplat/progress_bar.h"
 
 void add_volume_options(CLI::App& command, VolumeOptions& options) {
     command.add_option("--raw", options.raw,
@@ -92,12 +58,10 @@ edgesplat::Volume load_with_progress(const edgesplat::VolumeSource& source,
 
 edgesplat::Volume load_with_progress(const std::function<edgesplat::Volume(const edgesplat::LoadProgress&)>& load,
                                      bool quiet) {
-    edgesplat::LoadProgress progress;
     edgesplat::Volume volume;
     {
-        ProgressLine line;
-        if (!quiet) progress = [&line](double fraction, std::string_view what) { line.update(fraction, what); };
-        volume = load(progress);
+        ProgressLine line(quiet);
+        volume = load([&line](double fraction, std::string_view what) { line.update(fraction, what); });
     }
     for (const std::string& warning : volume.warnings)
         std::fprintf(stderr, "edgesplat: warning: %s\n", warning.c_str());

@@ -184,7 +184,7 @@ FrameForecast forecast_frame(const FrameRequest& request, const CollectionPlan& 
     out.splats.extent.surfaces = collection.surfaces;
     if (splats.from != SplatCount::From::Frame) {
         // Of surface splats, only those between two values have creases.
-        out.splats.extent.creases &= !collection.surfaces || collection.two_values;
+        out.splats.extent.creases &= collection.two_values;
         out.splats.extent.border = collection.surfaces && has_matter_at_border(*request.volume, collection.params);
     }
     for (const std::uint32_t payload : payloads_of(request.outputs)) {

@@ -12,6 +12,7 @@ namespace edgesplat {
 struct RenderOptions {
     double patience = std::numeric_limits<double>::infinity();  ///< milliseconds: Renderer::set_patience
     std::function<bool()> interruption;                         ///< Renderer::set_interruption
+    std::function<void(double)> progress;                       ///< Renderer::set_progress
     std::uint64_t memory_budget = 0;                            ///< bytes; 0: the device's memory
     bool counting = false;                                      ///< Renderer::count_fragments
     bool check_numbers = false;                                 ///< DeviceChoice::check_numbers

@@ -36,8 +36,11 @@ void count_splats(gpu::Commands& commands, const CollectSplats& in) {
     dispatch_collect(commands, in, false);
 }
 
-void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count) {
+void write_splats(gpu::Commands& commands, const CollectSplats& in) {
     dispatch_collect(commands, in, true);
+}
+
+void finish_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count) {
     if (!in.edges || count == 0) return;
     commands.dispatch("2a_finish_splats.comp", finish_constants(in), 0, commands.groups_for(count, 64));
     commands.barrier();

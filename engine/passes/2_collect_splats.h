@@ -16,7 +16,7 @@ struct CollectSplats {
     EdgeEstimator estimator = EdgeEstimator::Cubic;  ///< selects the field that gradients are taken from
     bool faces = false;                              ///< faces are fitted to the surface around each splat
     bool surfaces = false;     ///< surface splats: only voxels beside a surface, with verified faces
-    bool two_values = false;   ///< surface splats: the samples have only two values
+    bool two_values = false;   ///< with faces: the samples have only two values
     ClipCount clip{};          ///< voxels whose kernels are clipped completely are culled
     bool transfer = false;     ///< splats are classified by a transfer function
     std::uint32_t labels = 0;  ///< SPEC_LABELS: splats get the label of their voxel
@@ -33,8 +33,10 @@ std::uint64_t collect_runs(const glm::ivec3& core_size);
 /// Writes the number of splats of each run to SceneParams::run_offsets; nothing for runs of bricks that are not listed.
 void count_splats(gpu::Commands& commands, const CollectSplats& in);
 
-/// Writes the records, brick by brick; then, with an edge field, finishes `count` splats. Precondition: run_offsets
-/// is an exclusive prefix sum.
-void write_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
+/// Writes the records, brick by brick. Precondition: run_offsets is an exclusive prefix sum.
+void write_splats(gpu::Commands& commands, const CollectSplats& in);
+
+/// With an edge field: gives the SceneParams::list_count splats from list_first on their edges or faces.
+void finish_splats(gpu::Commands& commands, const CollectSplats& in, std::uint64_t count);
 
 }  // namespace edgesplat::passes

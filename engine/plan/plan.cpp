@@ -342,7 +342,7 @@ CollectionPlan plan_collection(const Volume& volume, const Scene& whole, const S
             place_clip(scene.effects.clip, volume.geometry, glm::dvec3(0), params.clip_keep, params.clip_remove);
     params.band = static_cast<float>(edge_reach(settings));
     plan.faces = draws_faces(settings);
-    plan.two_values = plan.surfaces && volume.two_values;
+    plan.two_values = (plan.surfaces || plan.faces) && volume.two_values;
     const double range = static_cast<double>(volume.max_value) - static_cast<double>(volume.min_value);
     if (plan.surfaces && range > 0) params.noise = static_cast<float>(volume.noise / range);
     plan.labels = labels_drawn(scene, volume);

@@ -35,7 +35,7 @@ struct CollectionPlan {
     /// visible one. With several, a visible voxel's face may be fitted to an edge between two buried ones.
     bool skip_buried = true;
     bool faces = false;       ///< edges are faces: estimated on both sides, with second derivatives stored per splat
-    bool two_values = false;  ///< Volume::two_values; only with surface splats
+    bool two_values = false;  ///< Volume::two_values; only with faces
     bool surfaces = false;    ///< only voxels beside a surface become splats, with faces that agree with the field
     /// Whether edges are estimated on the B-spline through the samples.
     bool takes_coefficients() const { return edge_field && estimator == EdgeEstimator::Cubic; }

@@ -29,19 +29,18 @@ struct PlaneFit {
 
 class Fit {
   public:
-    Fit(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp)
-        : surfels_(surfels), nearest_(nearest), sharp_(sharp) {}
+    Fit(std::span<const Surfel> surfels, const Surfel& nearest) : surfels_(surfels), nearest_(nearest) {}
 
     /// The normal least like the nearest surfel's; 0 if all are too similar.
     dvec3 most_different() const {
-        return least_like(sharp_ ? kRounded : kTurned, [this](const dvec3& n) { return glm::dot(n, nearest_.n); });
+        return least_like(kRounded, [this](const dvec3& n) { return glm::dot(n, nearest_.n); });
     }
-    /// The normal least like a and b; 0 if all are too similar. With `sharp_`, normals between kRounded and kAlike are
-    /// excluded: they only round the transition between two planes.
+    /// The normal least like a and b; 0 if all are too similar. Normals between kRounded and kAlike are excluded: they
+    /// only round the transition between two planes.
     dvec3 most_different(const dvec3& a, const dvec3& b) const {
         return least_like(kTurned, [&](const dvec3& n) {
             const double seen = glm::dot(n, nearest_.n);
-            if (sharp_ && seen > kRounded && seen < kAlike) return 1.0;
+            if (seen > kRounded && seen < kAlike) return 1.0;
             return std::max(glm::dot(n, a), glm::dot(n, b));
         });
     }
@@ -62,9 +61,9 @@ class Fit {
             }
             if (!(sum > 0.05)) return {};
             fit.place = places / sum;
-            // Where the spline rounds a crease, normals beside it are tilted; positions are more reliable.
+            // The spline's normals are tilted beside creases, since it rounds them; positions are more reliable.
             const glm::dmat3 about = spread / sum - glm::outerProduct(fit.place, fit.place) + glm::dmat3(kSpread);
-            fit.plane.n = glm::normalize(sharp_ ? glm::inverse(about) * normals : normals);
+            fit.plane.n = glm::normalize(glm::inverse(about) * normals);
         }
         fit.plane.D = glm::dot(fit.plane.n, fit.place);
         fit.found = true;
@@ -93,7 +92,6 @@ class Fit {
 
     std::span<const Surfel> surfels_;
     Surfel nearest_;
-    bool sharp_;
 };
 
 }  // namespace
@@ -106,8 +104,8 @@ double CreasePlanes::off(const dvec3& r) const {
     return most;
 }
 
-CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp) {
-    const Fit fit(surfels, nearest, sharp);
+CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest) {
+    const Fit fit(surfels, nearest);
     const dvec3 a = fit.most_different();
     if (a == dvec3(0)) return {};
     const dvec3 b = fit.most_different(a, a);

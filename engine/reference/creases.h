@@ -26,9 +26,8 @@ struct CreasePlanes {
 };
 
 /// Planes fitted to the surfels around `nearest` at the same end of the material's interval. None unless two directions
-/// differ and each plane lies inside the others. `sharp`: the samples around have only two values, so the spline may
-/// have rounded a sharp crease.
-CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest, bool sharp);
+/// differ and each plane lies inside the others. Of samples with two values: the spline has rounded sharp creases.
+CreasePlanes crease_planes(std::span<const Surfel> surfels, const Surfel& nearest);
 
 /// The third plane of a corner, if it is perpendicular to the first two and passes in front of the voxel; else none.
 VoxelEdge::Crease corner_of(const CreasePlanes& planes);

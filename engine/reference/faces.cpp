@@ -14,16 +14,6 @@ namespace edgesplat::reference {
 
 namespace {
 
-/// Whether the samples around a voxel have only two values. Then the field between them is not known.
-bool has_two_values(const Field& field, const glm::ivec3& i) {
-    std::array<double, 27> around{};
-    for (int k = 0; k < 27; ++k)
-        around[static_cast<std::size_t>(k)] = field.at(i + glm::ivec3(k % 3, k / 3 % 3, k / 9) - 1);
-    const auto ends = std::ranges::minmax(around);
-    return std::ranges::all_of(
-        around, [&](double f) { return std::min(f - ends.min, ends.max - f) <= 1e-3 * (ends.max - ends.min); });
-}
-
 using glm::dmat3;
 using glm::dvec3;
 
@@ -39,7 +29,6 @@ constexpr auto kWallLevel = static_cast<double>(shader::WALL_LEVEL);
 constexpr auto kWallTilted = static_cast<double>(shader::WALL_TILTED);
 constexpr auto kTurnFrom = static_cast<double>(shader::TURN_FROM);
 constexpr auto kWallBent = static_cast<double>(shader::WALL_BENT);
-constexpr auto kCreaseFrom = static_cast<double>(shader::CREASE_FROM);
 
 double surfel_weight(const dvec3& r, const dvec3& n, const dvec3& other) {
     const double along = glm::dot(r, n);
@@ -92,23 +81,22 @@ double wrong_sides(const Field& field, const ScaledScene& scene, const glm::ivec
 }
 
 /// The edge of a voxel at a crease. `error`: what its best quadric leaves. nullopt unless the planes leave less than
-/// half of that, or than a fifth if two planes meet at a blunt angle and might be a narrow ridge. If the samples have
-/// only two values, planes also count if they leave almost nothing.
+/// half of that, or than a fifth if two planes meet at a blunt angle and might be a narrow ridge. Planes also count if
+/// they leave almost nothing. Only between samples of two values is the field's shape unknown.
 std::optional<VoxelEdge> creased(const Field& field, const ScaledScene& scene, const glm::ivec3& i, int m,
                                  std::span<const Surfel> surfels, const Surfel& nearest, double error) {
-    const bool sharp = has_two_values(field, i);
-    if (!(error > kCreaseFrom) && !sharp) return std::nullopt;
-    const CreasePlanes planes = crease_planes(surfels, nearest, sharp);
+    if (!scene.two_values) return std::nullopt;
+    const CreasePlanes planes = crease_planes(surfels, nearest);
     if (planes.count < 2) return std::nullopt;
     double off = wrong_sides(field, scene, i, m, [&](const dvec3& r) { return planes.off(r); });
-    // If samples have only two values, surfels inside the planes come from rounding by the spline and are no error.
+    // Surfels inside the planes come from rounding by the spline and are no error.
     for (const Surfel& s : surfels) {
-        const double outside = sharp ? std::max(planes.off(s.at), 0.0) : planes.off(s.at);
+        const double outside = std::max(planes.off(s.at), 0.0);
         off += surfel_weight(s.at - nearest.at, nearest.n, s.n) * outside * outside;
     }
     const bool blunt = glm::dot(planes.planes[0].n, planes.planes[1].n) > static_cast<double>(shader::CREASE_BLUNT);
     const bool better = off < (blunt ? static_cast<double>(shader::CREASE_BLUNT_LEFT) : kOwnShare) * error;
-    if (!better && !(sharp && !blunt && off < static_cast<double>(shader::CREASE_ROUNDED_LEFT))) return std::nullopt;
+    if (!better && !(!blunt && off < static_cast<double>(shader::CREASE_ROUNDED_LEFT))) return std::nullopt;
     VoxelEdge edge;
     edge.has_edge = edge.has_normal = true;
     edge.upper = nearest.upper;

@@ -71,6 +71,7 @@ ScaledScene scale_scene(const Scene& scene, const Volume& volume) {
         scaled.is_translucent.push_back((translucent_mask >> m & 1U) != 0);
     scaled.transfer = scaled_transfer(scene, volume);
     if (!scene.label_colors.empty()) scaled.labels = volume.shown_labels.get();
+    scaled.two_values = volume.two_values;
     scaled.light = !scene.lights.empty() || scene.effects.silhouette;
     return scaled;
 }

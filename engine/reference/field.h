@@ -32,6 +32,7 @@ struct ScaledScene {
     std::vector<bool> is_translucent;     ///< per material (translucent_materials)
     std::vector<TransferPoint> transfer;  ///< with scaled values; empty without a transfer function
     const ShownLabels* labels = nullptr;  ///< Volume::shown_labels; null without labels in own colours
+    bool two_values = false;              ///< Volume::two_values
     bool light = false;                   ///< splats need normals, for light or silhouettes
     int material(double f) const;         ///< number of iso-values <= f
     double lower(int m) const;            ///< J_{m-1}, -infinity below the first

@@ -74,7 +74,7 @@ PreparedVolume::PreparedVolume(const Volume& volume, const Scene& scene, const S
         bodies.drawn.assign(bodies.drawn.size(), true);
         surfaces_ =
             surface_splats(field(), *surface_scene_, scene_, estimate_edges(field(), bodies, settings_, quantised),
-                           range > 0 ? volume.noise / range : 0, volume.two_values, quantised);
+                           range > 0 ? volume.noise / range : 0, quantised);
     }
     edges_ = finish_edges(field(), scaled_, settings_, edges);
     if (draws_faces(settings_)) {

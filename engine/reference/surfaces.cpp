@@ -333,7 +333,7 @@ SurfaceScene::SurfaceScene(const Scene& whole, const Volume& volume)
     : scene(scene_of_bodies(whole)), bodies(scale_scene(scene, volume)), materials(scale_scene(whole, volume)) {}
 
 VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::vector<VoxelEdge>& surfels,
-                      const ivec3& i, int m, double noise, bool two_values) {
+                      const ivec3& i, int m, double noise) {
     VoxelEdge face;
     face.has_edge = face.has_normal = true;
     face.n = {0, 0, 1};
@@ -388,11 +388,11 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
         const bool agrees = geometry::is_verified(check, noise, high - low) && face.D > -0.05 &&
                             wrong <= kSide + geometry::moved_by_noise(check.steep, noise);
         const int thin = thin_axes(field, scene, i, m);
-        kept = thin == 0 && (two_values || agrees);
+        kept = thin == 0 && (scene.two_values || agrees);
         const double least = thin == 1 ? static_cast<double>(shader::SURFACE_SHEET) : 0;
         face.D2 = thin < 2 ? std::max({geometry::error_of(check), wrong, least}) : kNowhere;
     }
-    if (two_values) {
+    if (scene.two_values) {
         const VoxelEdge planes = fit_face(field, scene, surfels, i, m);
         if (std::isfinite(planes.crease.D)) return planes;
     }
@@ -401,8 +401,7 @@ VoxelEdge fit_surface(const Field& field, const ScaledScene& scene, const std::v
 }
 
 std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
-                                        const std::vector<VoxelEdge>& surfels, double noise, bool two_values,
-                                        bool quantised) {
+                                        const std::vector<VoxelEdge>& surfels, double noise, bool quantised) {
     const ScaledScene& bodies = surfaces.bodies;
     std::vector<SplatRecord> records;
     for (std::size_t at = 0; at < field.values.size(); ++at) {
@@ -415,7 +414,7 @@ std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& 
         for (int k = begin; k < end; ++k) {
             SplatRecord& record = records[static_cast<std::size_t>(k)];
             record.edge = fit_surface(field, bodies, surfels, field.voxel(record.voxel),
-                                      static_cast<int>(record.material), noise, two_values);
+                                      static_cast<int>(record.material), noise);
             if (quantised) record.edge = quantise(record.edge);
             const double own = field.at(field.voxel(record.voxel));
             record.material = static_cast<std::uint32_t>(surfaces.materials.material(own));

@@ -19,16 +19,15 @@ struct SurfaceScene {
 };
 
 /// The face of a surface splat at voxel i of body m, which ends beside it. `noise`: standard deviation of the
-/// samples' noise, scaled; `two_values`: Volume::two_values. `traced` is set if the field must be searched instead,
+/// samples' noise, scaled. `traced` is set if the field must be searched instead,
 /// wherever the face's error, in D2, shows.
 VoxelEdge fit_surface(const Field& field, const ScaledScene& bodies, const std::vector<VoxelEdge>& surfels,
-                      const glm::ivec3& i, int m, double noise, bool two_values);
+                      const glm::ivec3& i, int m, double noise);
 
 /// The splats of the voxels that matter ends beside, ascending by voxel. Their materials are those of the whole scene.
 /// `surfels` are edges of the bodies.
 std::vector<SplatRecord> surface_splats(const Field& field, const SurfaceScene& surfaces, const Scene& scene,
-                                        const std::vector<VoxelEdge>& surfels, double noise, bool two_values,
-                                        bool quantised);
+                                        const std::vector<VoxelEdge>& surfels, double noise, bool quantised);
 
 /// One picture with one ray per pixel: premultiplied payload and opacity, row by row.
 std::vector<glm::dvec4> draw_surfaces(std::span<const SplatRecord> records, const Field& field,

@@ -148,7 +148,7 @@ double SplatProvider::provide_undivided(const FrameRequest& request) {
 }
 
 void SplatProvider::provide(const FrameRequest& request, RenderStats& stats) {
-    cost_ = {};
+    cost_ = {.times = {}, .voxels_estimated = 0, .progress = options_->progress};
     if (other_.volume.volume()) std::swap(shown_, other_);  // resume the unfinished level
     stats.wanted_level =
         level_for(original()->geometry, levels_.count(), request.camera, request.size, drawn_settings(request).detail);

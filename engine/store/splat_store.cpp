@@ -13,6 +13,7 @@ namespace {
 using Place = gpu::Buffer::Place;
 
 // Shaders compute number * size of a splat in 32 bits.
+constexpr std::uint64_t kFinishedAtOnce = std::uint64_t{1} << 18U;  // splats; a second on a slow processor
 constexpr std::uint64_t kMostSplats = std::numeric_limits<std::uint32_t>::max() / sizeof(shader::Splat);
 
 /// Makes clip planes relative to a block's first voxel.
@@ -284,13 +285,26 @@ std::optional<CollectedBlock> SplatStore::list_block(const CollectionPlan& plan,
     const std::span<std::uint32_t> counts = lists_.run_offsets.mapped<std::uint32_t>(runs + 3).subspan(runs);
     std::ranges::fill(counts, 0U);
     auto& params = lists_.scene.mapped<shader::SceneParams>(1)[0];
-    params.list_first = static_cast<std::uint32_t>(out.first);
-    params.list_count = static_cast<std::uint32_t>(out.count);
     params.edge_count_at = static_cast<std::uint32_t>(runs);
     gpu::Commands& commands = session_->commands();
-    commands.run(
-        [&] { commands.span("2_collect_splats", [&] { passes::write_splats(commands, collect, out.count); }); });
-    add_times(cost.times, commands.span_times());
+    const auto run = [&](const auto& body) {
+        commands.run([&] { commands.span("2_collect_splats", body); });
+        add_times(cost.times, commands.span_times());
+    };
+    // In parts, each short enough to say how far it is.
+    std::uint64_t done = 0;
+    do {
+        const std::uint64_t part = std::min(out.count - done, kFinishedAtOnce);
+        params.list_first = static_cast<std::uint32_t>(out.first + done);
+        params.list_count = static_cast<std::uint32_t>(part);
+        run([&] {
+            if (done == 0) passes::write_splats(commands, collect);
+            passes::finish_splats(commands, collect, part);
+        });
+        done += part;
+        if (cost.progress && out.count > 0)
+            cost.progress(static_cast<double>(done) / static_cast<double>(out.count));
+    } while (done < out.count);
     out.with_edge = counts[0];
     out.with_crease = counts[1];
     lists_.splat_count = total;

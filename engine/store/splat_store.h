@@ -2,6 +2,7 @@
 // by block.
 #pragma once
 
+#include <functional>
 #include <future>
 #include <optional>
 
@@ -21,6 +22,7 @@ passes::CollectSplats collect_inputs(const CollectionPlan& plan);
 struct SetupCost {
     std::vector<PassTime> times;
     std::uint64_t voxels_estimated = 0;  ///< voxels whose edges were estimated, including the borders of blocks
+    std::function<void(double share)> progress;  ///< called with the share of a list that has its faces; empty: never
 };
 
 /// The part of the list that a block added.

@@ -293,6 +293,8 @@ Image Drawer::draw_kind(Kind kind, const Job& job, const Rung& rung, DrawnPictur
     const bool may_stop = options_.threaded && !request.moving;
     renderer.set_interruption(may_stop ? std::function<bool()>([this, number = job.number] { return asked_ != number; })
                                        : std::function<bool()>());
+    found_ = 1;
+    renderer.set_progress([this](double share) { found_ = share; });
     Scene scene = request.scene;
     scene.effects.overlays = {};
     Settings settings = kind == Kind::Best ? *request.best : request.settings;

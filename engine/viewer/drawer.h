@@ -81,6 +81,8 @@ class Drawer {
     void freeze_pace(bool on) { frozen_ = on; }
     /// Test hook: simulates the loss of the device for the next picture.
     void simulate_device_loss() { lose_ = true; }
+    /// The share of the surfaces that the picture being drawn has found, 0 to 1; 1 if it waits for none.
+    double found() const { return found_; }
     /// Device memory of all renderers, bytes.
     std::uint64_t device_bytes() const { return device_bytes_; }
     /// Messages of all renderers, also of destroyed ones.
@@ -133,6 +135,7 @@ class Drawer {
     std::uint64_t view_ = 0, finished_view_ = 0;  ///< of the last request; of the last finished picture
 
     std::atomic<bool> frozen_{false}, lose_{false};
+    std::atomic<double> found_{1};
     std::atomic<std::uint64_t> asked_{0}, device_bytes_{0}, validation_messages_{0};
     // Used by the drawing thread.
     mutable std::mutex renderers_mutex_;

@@ -8,7 +8,7 @@ import os
 import threading
 import warnings
 from dataclasses import dataclass, field, fields
-from typing import Any, Iterator, Mapping, Sequence
+from typing import Any, Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
@@ -238,6 +238,7 @@ class Renderer:
         size: Sequence[int] | None = None,
         aovs: Sequence[str] | None = None,
         max_error: float | None = None,
+        progress: Callable[[float], None] | None = None,
         **keys: Any,
     ) -> Picture:
         """Renders `source`: a Volume, anything that Volume accepts, a scene file, or a Scene with a volume.
@@ -247,10 +248,12 @@ class Renderer:
         size: width and height, pixels, 1 to 16384 each (default 512 x 512).
         aovs: extra outputs: tau, depth, normal, distance.
         max_error: RMS error, share of full scale, (0, 1): chooses the fastest method within it, as ``--max-error``.
+        progress: called with the share of the surfaces found, 0 to 1, while the picture waits for them; an exception of
+            its own ends the picture.
         keys: other keys of scenes, such as ``iso_values=[300]`` or ``effects={"fog": {"density": 0.01}}``.
         """
         volume, document = _volume_and_scene(source, scene, camera, size, aovs, max_error, keys)
-        picture = Picture(self._core.draw(document, document.prepared(volume)))
+        picture = Picture(self._core.draw(document, document.prepared(volume), progress))
         frame = picture.statistics.everything["frames"][-1]
         if frame.get("level", 0) > frame.get("wanted_level", 0):
             warnings.warn(

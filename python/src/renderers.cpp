@@ -100,6 +100,7 @@ class SharedRenderer {
             owner.drawing_ = false;
             owner.interruption_ = {};
             owner.renderer_->set_interruption({});
+            owner.renderer_->set_progress({});
         }
         Drawing(const Drawing&) = delete;
         Drawing& operator=(const Drawing&) = delete;
@@ -150,7 +151,8 @@ void draw_on_device(Picture& picture, Renderer& renderer) {
     picture.device = device_text(renderer.device());
 }
 
-Picture draw(SharedRenderer& self, const Document& document, const SharedVolume& volume) {
+/// `progress`: called with the share of the surfaces found while the picture waits for them; None: not.
+Picture draw(SharedRenderer& self, const Document& document, const SharedVolume& volume, const py::object& progress) {
     Picture picture;
     picture.document = checked(document, volume);
     picture.volume = volume;
@@ -161,10 +163,13 @@ Picture draw(SharedRenderer& self, const Document& document, const SharedVolume&
         if (picture.document.quality.max_error) require_samples(*volume.volume, "quality.max_error");
         picture.scene = resolve_scene(picture.document, *volume.volume);
         picture.camera = resolve_camera(picture.document, *volume.volume, picture.scene);
-        if (on_processor(output.renderer))
-            draw_on_processor(picture, self.interruption());
-        else
-            draw_on_device(picture, renderer);
+        if (on_processor(output.renderer)) return draw_on_processor(picture, self.interruption());
+        if (!progress.is_none())
+            renderer.set_progress([&](double share) {
+                const py::gil_scoped_acquire held;
+                progress(share);
+            });
+        draw_on_device(picture, renderer);
     });
     return picture;
 }

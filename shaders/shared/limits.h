@@ -48,7 +48,6 @@ EDGESPLAT_CONSTANT float CORNER_SQUARE = 0.98f;  // cosine: lower bound between 
 EDGESPLAT_CONSTANT float CREASE_ALIKE = 0.93f;  // cosine: lower bound between the normals of one plane's surfels
 EDGESPLAT_CONSTANT float CREASE_BEHIND = 0.1f;  // voxels: lower bound of the depth of one plane's surfels behind another plane
 EDGESPLAT_CONSTANT int CREASE_STEPS = 3;        // iterations of a plane's normal
-EDGESPLAT_CONSTANT float CREASE_FROM = 1e-3f;   // voxels^2, summed: below this error of the quadric no crease is searched
 EDGESPLAT_CONSTANT float CREASE_BLUNT = 0.25f;      // cosine: two planes with more similar normals may be a ridge
 EDGESPLAT_CONSTANT float CREASE_BLUNT_LEFT = 0.2f;  // upper bound of the squared error of such planes, relative to that of the quadric
 EDGESPLAT_CONSTANT float CREASE_REACH = 3.0f;   // voxels: planes further away cut no kernel

@@ -17,7 +17,6 @@ struct CreaseSight {
     vec3 middle;
     vec3 n;
     uint state;
-    bool sharp;  // the samples around have only two values: the spline rounds sharp edges
 };
 
 float crease_weight(Surfel s, vec3 middle, uint state) {
@@ -32,7 +31,7 @@ struct Different {
     float like;
 };
 
-Different none_different(bool sharp) { return Different(vec3(0.0), sharp ? CREASE_ROUNDED : CREASE_TURNED); }
+Different none_different(float like) { return Different(vec3(0.0), like); }
 
 // The first of equally different normals is kept, independent of rounding.
 void see_different(inout Different most, Surfel s, vec3 middle, uint state, float like) {
@@ -50,10 +49,10 @@ bool is_rounding(vec3 n, vec3 other) {
 
 vec3 most_different(CreaseSight sight, vec3 a, vec3 b) {
     ivec3 around = sight.p + ivec3(round(sight.middle));
-    Different most = none_different(false);
+    Different most = none_different(CREASE_TURNED);
     for (int i = 0; i < 125; ++i) {
         Surfel s = surfel_at(sight.p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
-        bool rounding = sight.sharp && is_rounding(sight.n, s.n);
+        bool rounding = is_rounding(sight.n, s.n);
         see_different(most, s, sight.middle, sight.state, rounding ? 1.0 : max(dot(s.n, a), dot(s.n, b)));
     }
     return most.n;
@@ -80,9 +79,9 @@ PlaneFit fit_plane(CreaseSight sight, vec3 seed) {
             sum += w;
         }
         fit.place = places / max(sum, 1e-9);
-        // If the spline rounds, its normals are tilted beside creases, and the positions are more reliable.
+        // The spline's normals are tilted beside creases, since it rounds them; positions are more reliable.
         mat3 about = spread / max(sum, 1e-9) - outerProduct(fit.place, fit.place) + mat3(CREASE_SPREAD);
-        if (sight.sharp) normals = inverse(about) * normals;
+        normals = inverse(about) * normals;
         fit.n = sum > 0.05 ? normalize(normals) : vec3(0.0);
     }
     return fit;
@@ -141,15 +140,14 @@ float off_crease(CreaseFit crease, vec3 r) {
     return max(two, dot(crease.third.xyz, r) - crease.third.w);
 }
 
-// Sum of squared distances: of the surfels around, weighted, and of the samples on the wrong side. If the field is
-// sharp, surfels inside the planes are not errors, since the spline has rounded them.
+// Sum of squared distances: of the surfels around, weighted, and of the samples on the wrong side. Surfels inside the
+// planes are no errors, since the spline has rounded them.
 float crease_error(CreaseSight sight, CreaseFit crease) {
     float error = 0.0;
     ivec3 p = sight.p, around = p + ivec3(round(sight.middle));
     for (int i = 0; i < 125; ++i) {
         Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, sight.material);
-        float off = off_crease(crease, s.at);
-        if (sight.sharp) off = max(off, 0.0);
+        float off = max(off_crease(crease, s.at), 0.0);
         error += s.there && !s.border ? surfel_weight(s.at - sight.middle, sight.n, s.n) * off * off : 0.0;
     }
     for (int i = 0; i < 27; ++i) {

@@ -7,6 +7,9 @@
 #include "shaders/footprints/face_record.glsl"
 #include "shaders/splats/quadric.glsl"
 
+// Only between samples of two values is the shape of the field unknown: there creases are looked for, which the spline rounds.
+layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
+
 struct Surfel {
     bool there;
     vec3 at;  // relative to the voxel
@@ -188,22 +191,6 @@ vec3 wrong_sides(ivec3 p, uint material, vec3 middle, Quadric one, Quadric wall,
     return wrong;
 }
 
-// Whether the samples around have only two values. Then the shape of the field between them is unknown.
-bool has_two_values(ivec3 p) {
-    float low = 1e30, high = -1e30;
-    for (int i = 0; i < 27; ++i) {
-        float f = voxel(clamp(p + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), dims - 1));
-        low = min(low, f);
-        high = max(high, f);
-    }
-    bool two = true;
-    for (int i = 0; i < 27; ++i) {
-        float f = voxel(clamp(p + ivec3(i % 3, i / 3 % 3, i / 9) - 1, ivec3(0), dims - 1));
-        two = two && min(f - low, high - f) <= 1e-3 * (high - low);
-    }
-    return two;
-}
-
 #include "shaders/splats/fit_crease.glsl"
 
 // The face of voxel p's kernel, for its own material or for a material beside it. No edge if no surface is in reach.
@@ -248,8 +235,7 @@ Face fit_face(ivec3 p, uint material) {
     IF_ANY(found || crossed.x || crossed.y) {
         Moments all = no_moments(), same = no_moments();
         float mixed = 0.0;
-        bool sharp = has_two_values(p);
-        Different different = none_different(sharp);
+        Different different = none_different(CREASE_ROUNDED);
         ivec3 around = p + ivec3(round(middle));
         for (int i = 0; i < 125; ++i) {
             Surfel s = surfel_at(p, around + ivec3(i % 5, i / 5 % 5, i / 25) - 2, material);
@@ -258,7 +244,7 @@ Face fit_face(ivec3 p, uint material) {
             add_surfel(all, r, s.n, w);
             add_surfel(same, r, s.n, dot(s.n, n) > 0.0 ? w : 0.0);
             mixed += dot(s.n, n) < 0.0 ? (s.state != state ? w : -w) : 0.0;
-            see_different(different, s, middle, state, dot(s.n, n));
+            if (TWO_VALUES == 1u) see_different(different, s, middle, state, dot(s.n, n));
         }
         // If no opposite surfel is in reach, a layer ends at its lower values.
         face.mixed = mixed > 0.0 || (mixed == 0.0 && state == EDGE_UPPER);
@@ -292,18 +278,19 @@ Face fit_face(ivec3 p, uint material) {
             }
         }
         is_wall = is_wall && !is_own;
-        float best = is_own ? e.own + wrong.z : error;
-        IF_ANY(found && (best > CREASE_FROM || sharp)) {
-            CreaseSight sight = CreaseSight(p, material, middle, n, state, sharp);
-            CreaseFit crease = fit_crease(sight, different.n);
-            float left = 1e9;
-            IF_ANY(crease.found) left = crease_error(sight, crease);
-            // At a blunt angle, a narrow ridge looks like two planes.
-            bool blunt = dot(crease.first.xyz, crease.second.xyz) > CREASE_BLUNT;
-            face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best || (sharp && !blunt && left < CREASE_ROUNDED_LEFT);
-            face.crease = crease.second;
-            face.corner = corner_of(crease);
-            face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
+        if (TWO_VALUES == 1u) {
+            IF_ANY(found) {
+                CreaseSight sight = CreaseSight(p, material, middle, n, state);
+                CreaseFit crease = fit_crease(sight, different.n);
+                float left = 1e9, best = is_own ? e.own + wrong.z : error;
+                IF_ANY(crease.found) left = crease_error(sight, crease);
+                // At a blunt angle, a narrow ridge looks like two planes.
+                bool blunt = dot(crease.first.xyz, crease.second.xyz) > CREASE_BLUNT;
+                face.creased = left < (blunt ? CREASE_BLUNT_LEFT : FIT_OWN) * best || (!blunt && left < CREASE_ROUNDED_LEFT);
+                face.crease = crease.second;
+                face.corner = corner_of(crease);
+                face.edge = Edge(crease.first.xyz, crease.first.w, 1e9, state);
+            }
         }
         if (face.creased) return face;
         vec3 about = is_own ? vec3(0.0) : middle;

@@ -1,8 +1,6 @@
 // The face of a surface splat: one quadric fitted to the surfels around, kept if it agrees with the field. Else the planes
 // of a crease; else rays search the field wherever the face's error, which is kept in place of the second distance, shows
 // (5_trace_faces). docs/method.md, Surface splats. Include after shaders/splats/fit_face.glsl.
-layout(constant_id = SPEC_TWO_VALUES) const uint TWO_VALUES = 0u;
-
 #define Real float
 #define INOUT(type) inout type
 #include "engine/geometry/surface_votes.glsl"

@@ -236,3 +236,19 @@ def test_import_needs_no_device():
     environment["VK_ICD_FILENAMES"] = "/nowhere"
     said = subprocess.run([sys.executable, "-c", code], env=environment, check=True, capture_output=True, text=True)
     assert said.stdout.strip() == "(8, 8, 8) True"
+
+
+def test_progress_is_reported(renderer):
+    shares = []
+    renderer.render("builtin:sphere:40", iso_values=[0.5], size=(16, 16), progress=shares.append)
+    assert shares and shares == sorted(shares) and shares[-1] == 1
+    # Nothing is waited for a second time.
+    del shares[:]
+    renderer.render("builtin:sphere:40", iso_values=[0.5], size=(16, 16), progress=shares.append)
+
+    def stop(share):
+        raise KeyError("enough")
+
+    with pytest.raises(KeyError, match="enough"):
+        renderer.render("builtin:sphere:44", iso_values=[0.5], size=(16, 16), progress=stop)
+    assert renderer.render("builtin:sphere:44", iso_values=[0.5], size=(16, 16)).color[..., 3].max() > 0.9
