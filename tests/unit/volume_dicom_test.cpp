@@ -95,6 +95,60 @@ TEST_F(Dicom, DividesByTwoAttributesTogether) {
     EXPECT_EQ(load_volume(folder_.string(), {.frame = 3}).at(0, 0, 1), 160.0F);
 }
 
+TEST_F(Dicom, DividesFramesOfAFileByWhatTheirGroupsSay) {
+    struct Case {
+        std::uint32_t group, tag;
+        std::string_view vr, first, second, name;
+    };
+    using namespace std::string_view_literals;
+    constexpr std::string_view kZero = "\0\0\0\0\0\0\0\0"sv, kOne = "\0\0\0\0\0\0\xf0\x3f"sv;
+    const std::string along_z = std::string(kZero) + std::string(kZero) + std::string(kOne),
+                      along_y = std::string(kZero) + std::string(kOne) + std::string(kZero);
+    // Frames of two volumes in an order that says nothing: at z = 0 the second volume's comes first.
+    const auto write_frames = [&](const Case& wanted) {
+        std::vector<DicomData> frames;
+        for (const auto& [z, second] :
+             std::vector<std::pair<int, bool>>{{0, true}, {2, false}, {0, false}, {2, true}}) {
+            DicomData item;
+            if (wanted.tag != 0) item.raw(wanted.tag, wanted.vr, std::string(second ? wanted.second : wanted.first));
+            frames.push_back(frame_at(z).sequence(wanted.group, {item}));
+        }
+        return write_data("a.dcm", frames_of(4).sequence(0x52009229, {shared()}).sequence(0x52009230, frames));
+    };
+    for (const Case& wanted : {
+             Case{0x00209111, 0x00209156, "US", "\1\0"sv, "\2\0"sv, "frame acquisition number (0020,9156)"},
+             Case{0x00209111, 0x00189151, "DT", "202001011200", "202001011300", "frame reference date and time"},
+             Case{0x00209310, 0x0020930d, "FD", kZero, kOne, "time offset of the temporal position (0020,930d)"},
+             Case{0x00189197, 0x00189090, "FD", along_z, along_y, "velocity encoding direction (0018,9090)"},
+             Case{0x00189251, 0x00189257, "CS", "CONTROL ", "LABEL ", "arterial spin labelling (0018,9257)"},
+             Case{0x00189341, 0x00189342, "CS", "NO", "YES ", "contrast agent administered (0018,9342)"},
+             Case{0x00189314, 0x00181210, "SH", "B30 ", "B70 ", "convolution kernel (0018,1210)"},
+         }) {
+        const std::string path = write_frames(wanted);
+        EXPECT_THAT(refusal(path), AllOf(HasSubstr(std::string(wanted.name)), HasSubstr("--frame 0..1")));
+        const auto first = load_volume(path, {.frame = 0}), second = load_volume(path, {.frame = 1});
+        EXPECT_EQ(first.at(0, 0, 0), 8.0F) << wanted.name;
+        EXPECT_EQ(first.at(0, 0, 1), 4.0F) << wanted.name;
+        EXPECT_EQ(second.at(0, 0, 0), 0.0F) << wanted.name;
+        EXPECT_EQ(second.at(0, 0, 1), 12.0F) << wanted.name;
+    }
+    // The order of the frames in the file is no attribute.
+    EXPECT_THAT(refusal(write_frames({.group = 0x00209111, .tag = 0}), {.frame = 0}),
+                AllOf(HasSubstr("no attribute divides"), HasSubstr("frame 1, frame 3")));
+}
+
+TEST_F(Dicom, TimesDoNotDivideAgainstWhatFramesAre) {
+    // Magnitude, then phase, or the other way round: the n-th by time is not one volume.
+    for (int z = 0; z < 2; ++z)
+        for (int n = 0; n < 4; ++n)
+            write_data(fmt::format("{}{}", z, n),
+                       slice(z, 100 * n + 10 * z)
+                           .text(0x00080008, "CS", (n + z) % 2 == 0 ? "ORIGINAL\\PRIMARY\\M" : "ORIGINAL\\PRIMARY\\P")
+                           .text(0x00080032, "TM", fmt::format("1200{}{}", z, n)));
+    EXPECT_THAT(refusal(folder_.string()), AllOf(HasSubstr("no attribute divides"), HasSubstr("image type"),
+                                                 HasSubstr("acquisition time (0008,0032)")));
+}
+
 TEST_F(Dicom, LeavesOutDuplicatesAndLocalizers) {
     for (int z = 0; z < 3; ++z)
         write_data(fmt::format("{}.dcm", z), slice(2 * z, 10 * z));

@@ -21,6 +21,7 @@ struct DicomAttribute {
 // In the order in which they are preferred to tell frames apart.
 constexpr std::array kDicomAttributes{
     DicomAttribute{0x00209111, 0x00209128, "UL", "temporal position index (0020,9128)"},
+    DicomAttribute{0x00209310, 0x0020930d, "FD", "time offset of the temporal position (0020,930d)"},
     DicomAttribute{0, 0x00200100, "IS", "temporal position (0020,0100)"},
     DicomAttribute{0x00189118, 0x00209241, "FD", "cardiac phase in percent (0020,9241)"},
     DicomAttribute{0x00189118, 0x00209153, "FD", "cardiac trigger delay (0020,9153)"},
@@ -35,18 +36,25 @@ constexpr std::array kDicomAttributes{
     DicomAttribute{0, 0x00431039, "IS", "b-value (0043,1039)"},
     DicomAttribute{0, 0x20011003, "FL", "b-value (2001,1003)"},
     DicomAttribute{0x00189117, 0x00189089, "FD", "gradient direction (0018,9089)"},
+    DicomAttribute{0x00189117, 0x00189075, "", "diffusion directionality (0018,9075)"},
+    DicomAttribute{0x00189197, 0x00189090, "FD", "velocity encoding direction (0018,9090)"},
+    DicomAttribute{0x00189197, 0x00189217, "FD", "maximum of the velocity encoding (0018,9217)"},
+    DicomAttribute{0x00189251, 0x00189257, "", "arterial spin labelling (0018,9257)"},
     DicomAttribute{0x00189115, 0x00189079, "FD", "inversion time (0018,9079)"},
     DicomAttribute{0, 0x00180082, "DS", "inversion time (0018,0082)"},
     DicomAttribute{0x00189112, 0x00181314, "DS", "flip angle (0018,1314)"},
     DicomAttribute{0x00189112, 0x00180080, "DS", "repetition time (0018,0080)"},
     DicomAttribute{0x00189325, 0x00180060, "DS", "tube voltage (0018,0060)"},
+    DicomAttribute{0x00189341, 0x00189342, "", "contrast agent administered (0018,9342)"},
+    DicomAttribute{0x00189341, 0x00189343, "", "contrast agent detected (0018,9343)"},
+    DicomAttribute{0x00189341, 0x00189344, "", "contrast phase (0018,9344)"},
     DicomAttribute{0x00189807, 0x00189808, "", "data type (0018,9808)"},
     DicomAttribute{0x00189226, 0x00089208, "", "complex image component (0008,9208)"},
     DicomAttribute{0x00189226, 0x00089007, "", "frame type (0008,9007)"},
     DicomAttribute{0x00189329, 0x00089007, "", "frame type (0008,9007)"},
     DicomAttribute{0x00189751, 0x00089007, "", "frame type (0008,9007)"},
     DicomAttribute{0, 0x00080008, "", "image type (0008,0008)"},
-    DicomAttribute{0, 0x00181210, "", "convolution kernel (0018,1210)"},
+    DicomAttribute{0x00189314, 0x00181210, "", "convolution kernel (0018,1210)"},
     DicomAttribute{0, 0x00540010, "US", "energy window (0054,0010)"},
     DicomAttribute{0, 0x00540060, "US", "gated interval (0054,0060)"},
     DicomAttribute{0, 0x00540070, "US", "time slot (0054,0070)"},
@@ -57,9 +65,10 @@ constexpr std::array kDicomAttributes{
     DicomAttribute{0x00209111, 0x00209157, "UL", "second dimension index (0020,9157)"},
     DicomAttribute{0x00209111, 0x00209157, "UL", "third dimension index (0020,9157)"},
     DicomAttribute{0x00209111, 0x00209157, "UL", "fourth dimension index (0020,9157)"},
+    DicomAttribute{0x00209111, 0x00209156, "US", "frame acquisition number (0020,9156)"},
     DicomAttribute{0, 0x00200012, "IS", "acquisition number (0020,0012)"},
     // Loose: they also differ from slice to slice.
-    DicomAttribute{0x00209111, 0x00209151, "", "frame reference date and time (0020,9151)"},
+    DicomAttribute{0x00209111, 0x00189151, "", "frame reference date and time (0018,9151)"},
     DicomAttribute{0, 0x00541300, "DS", "frame reference time (0054,1300)"},
     DicomAttribute{0x00209111, 0x00189074, "", "frame acquisition date and time (0018,9074)"},
     DicomAttribute{0, 0x0008002a, "", "acquisition date and time (0008,002a)"},
@@ -67,8 +76,8 @@ constexpr std::array kDicomAttributes{
     DicomAttribute{0, 0x00080033, "", "content time (0008,0033)"},
     DicomAttribute{0, 0x00200013, "IS", "instance number (0020,0013)"},
 };
-constexpr int kFirstLooseAttribute = 38;
-static_assert(kDicomAttributes[kFirstLooseAttribute].tag == 0x00209151);
+constexpr int kFirstLooseAttribute = 47;
+static_assert(kDicomAttributes[kFirstLooseAttribute].tag == 0x00189151);
 
 /// The numbers of a vector of a nuclear medicine file, one a frame.
 bool is_frame_vector(DicomTag tag) {

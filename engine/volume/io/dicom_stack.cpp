@@ -176,9 +176,22 @@ std::optional<DicomDivision> divided_by(const DicomPlaces& places, const std::ve
     return out;
 }
 
-/// The n-th frame at each place in the order of an attribute that differs from slice to slice, too; of the order in
-/// the file if `attribute` is negative.
-std::optional<DicomDivision> divided_by_rank(const DicomPlaces& places, int attribute) {
+/// Whether an attribute has the same values at every place, but several in one group: the groups mix what it divides.
+bool contradicted_by(const DicomPlaces& places, const std::vector<std::size_t>& group, int attribute) {
+    std::vector<std::vector<std::string>> at_place(places.count.size());
+    std::map<std::size_t, std::set<std::string>> in_group;
+    for (std::size_t i = 0; i < places.frames.size(); ++i) {
+        at_place[places.place[i]].push_back(places.value(places.frames[i], attribute));
+        in_group[group[i]].insert(at_place[places.place[i]].back());
+    }
+    for (auto& values : at_place)
+        std::ranges::sort(values);
+    return std::ranges::all_of(at_place, [&](const auto& values) { return values == at_place.front(); }) &&
+           std::ranges::any_of(in_group, [](const auto& values) { return values.second.size() > 1; });
+}
+
+/// The n-th frame at each place in the order of an attribute that differs from slice to slice, too.
+std::optional<DicomDivision> divided_by_rank(const DicomPlaces& places, int attribute, const std::vector<int>& firm) {
     if (std::ranges::any_of(places.count, [&](std::size_t n) { return n != places.most(); })) return std::nullopt;
     DicomDivision out;
     out.group.resize(places.frames.size());
@@ -186,25 +199,22 @@ std::optional<DicomDivision> divided_by_rank(const DicomPlaces& places, int attr
     for (std::size_t first = 0; first < places.frames.size(); first += places.most()) {
         std::vector<std::size_t> order(places.most());
         std::iota(order.begin(), order.end(), first);
-        const auto key = [&](std::size_t i) {
-            const DicomFrame& frame = places.frames[i];
-            return attribute < 0 ? std::to_string(frame.index) : places.value(frame, attribute);
-        };
+        const auto key = [&](std::size_t i) { return places.value(places.frames[i], attribute); };
         std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return value_before(key(a), key(b)); });
         for (std::size_t rank = 0; rank < order.size(); ++rank) {
             const std::string own = key(order[rank]);
-            if (rank > 0 && (own == key(order[rank - 1]) ||
-                             (attribute < 0 && places.frames[order[rank]].image != places.frames[order[0]].image)))
-                return std::nullopt;
+            if (rank > 0 && own == key(order[rank - 1])) return std::nullopt;
             out.group[order[rank]] = rank;
             if (first == 0 || value_before(own, low[rank])) low[rank] = own;
             if (first == 0 || value_before(high[rank], own)) high[rank] = own;
         }
     }
+    if (std::ranges::any_of(firm, [&](int other) { return contradicted_by(places, out.group, other); }))
+        return std::nullopt;
     for (std::size_t rank = 0; rank < low.size(); ++rank)
         out.values.push_back(low[rank] == high[rank] ? shown_value(low[rank])
                                                      : shown_value(low[rank]) + " to " + shown_value(high[rank]));
-    out.by = attribute < 0 ? "their order in the file" : std::string(dicom_attribute_name(attribute));
+    out.by = dicom_attribute_name(attribute);
     return out;
 }
 
@@ -222,8 +232,8 @@ std::optional<DicomDivision> division_of(const DicomPlaces& places) {
             for (std::size_t c = b + 1; c < firm.size(); ++c)
                 if (auto division = divided_by(places, {firm[a], firm[b], firm[c]})) return division;
     for (const int attribute : varying)
-        if (auto division = divided_by_rank(places, attribute)) return division;
-    return divided_by_rank(places, -1);
+        if (auto division = divided_by_rank(places, attribute, firm)) return division;
+    return std::nullopt;
 }
 
 /// Chooses among the frames at each place.
@@ -242,10 +252,14 @@ void choose_group(DicomPlaces& places, const LoadOptions& options, Volume& volum
         std::string names;
         for (std::size_t i = 0; i < places.frames.size(); ++i)
             if (places.place[i] == crowded) names += (names.empty() ? "" : ", ") + places.name_of(places.frames[i]);
-        fail(
-            "{}: {} to {} slices at the same position ({}){}, which no attribute divides into volumes; put the files "
-            "of one volume into a folder of their own",
-            places.name, *least, *most, names, differ.empty() ? "" : "; they differ in " + differ);
+        // Their order in the file is no reason: frames of several volumes may alternate or follow in any order.
+        const bool one_file = std::ranges::all_of(
+            places.frames, [&](const DicomFrame& frame) { return frame.image == places.frames.front().image; });
+        fail("{}: {} slices at the same position ({}){}, which no attribute divides into volumes; {}", places.name,
+             *least == *most ? std::to_string(*most) : fmt::format("{} to {}", *least, *most), names,
+             differ.empty() ? "" : "; they differ in " + differ,
+             one_file ? "write the frames of one volume into a file of their own"
+                      : "put the files of one volume into a folder of their own");
     }
     const std::size_t count = division->values.size();
     std::string list;
