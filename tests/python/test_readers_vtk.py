@@ -226,6 +226,18 @@ def test_choice_of_arrays(tmp_path):
         compare(f"{path}:{name}", grid, cells, array)
 
 
+@pytest.mark.parametrize("cells_first", [False, True])
+def test_points_go_before_cells(tmp_path, cells_first):
+    parts = ["POINT_DATA 8\nSCALARS p short\nLOOKUP_TABLE default\n1 2 3 4 5 6 7 8\n"]
+    parts.insert(0 if cells_first else 1, "CELL_DATA 1\nSCALARS c short\nLOOKUP_TABLE default\n9\n")
+    path = tmp_path / "a.vtk"
+    head = "# vtk DataFile Version 3.0\n\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 2 2\nORIGIN 0 0 0\nSPACING 1 1 1\n"
+    path.write_text(head + "".join(parts))
+    volume = Volume(path)
+    assert volume.array.ravel().tolist() == [1, 2, 3, 4, 5, 6, 7, 8]
+    assert any("'p' is shown" in note for note in volume.notes)
+
+
 def test_masks_are_no_data(tmp_path):
     rng = np.random.default_rng(7)
     grid = grid_of(rng, "f4", False, 1, 1, True)

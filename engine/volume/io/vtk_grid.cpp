@@ -123,8 +123,10 @@ std::size_t chosen_vtk_array(const std::string& path, const LoadOptions& options
     if (shown.empty() && arrays.empty()) fail("{}: a grid without samples at its points or in its cells", path);
     if (shown.empty())
         fail("{}: array {} of type {} cannot be read; expected numbers", path, arrays[0].name, arrays[0].type_name);
-    // Scalars of points go before those of cells, as in VTK. ParaView marks none in the fields that it writes and shows
-    // the first.
+    // Points go before cells, as in VTK, whatever their order in the file. ParaView marks none in the fields that it
+    // writes and shows the first.
+    for (auto* list : {&scalars, &shown})
+        std::ranges::stable_partition(*list, [&](std::size_t i) { return !arrays[i].of_cells; });
     const std::size_t chosen = scalars.empty() ? shown[0] : scalars[0];
     const bool marked = shown.size() == 1 || !scalars.empty();
     std::erase(shown, chosen);
