@@ -93,6 +93,32 @@ def test_hdf5(tmp_path, seed):
     assert np.array_equal(read(f"{path}:{name}").array, volume.array)
 
 
+@pytest.mark.parametrize("sized_by", ["channel", "image"])
+def test_imaris_padding_is_left_out(tmp_path, sized_by):
+    h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
+    path = str(tmp_path / "a.ims")
+    array = np.zeros((4, 8, 8), "u2")
+    array[:3, :5, :6] = np.arange(1, 91).reshape(3, 5, 6)
+    with h5py.File(path, "w") as file:
+        channel = file.create_group("DataSet/ResolutionLevel 0/TimePoint 0/Channel 0")
+        channel["Data"] = array
+        image = file.create_group("DataSetInfo/Image")
+        holder, prefix = (channel, "ImageSize") if sized_by == "channel" else (image, "")
+        for axis, (letter, size) in enumerate(zip("XYZ", (6, 5, 3))):
+            holder.attrs[prefix + letter] = np.array(list(str(size)), "S1")
+            image.attrs[f"ExtMin{axis}"] = np.array(list("0"), "S1")
+            image.attrs[f"ExtMax{axis}"] = np.array(list(str(size * (axis + 1))), "S1")
+        image.attrs["Unit"] = np.array(list("um"), "S1")
+    volume = read(path)
+    assert np.array_equal(volume.array, array[:3, :5, :6])
+    np.testing.assert_allclose(volume.spacing, (0.001, 0.002, 0.003))
+    with h5py.File(path, "a") as file:
+        group = "DataSet/ResolutionLevel 0/TimePoint 0/Channel 0" if sized_by == "channel" else "DataSetInfo/Image"
+        file[group].attrs[prefix + "X"] = np.bytes_("9")
+    with pytest.raises(Error, match=f"a.ims: attribute {prefix}X of .* is '9', expected a whole number from 1 to 8"):
+        Volume(path)
+
+
 def test_hdf5_lists_what_there_is(tmp_path):
     h5py = pytest.importorskip("h5py", reason="python3-h5py is missing")
     path = str(tmp_path / "a.h5")

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -82,19 +83,44 @@ std::optional<Hdf5Place> place_of_vtkhdf(const Hdf5File& file, const std::string
     return place;
 }
 
-// Imaris: the box of the volume in /DataSetInfo/Image, as texts.
+constexpr const char* kImarisImage = "/DataSetInfo/Image";
+
+bool is_imaris(const Hdf5File& file, const std::string& array, const Hdf5Extent& extent) {
+    return array.starts_with("/DataSet/ResolutionLevel") && extent.size() == 3 && file.has(kImarisImage);
+}
+
+// Imaris pads arrays to whole chunks. Says how much of them is the image: the attributes ImageSizeX, Y and Z of the
+// array's channel, or X, Y and Z of the image for the first level.
+Hdf5Extent size_of_imaris(const std::string& path, const Hdf5File& file, const std::string& array, Hdf5Extent extent) {
+    const std::string channel = parent_of(array);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const char letter = "ZYX"[axis];
+        std::string object = channel, name = fmt::format("ImageSize{}", letter);
+        auto text = file.find_text(object, name);
+        if (!text && array.starts_with("/DataSet/ResolutionLevel 0/"))
+            text = file.find_text(object = kImarisImage, name = std::string(1, letter));
+        if (!text) continue;
+        std::uint64_t size = 0;
+        const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), size);
+        if (error != std::errc() || end != text->data() + text->size() || size < 1 || size > extent[axis])
+            fail("{}: attribute {} of {} is '{}', expected a whole number from 1 to {}, the size of the array", path,
+                 name, object, *text, extent[axis]);
+        extent[axis] = size;
+    }
+    return extent;
+}
+
+// Imaris: the box of the image in /DataSetInfo/Image, as texts. `extent`: without padding.
 std::optional<Hdf5Place> place_of_imaris(const Hdf5File& file, const std::string& array, const Hdf5Extent& extent) {
-    if (!array.starts_with("/DataSet/ResolutionLevel") || extent.size() != 3) return std::nullopt;
-    constexpr const char* kImage = "/DataSetInfo/Image";
-    if (!file.has(kImage)) return std::nullopt;
+    if (!is_imaris(file, array, extent)) return std::nullopt;
     Hdf5Place place{.source = "ExtMin and ExtMax of DataSetInfo/Image",
-                    .unit = file.find_text(kImage, "Unit").value_or("um")};
+                    .unit = file.find_text(kImarisImage, "Unit").value_or("um")};
     const auto millimetres = millimetres_in(place.unit);
     if (!millimetres) return std::nullopt;
     place.millimetres = *millimetres;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto low = file.find_text(kImage, fmt::format("ExtMin{}", axis)),
-                   high = file.find_text(kImage, fmt::format("ExtMax{}", axis));
+        const auto low = file.find_text(kImarisImage, fmt::format("ExtMin{}", axis)),
+                   high = file.find_text(kImarisImage, fmt::format("ExtMax{}", axis));
         if (!low || !high) return std::nullopt;
         const double from = std::strtod(low->c_str(), nullptr), to = std::strtod(high->c_str(), nullptr);
         const double step = (to - from) / static_cast<double>(extent[static_cast<std::size_t>(2 - axis)]);
@@ -199,8 +225,9 @@ Volume load_hdf5(const std::string& path, const LoadOptions& options) {
     report(options, 0.0, "reading header");
     const Hdf5File file = Hdf5File::open(path);
     const auto arrays = arrays_of(file);
-    const NamedArray& array = arrays[chosen_array(path, options, arrays)];
+    NamedArray array = arrays[chosen_array(path, options, arrays)];
     const Hdf5Dataset data = file.dataset(array.name);
+    if (is_imaris(file, array.name, array.extent)) array.extent = size_of_imaris(path, file, array.name, array.extent);
     const ArrayAxes axes = axes_of(array, letters_of(file, data, array.name));
     const ArrayBox box = chosen_box(path, options, array, axes);
     Volume volume;
